@@ -1,0 +1,165 @@
+#pragma once
+// exp, log, sin and cos in plain arithmetic, each within 2 ulp, so that results are the same bits
+// on any host: libm picks other variants by CPU, and no two libms agree in the last bit.
+// Branch-free where a loop must vectorise. Written for double; needs -ffp-contract=off. The series
+// are Taylor's (and atanh's), cut below 1e-17 on the reduced range.
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace jointid::base {
+
+namespace detail {
+
+// Adding 1.5 * 2^52 rounds to the nearest integer and leaves that integer in the low bits.
+inline constexpr double kRound = 6755399441055744.0;
+inline constexpr double kLog2High = 0x1.62e42feep-1;  // 33 bits: k * high is exact for |k| < 2^20
+inline constexpr double kLog2Low = 0x1.a39ef35793c76p-33;  // ln 2 - high
+
+}  // namespace detail
+
+/// e^x; 0 below -708 (no denormals), infinity above 709.78, NaN stays NaN.
+inline double exp(double x) {
+  const double clamped = x < -708.0 ? -708.0 : (x > 709.78 ? 709.78 : x);
+  const double shifted = clamped * 0x1.71547652b82fep+0 + detail::kRound;
+  const double k = shifted - detail::kRound;
+  const double r = (clamped - k * detail::kLog2High) - k * detail::kLog2Low;  // |r| <= ln2 / 2
+  double p = 1.0 / 6227020800.0;
+  p = p * r + 1.0 / 479001600.0;
+  p = p * r + 1.0 / 39916800.0;
+  p = p * r + 1.0 / 3628800.0;
+  p = p * r + 1.0 / 362880.0;
+  p = p * r + 1.0 / 40320.0;
+  p = p * r + 1.0 / 5040.0;
+  p = p * r + 1.0 / 720.0;
+  p = p * r + 1.0 / 120.0;
+  p = p * r + 1.0 / 24.0;
+  p = p * r + 1.0 / 6.0;
+  p = p * r + 0.5;
+  const double series = 1.0 + (r + r * r * p);
+  // 2^k in two factors: k = 1024 overflows a single one.
+  const auto bits = std::bit_cast<std::uint64_t>(shifted);
+  const double scale = std::bit_cast<double>((bits + 1022U) << 52U);
+  const double result = series * scale * 2.0;
+  const double low = x < -708.0 ? 0.0 : result;
+  const double high = x > 709.78 ? std::numeric_limits<double>::infinity() : low;
+  return x == x ? high : x;
+}
+
+/// Natural logarithm of a positive normal number; -infinity at 0, NaN below.
+inline double log(double x) {
+  if (!(x > 0.0)) {
+    return x == 0.0 ? -std::numeric_limits<double>::infinity()
+                    : std::numeric_limits<double>::quiet_NaN();
+  }
+  if (x == std::numeric_limits<double>::infinity()) return x;
+  auto bits = std::bit_cast<std::uint64_t>(x);
+  double k = 0.0;
+  if (bits < (std::uint64_t{1} << 52U)) {  // denormal
+    bits = std::bit_cast<std::uint64_t>(x * 0x1p54);
+    k = -54.0;
+  }
+  // Split so that the mantissa lies in [sqrt(1/2), sqrt(2)): the logarithm is then never a
+  // difference of near equals.
+  const std::uint64_t offset = bits - 0x3fe6a09e667f3bcdULL;
+  k += static_cast<double>(static_cast<std::int64_t>(offset) >> 52);
+  const double m = std::bit_cast<double>((offset & 0x000fffffffffffffULL) + 0x3fe6a09e667f3bcdULL);
+  const double s = (m - 1.0) / (m + 1.0);
+  const double z = s * s;
+  double p = 1.0 / 23.0;
+  p = p * z + 1.0 / 21.0;
+  p = p * z + 1.0 / 19.0;
+  p = p * z + 1.0 / 17.0;
+  p = p * z + 1.0 / 15.0;
+  p = p * z + 1.0 / 13.0;
+  p = p * z + 1.0 / 11.0;
+  p = p * z + 1.0 / 9.0;
+  p = p * z + 1.0 / 7.0;
+  p = p * z + 1.0 / 5.0;
+  p = p * z + 1.0 / 3.0;
+  // log m = 2 s + 2 s z p; with f = m - 1 exact, 2 s = f - s f.
+  const double f = m - 1.0;
+  return k * detail::kLog2High + (f - (s * (f - 2.0 * z * p) - k * detail::kLog2Low));
+}
+
+namespace detail {
+
+struct Reduced {
+  double r;     // |r| <= pi / 4
+  double tail;  // what r lost in rounding
+  std::uint64_t quadrant;
+};
+
+/// x - k pi/2 for |x| < 2^20 pi/2 (three-part pi/2; 33 bits each, so that k * part is exact).
+inline Reduced reduce(double x) {
+  const double shifted = x * 0x1.45f306dc9c883p-1 + kRound;
+  const double k = shifted - kRound;
+  const double a = x - k * 0x1.921fb544p+0;
+  const double b = k * 0x1.0b4611a6p-34;
+  const double r = a - b;
+  const double tail = ((a - r) - b) - k * 0x1.3198a2e037073p-69;
+  return {r + tail, (r - (r + tail)) + tail, std::bit_cast<std::uint64_t>(shifted)};
+}
+
+inline double sin_series(double r, double tail) {
+  const double z = r * r;
+  double p = -1.0 / 121645100408832000.0;
+  p = p * z + 1.0 / 355687428096000.0;
+  p = p * z - 1.0 / 1307674368000.0;
+  p = p * z + 1.0 / 6227020800.0;
+  p = p * z - 1.0 / 39916800.0;
+  p = p * z + 1.0 / 362880.0;
+  p = p * z - 1.0 / 5040.0;
+  p = p * z + 1.0 / 120.0;
+  p = p * z - 1.0 / 6.0;
+  return r + (r * z * p + tail * (1.0 - 0.5 * z));
+}
+
+inline double cos_series(double r, double tail) {
+  const double z = r * r;
+  double p = 1.0 / 2432902008176640000.0;
+  p = p * z - 1.0 / 6402373705728000.0;
+  p = p * z + 1.0 / 20922789888000.0;
+  p = p * z - 1.0 / 87178291200.0;
+  p = p * z + 1.0 / 479001600.0;
+  p = p * z - 1.0 / 3628800.0;
+  p = p * z + 1.0 / 40320.0;
+  p = p * z - 1.0 / 720.0;
+  p = p * z + 1.0 / 24.0;
+  const double half = 0.5 * z;
+  const double lead = 1.0 - half;
+  return lead + (((1.0 - lead) - half) + (z * z * p - r * tail));
+}
+
+inline double flip(double value, std::uint64_t negative) {
+  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) ^ (negative << 63U));
+}
+
+}  // namespace detail
+
+/// sin x for |x| < 1.6e6 rad (a motor angle stays far below); beyond, the remainder is taken first.
+inline double sin(double x) {
+  if (!(std::fabs(x) < 1.6e6)) x = std::remainder(x, 0x1.921fb54442d18p+2);
+  const auto [r, tail, quadrant] = detail::reduce(x);
+  const double value =
+      (quadrant & 1U) != 0 ? detail::cos_series(r, tail) : detail::sin_series(r, tail);
+  return detail::flip(value, (quadrant >> 1U) & 1U);
+}
+
+/// cos x, range as for sin.
+inline double cos(double x) {
+  if (!(std::fabs(x) < 1.6e6)) x = std::remainder(x, 0x1.921fb54442d18p+2);
+  const auto [r, tail, quadrant] = detail::reduce(x);
+  const double value =
+      (quadrant & 1U) != 0 ? detail::sin_series(r, tail) : detail::cos_series(r, tail);
+  return detail::flip(value, ((quadrant + 1U) >> 1U) & 1U);
+}
+
+/// x^y for x > 0: exp(y log x). Its error grows with |y log x|; the genetic operators need no more.
+inline double pow(double x, double y) {
+  return x > 0.0 ? exp(y * log(x)) : 0.0;
+}
+
+}  // namespace jointid::base

@@ -1,0 +1,9 @@
+#include "bind/bind.hpp"
+
+PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
+  m.doc() = "The compiled core of jointid; use it through the package jointid.";
+  jointid::bind::bind_terms(m);
+  jointid::bind::bind_recording(m);
+  jointid::bind::bind_penalty(m);
+  jointid::bind::bind_search(m);
+}

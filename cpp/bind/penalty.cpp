@@ -1,0 +1,89 @@
+#include "identify/penalty.hpp"
+
+#include "bind/bind.hpp"
+
+namespace jointid::bind {
+
+using identify::Penalty;
+using identify::Recording;
+using identify::Residual;
+using identify::WindowOptions;
+
+void bind_penalty(py::module_& m) {
+  py::native_enum<Residual>(m, "Residual", "enum.Enum",
+                            "What a window's residual is compared with.")
+      .value("sensor", Residual::sensor)
+      .value("torque", Residual::torque)
+      .finalize();
+  py::class_<Penalty>(m, "Penalty",
+                      "The integral penalty of recordings and terms, by the direct sum.")
+      .def(py::init([](std::vector<Recording> recordings, const std::vector<std::string>& terms,
+                       const WindowOptions& windows, Residual residual, bool mask_standstill) {
+             const py::gil_scoped_release nogil;
+             return Penalty(std::move(recordings), terms, windows, residual, mask_standstill);
+           }),
+           py::kw_only(), py::arg("recordings"), py::arg("terms"), py::arg("windows"),
+           py::arg("residual"), py::arg("mask_standstill") = true)
+      .def(
+          "__call__", [](const Penalty& p, const Eigen::VectorXd& theta) { return p(theta); },
+          py::arg("theta"), py::call_guard<py::gil_scoped_release>(),
+          "Sum of squared window residuals, by the direct sum.")
+      .def(
+          "residuals",
+          [](const Penalty& p, const Eigen::VectorXd& theta) {
+            Eigen::VectorXd residual;
+            p.residuals(theta, residual, nullptr);
+            return residual;
+          },
+          py::arg("theta"), "Window residuals, length `window_count`.")
+      .def(
+          "jacobian",
+          [](const Penalty& p, const Eigen::VectorXd& theta) {
+            Eigen::VectorXd residual;
+            Eigen::MatrixXd jacobian;
+            p.residuals(theta, residual, &jacobian);
+            return jacobian;
+          },
+          py::arg("theta"),
+          "Derivatives of the window residuals, shape (window_count, parameters).")
+      .def(
+          "columns",
+          [](const Penalty& p, const Eigen::VectorXd& shapes) {
+            Eigen::MatrixXd columns;
+            p.columns(shapes, columns);
+            return columns;
+          },
+          py::arg("shapes"), "Window integrals of all terms, shape (window_count, coefficients).")
+      .def_property_readonly("target", &Penalty::target, "Window integrals of the torque [N m s].")
+      .def_property_readonly("names", &Penalty::names)
+      .def_property_readonly("coefficients", &Penalty::coefficients)
+      .def_property_readonly("window_count", &Penalty::window_count)
+      .def_property_readonly("residual", &Penalty::residual)
+      .def_property_readonly(
+          "windows",
+          [](const Penalty& p) {
+            Eigen::Matrix<std::int64_t, Eigen::Dynamic, 2> bounds(p.window_count(), 2);
+            for (std::size_t w = 0; w < p.windows().size(); ++w) {
+              const auto row = static_cast<Eigen::Index>(w);
+              bounds(row, 0) = p.windows()[w].begin;
+              bounds(row, 1) = p.windows()[w].end;
+            }
+            return bounds;
+          },
+          "First and last sample of each window, shape (window_count, 2).")
+      .def_property_readonly("recording_of", &Penalty::recording_of,
+                             "Which recording each window belongs to.")
+      .def_property_readonly("usable_duration", &Penalty::usable_duration,
+                             "Integrated time of each window [s].")
+      .def_property_readonly("window_duration",
+                             [](const Penalty& p) { return p.window_choice().duration; })
+      .def_property_readonly("noise_share",
+                             [](const Penalty& p) { return p.window_choice().noise_share; })
+      .def_property_readonly("noise_limited",
+                             [](const Penalty& p) { return p.window_choice().noise_limited; })
+      .def_property_readonly("standing_samples", &Penalty::standing_samples)
+      .def_property_readonly("unusable_intervals", &Penalty::unusable_intervals)
+      .def_property_readonly("total_samples", &Penalty::total_samples);
+}
+
+}  // namespace jointid::bind

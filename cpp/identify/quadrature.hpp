@@ -1,0 +1,43 @@
+#pragma once
+// Window integrals of the terms. Friction jumps where the velocity changes sign, so its integral is
+// a weighted sum over nodes: the samples (trapezoid), and in an interval with a reversal the zero
+// crossing of the interpolated velocity.
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "base/cancel.hpp"
+#include "identify/recording.hpp"
+#include "identify/terms.hpp"
+#include "identify/windows.hpp"
+
+namespace jointid::identify {
+
+/// Nodes of all windows in a row: integral over window w of sgn v h(|v|) = sum of weight[i]
+/// h(speed[i]), first[w] <= i < first[w+1]. Samples in unusable intervals have no node; memory is
+/// two doubles a sample.
+struct FrictionNodes {
+  std::vector<double> speed;
+  std::vector<double> weight;
+  std::vector<std::size_t> first{0};
+};
+
+/// Appends the nodes of a recording's windows.
+void append_nodes(const Recording& recording, const std::vector<std::uint8_t>& usable,
+                  const std::vector<Window>& windows, FrictionNodes& nodes);
+
+/// One integral a window, for every term without a shape and for the torque.
+void integrate(Integral integral, const Recording& recording,
+               const std::vector<std::uint8_t>& usable, const std::vector<Window>& windows,
+               Eigen::Ref<Eigen::VectorXd> result);
+void integrate_torque(const Recording& recording, const std::vector<std::uint8_t>& usable,
+                      const std::vector<Window>& windows, Eigen::Ref<Eigen::VectorXd> result);
+
+/// The friction column of a basis for one value of its shape, and on request its derivative.
+/// `cancel` is read once a block of nodes; it may be null.
+void integrate_friction(model::SpeedBasis basis, const FrictionNodes& nodes, double shape,
+                        const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column,
+                        Eigen::VectorXd* slope = nullptr);
+
+}  // namespace jointid::identify

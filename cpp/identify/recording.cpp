@@ -1,0 +1,180 @@
+#include "identify/recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace jointid::identify {
+
+namespace {
+
+constexpr double kSlow = 0.003;            // of the peak speed: below, for long, is standing still
+constexpr double kShortestStanding = 0.1;  // [s]
+constexpr double kStandingOfPeriod =
+    0.01;  // a reversal of a slow motion is slow, too: allow for its period
+constexpr double kResolved =
+    0.005;  // of the peak speed: a motion slower than this per quantum looks stuck
+
+void check_signal(const Eigen::VectorXd& signal, const char* name, Eigen::Index samples) {
+  if (signal.size() != samples) {
+    throw std::invalid_argument(std::string(name) + " has " + std::to_string(signal.size()) +
+                                " samples, time has " + std::to_string(samples));
+  }
+  for (Eigen::Index k = 0; k < samples; ++k) {
+    if (!std::isfinite(signal[k])) {
+      throw std::invalid_argument(std::string(name) + " is not finite at sample " +
+                                  std::to_string(k));
+    }
+  }
+}
+
+double smallest_positive(const Eigen::VectorXd& signal, bool differences) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (Eigen::Index k = 1; k < signal.size(); ++k) {
+    const double step = std::fabs(differences ? signal[k] - signal[k - 1] : signal[k]);
+    if (step > 0.0 && step < smallest) smallest = step;
+  }
+  return smallest;
+}
+
+/// Marks samples first..last of each run in which `same(k)` holds for consecutive k, if the run
+/// passes `long_enough`.
+template <class Same, class LongEnough>
+void mark_runs(Eigen::Index count, std::vector<std::uint8_t>& mark, Same same,
+               LongEnough long_enough) {
+  Eigen::Index first = 0;
+  while (first < count) {
+    if (!same(first)) {
+      ++first;
+      continue;
+    }
+    Eigen::Index last = first;
+    while (last + 1 < count && same(last + 1)) ++last;
+    if (long_enough(first, last))
+      std::fill(mark.begin() + first, mark.begin() + last + 1, std::uint8_t{1});
+    first = last + 1;
+  }
+}
+
+void mark_sticking(const Recording& r, double peak, std::vector<std::uint8_t>& standing) {
+  const double quantum = smallest_positive(r.position, true);
+  const auto unchanged = [&](Eigen::Index k) {  // the interval k-1 -> k, told by its end
+    return k > 0 && r.position[k] == r.position[k - 1];
+  };
+  mark_runs(r.samples(), standing, unchanged, [&](Eigen::Index first, Eigen::Index last) {
+    return last - first >= 2 && r.time[last] - r.time[first - 1] >= quantum / (kResolved * peak);
+  });
+  for (Eigen::Index k = r.samples() - 1; k > 0;
+       --k) {  // a run's first sample is the one before its first interval
+    if (standing[static_cast<std::size_t>(k)] != 0 && unchanged(k))
+      standing[static_cast<std::size_t>(k - 1)] = 1;
+  }
+  if (smallest_positive(r.velocity, false) < kResolved * peak) {
+    mark_runs(
+        r.samples(), standing, [&](Eigen::Index k) { return r.velocity[k] == 0.0; },
+        [](Eigen::Index first, Eigen::Index last) { return last > first; });
+  }
+}
+
+/// Twice the duration over the number of direction changes: the motion's period, as far as one can
+/// tell.
+double motion_period(const Recording& r) {
+  const double hysteresis = 0.01 * (r.position.maxCoeff() - r.position.minCoeff());
+  int changes = 0;
+  int direction = 0;  // not known before the first clear move
+  double extreme = r.position[0];
+  for (Eigen::Index k = 1; k < r.samples(); ++k) {
+    const double beyond = r.position[k] - extreme;
+    const bool turned = direction == 0 || beyond * direction < 0.0;
+    if (turned && std::fabs(beyond) <= hysteresis) continue;
+    if (turned) {
+      changes += direction != 0 ? 1 : 0;
+      direction = beyond > 0.0 ? 1 : -1;
+    }
+    extreme = r.position[k];
+  }
+  return 2.0 * (r.time[r.samples() - 1] - r.time[0]) / std::max(1, changes);
+}
+
+void mark_standing(const Recording& r, double peak, std::vector<std::uint8_t>& standing) {
+  const double span = std::max(kShortestStanding, kStandingOfPeriod * motion_period(r));
+  const double reach = kSlow * peak * span;
+  std::deque<Eigen::Index> highest;
+  std::deque<Eigen::Index> lowest;
+  Eigen::Index first = 0;
+  Eigen::Index marked = 0;  // samples before this one are settled
+  for (Eigen::Index k = 0; k < r.samples(); ++k) {
+    while (!highest.empty() && r.position[highest.back()] <= r.position[k]) highest.pop_back();
+    while (!lowest.empty() && r.position[lowest.back()] >= r.position[k]) lowest.pop_back();
+    highest.push_back(k);
+    lowest.push_back(k);
+    // The longest stretch ending at k that stays within reach: the joint stood still if it lasts
+    // long enough.
+    while (r.position[highest.front()] - r.position[lowest.front()] > reach) {
+      ++first;
+      if (highest.front() < first) highest.pop_front();
+      if (lowest.front() < first) lowest.pop_front();
+    }
+    if (r.time[k] - r.time[first] >= span) {
+      // Only as much of it as is as slow as `span` says: the last span's worth and what joins it.
+      Eigen::Index from = k;
+      while (from > first && r.time[k] - r.time[from - 1] <= span) --from;
+      from = std::max(from, marked);
+      std::fill(standing.begin() + from, standing.begin() + k + 1, std::uint8_t{1});
+      marked = k + 1;
+    }
+  }
+}
+
+}  // namespace
+
+void Recording::validate() const {
+  const Eigen::Index n = samples();
+  if (n < 8)
+    throw std::invalid_argument("a recording needs at least 8 samples, got " + std::to_string(n));
+  check_signal(time, "time", n);
+  check_signal(position, "position", n);
+  check_signal(velocity, "velocity", n);
+  check_signal(torque, "torque", n);
+  if (has_sensor()) check_signal(sensor, "sensor", n);
+  for (Eigen::Index k = 1; k < n; ++k) {
+    if (!(time[k] > time[k - 1])) {
+      throw std::invalid_argument("time must increase, it does not at sample " + std::to_string(k));
+    }
+  }
+  for (const auto gap : gap_after) {
+    if (gap < 0 || gap >= n - 1)
+      throw std::invalid_argument("gap_after must lie inside the recording");
+  }
+}
+
+UsableIntervals usable_intervals(const Recording& r, bool mask_standstill) {
+  const double peak = r.velocity.cwiseAbs().maxCoeff();
+  if (!(peak > 0.0))
+    throw std::invalid_argument("the joint never moves: velocity is zero throughout");
+  const auto n = static_cast<std::size_t>(r.samples());
+  UsableIntervals result{std::vector<std::uint8_t>(n - 1, 1), 0};
+  if (mask_standstill) {
+    std::vector<std::uint8_t> standing(n, 0);
+    mark_sticking(r, peak, standing);
+    mark_standing(r, peak, standing);
+    result.standing = std::count(standing.begin(), standing.end(), std::uint8_t{1});
+    // The interval that touches a stuck sample holds a break-away or a stop; the one beside it has
+    // a derived velocity that saw the stop, and friction that changes too fast for the trapezoid.
+    constexpr std::size_t reach = 2;
+    for (std::size_t k = 0; k < n; ++k) {
+      if (standing[k] == 0) continue;
+      const std::size_t from = k >= reach ? k - reach : 0;
+      const std::size_t to = std::min(n - 1, k + reach);
+      std::fill(result.usable.begin() + static_cast<std::ptrdiff_t>(from),
+                result.usable.begin() + static_cast<std::ptrdiff_t>(to), std::uint8_t{0});
+    }
+  }
+  for (const auto gap : r.gap_after) result.usable[static_cast<std::size_t>(gap)] = 0;
+  return result;
+}
+
+}  // namespace jointid::identify

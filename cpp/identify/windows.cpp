@@ -1,0 +1,137 @@
+#include "identify/windows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace jointid::identify {
+
+namespace {
+
+constexpr double kNoiseShare = 1e-3;
+constexpr Eigen::Index kShortest =
+    10;  // samples: below, windows beside a stop weigh its model error too much
+constexpr Eigen::Index kFewest =
+    5;  // samples, when the record is so short that 10 leave too few windows
+constexpr std::int64_t kWindowsEach = 20;  // windows a parameter, at least
+
+double structure_function(const Recording& r, const std::vector<std::int64_t>& broken,
+                          Eigen::Index lag) {
+  double sum = 0.0;
+  Eigen::Index count = 0;
+  for (Eigen::Index k = 0; k + lag < r.samples(); ++k) {
+    // broken[k] counts unusable intervals before sample k
+    if (broken[static_cast<std::size_t>(k + lag)] != broken[static_cast<std::size_t>(k)]) continue;
+    const double change = r.velocity[k + lag] - r.velocity[k];
+    sum += change * change;
+    ++count;
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
+double median_period(const Recording& r) {
+  std::vector<double> periods(static_cast<std::size_t>(r.samples() - 1));
+  for (Eigen::Index k = 0; k + 1 < r.samples(); ++k)
+    periods[static_cast<std::size_t>(k)] = r.time[k + 1] - r.time[k];
+  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
+  std::nth_element(periods.begin(), middle, periods.end());
+  return *middle;
+}
+
+struct Stretch {
+  std::int64_t begin;
+  std::int64_t end;
+};
+
+std::vector<Stretch> stretches(const Recording& r) {
+  std::vector<std::int64_t> gaps = r.gap_after;
+  std::sort(gaps.begin(), gaps.end());
+  std::vector<Stretch> result;
+  std::int64_t begin = 0;
+  for (const auto gap : gaps) {
+    if (gap > begin) result.push_back({begin, gap});
+    begin = gap + 1;
+  }
+  if (r.samples() - 1 > begin) result.push_back({begin, r.samples() - 1});
+  return result;
+}
+
+double covered(const Recording& r) {
+  double sum = 0.0;
+  for (const auto& s : stretches(r)) sum += r.time[s.end] - r.time[s.begin];
+  return sum;
+}
+
+}  // namespace
+
+void WindowOptions::validate() const {
+  if (count < 0)
+    throw std::invalid_argument("windows: count must be positive, got " + std::to_string(count));
+  if (!(duration >= 0.0) || !std::isfinite(duration)) {
+    throw std::invalid_argument("windows: duration must be positive, got " +
+                                std::to_string(duration) + " s");
+  }
+  if (count > 0 && duration > 0.0)
+    throw std::invalid_argument("windows: give count or duration, not both");
+}
+
+WindowChoice choose_window(const Recording& r, const std::vector<std::uint8_t>& usable,
+                           std::int64_t parameters) {
+  std::vector<std::int64_t> broken(static_cast<std::size_t>(r.samples()), 0);
+  for (std::size_t k = 0; k < usable.size(); ++k)
+    broken[k + 1] = broken[k] + (usable[k] == 0 ? 1 : 0);
+  const auto usable_count = static_cast<std::int64_t>(usable.size()) - broken.back();
+  const double period = median_period(r);
+  const Eigen::Index longest = std::max<Eigen::Index>(
+      kFewest, usable_count / std::max<std::int64_t>(1, kWindowsEach * parameters));
+  double noise = 0.0;
+  for (const Eigen::Index lag : {1, 2}) {
+    const double once = structure_function(r, broken, lag);
+    const double twice = structure_function(r, broken, 2 * lag);
+    noise = std::max(noise, (4.0 * once - twice) / 3.0);
+  }
+  WindowChoice choice;
+  for (Eigen::Index lag = std::min(kShortest, longest);;
+       lag = std::min(longest, lag + 1 + lag / 8)) {
+    const double change = structure_function(r, broken, lag);
+    choice.duration = static_cast<double>(lag) * period;
+    choice.noise_share = change > 0.0 ? noise / change : 1.0;
+    if (choice.noise_share <= kNoiseShare) return choice;
+    if (lag >= longest) break;
+  }
+  choice.noise_limited = true;
+  return choice;
+}
+
+std::vector<Window> cut_windows(const Recording& r, const std::vector<std::uint8_t>& usable,
+                                double duration) {
+  if (!(duration > 0.0)) throw std::invalid_argument("windows: duration must be positive");
+  std::vector<Window> windows;
+  for (const auto& stretch : stretches(r)) {
+    const auto intervals = stretch.end - stretch.begin;
+    const double length = r.time[stretch.end] - r.time[stretch.begin];
+    const auto wanted = static_cast<std::int64_t>(std::llround(length / duration));
+    const auto count = std::clamp<std::int64_t>(wanted, 1, intervals);
+    for (std::int64_t i = 0; i < count; ++i) {
+      const Window window{stretch.begin + intervals * i / count,
+                          stretch.begin + intervals * (i + 1) / count};
+      if (std::any_of(usable.begin() + window.begin, usable.begin() + window.end,
+                      [](std::uint8_t flag) { return flag != 0; })) {
+        windows.push_back(window);
+      }
+    }
+  }
+  return windows;
+}
+
+double duration_for(const Recording& r, std::int64_t count) {
+  if (count > r.samples() - 1) {
+    throw std::invalid_argument("windows: " + std::to_string(count) +
+                                " windows need more than the recording's " +
+                                std::to_string(r.samples() - 1) + " sample intervals");
+  }
+  return covered(r) / static_cast<double>(count);
+}
+
+}  // namespace jointid::identify

@@ -1,0 +1,129 @@
+#include "search/least_squares.hpp"
+
+#include <Eigen/QR>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace jointid::search {
+
+namespace {
+
+constexpr double kRidge =
+    1e-9;  // on unit columns: changes a well-posed answer by 1e-18 relative to its conditioning
+
+Eigen::VectorXd solve_columns(const Eigen::MatrixXd& a, const Eigen::VectorXd& b,
+                              const std::vector<Eigen::Index>& set) {
+  Eigen::MatrixXd part(a.rows(), static_cast<Eigen::Index>(set.size()));
+  for (std::size_t j = 0; j < set.size(); ++j)
+    part.col(static_cast<Eigen::Index>(j)) = a.col(set[j]);
+  return part.colPivHouseholderQr().solve(b);
+}
+
+}  // namespace
+
+Eigen::VectorXd non_negative_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  const Eigen::Index n = a.cols();
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+  std::vector<char> passive(static_cast<std::size_t>(n), 0);
+  const double tolerance =
+      1e-14 * a.cwiseAbs().maxCoeff() * b.cwiseAbs().maxCoeff() * static_cast<double>(a.rows());
+  for (Eigen::Index outer = 0; outer < 30 * n + 30; ++outer) {
+    const Eigen::VectorXd gradient = a.transpose() * (b - a * x);
+    Eigen::Index enter = -1;
+    double steepest = tolerance;
+    for (Eigen::Index j = 0; j < n; ++j) {
+      if (passive[static_cast<std::size_t>(j)] == 0 && gradient[j] > steepest) {
+        steepest = gradient[j];
+        enter = j;
+      }
+    }
+    if (enter < 0) break;
+    passive[static_cast<std::size_t>(enter)] = 1;
+    for (Eigen::Index inner = 0; inner <= n; ++inner) {
+      std::vector<Eigen::Index> set;
+      for (Eigen::Index j = 0; j < n; ++j) {
+        if (passive[static_cast<std::size_t>(j)] != 0) set.push_back(j);
+      }
+      if (set.empty()) break;
+      const Eigen::VectorXd part = solve_columns(a, b, set);
+      if (part.minCoeff() > 0.0) {
+        x.setZero();
+        for (std::size_t j = 0; j < set.size(); ++j) x[set[j]] = part[static_cast<Eigen::Index>(j)];
+        break;
+      }
+      // Go as far towards the unconstrained answer as all stay non-negative; what reaches zero
+      // leaves.
+      double reach = 1.0;
+      for (std::size_t j = 0; j < set.size(); ++j) {
+        const double target = part[static_cast<Eigen::Index>(j)];
+        if (target <= 0.0) reach = std::min(reach, x[set[j]] / (x[set[j]] - target));
+      }
+      if (!std::isfinite(reach)) reach = 0.0;
+      for (std::size_t j = 0; j < set.size(); ++j) {
+        double& value = x[set[j]];
+        value += reach * (part[static_cast<Eigen::Index>(j)] - value);
+        if (part[static_cast<Eigen::Index>(j)] <= 0.0 &&
+            value <= 1e-15 * (1.0 + std::fabs(part[static_cast<Eigen::Index>(j)]))) {
+          value = 0.0;
+          passive[static_cast<std::size_t>(set[j])] = 0;
+        }
+      }
+    }
+  }
+  return x;
+}
+
+LeastSquaresResult constrained_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b,
+                                             const Eigen::MatrixXd& g, const Eigen::VectorXd& h) {
+  const Eigen::Index n = a.cols();
+  Eigen::VectorXd scale(n);
+  Eigen::MatrixXd damped(a.rows() + n, n);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(a.rows() + n);
+  right.head(a.rows()) = b;
+  damped.setZero();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double norm = a.col(j).norm();
+    scale[j] = norm > 0.0 ? 1.0 / norm : 1.0;
+    damped.col(j).head(a.rows()) = a.col(j) * scale[j];
+    damped(a.rows() + j, j) = kRidge;
+  }
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(damped);
+  const Eigen::MatrixXd r = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
+  right.applyOnTheLeft(qr.householderQ().adjoint());
+  const Eigen::VectorXd f = right.head(n);
+  const auto upper = r.triangularView<Eigen::Upper>();
+
+  LeastSquaresResult result;
+  result.x = upper.solve(f).cwiseProduct(scale);
+  result.feasible = true;
+  if (g.rows() == 0) return result;
+  const double slack = 1e-12 * (1.0 + h.cwiseAbs().maxCoeff());
+  if (((g * result.x - h).array() >= -slack).all()) return result;
+
+  // z = R x' - f with x = scale x':  min |z| subject to (G scale R^-1) z >= h - G scale R^-1 f.
+  const Eigen::MatrixXd scaled = g * scale.asDiagonal();
+  const Eigen::MatrixXd distance = upper.transpose().solve(scaled.transpose()).transpose();
+  Eigen::VectorXd offset = h - distance * f;
+  // Rows of unit norm: bounds of large and small parameters weigh the same.
+  Eigen::MatrixXd dual(n + 1, g.rows());
+  for (Eigen::Index i = 0; i < g.rows(); ++i) {
+    const double norm = std::hypot(distance.row(i).norm(), offset[i]);
+    const double unit = norm > 0.0 ? 1.0 / norm : 1.0;
+    dual.col(i).head(n) = distance.row(i).transpose() * unit;
+    dual(n, i) = offset[i] * unit;
+  }
+  Eigen::VectorXd target = Eigen::VectorXd::Zero(n + 1);
+  target[n] = 1.0;
+  const Eigen::VectorXd u = non_negative_least_squares(dual, target);
+  const Eigen::VectorXd gap = dual * u - target;
+  if (std::fabs(gap[n]) < 1e-13) {
+    result.feasible = false;
+    return result;
+  }
+  const Eigen::VectorXd z = -gap.head(n) / gap[n];
+  result.x = upper.solve(z + f).cwiseProduct(scale);
+  return result;
+}
+
+}  // namespace jointid::search

@@ -1,0 +1,5 @@
+"""The one exception for bad input."""
+
+
+class InputError(ValueError):
+    """Input that cannot be used: one sentence says what is wrong, where, and what would be right."""
