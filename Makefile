@@ -1,0 +1,118 @@
+# jointid: `make help` lists what can be made. Everything goes into .venv, build, dist and demo.
+SHELL := bash
+.SHELLFLAGS := -euo pipefail -c
+.DELETE_ON_ERROR:
+.DEFAULT_GOAL := help
+.NOTPARALLEL:  # each build uses every core by itself
+
+BIN := .venv/bin
+PIP := $(BIN)/python -m pip
+INSTALL := $(PIP) install --quiet --no-input --disable-pip-version-check
+STRICT := -Ccmake.define.JOINTID_WARNINGS_AS_ERRORS=ON
+
+# What the installed package is made of; outside a git checkout (an unpacked sdist) whatever is there.
+PARTS := cpp python CMakeLists.txt pyproject.toml README.md LICENSE examples/data
+LISTED := $(shell git ls-files --cached --others --exclude-standard -- $(PARTS) 2>/dev/null)
+SOURCES := $(wildcard $(or $(LISTED),$(shell find $(PARTS) -type f -not -name '*.so' -not -path '*/__pycache__/*' 2>/dev/null)))
+
+# Warnings are errors in CI and in `make test`, never when a user just wants the demo.
+INSTALLED := $(if $(filter true,$(CI)),.venv/.strict,.venv/.installed)
+
+.PHONY: help demo test checks check-plain check-address check-thread pytest lint stub format \
+        develop sdist check-sdist study bench soak clean
+
+help:  ## list the targets
+	@grep -hE '^[a-z][a-z-]*:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## */\t/' | expand -t 16
+
+demo: $(INSTALLED)  ## identify a real robot joint from its log; writes demo/report.html
+	@$(BIN)/jointid demo --output demo
+	@echo "Open demo/report.html in a browser."
+
+test: checks pytest  ## core checks (plain, ASan+UBSan, TSan), then pytest
+
+checks: .venv/.test-tools
+	@mkdir -p build
+	@for name in plain address thread; do \
+	  echo "Core checks, $$name:"; \
+	  tools/core_checks.sh $$name; \
+	done
+
+check-plain check-address check-thread: check-%: .venv/.test-tools  ## (each alone)
+	@mkdir -p build
+	@tools/core_checks.sh $*
+
+pytest: .venv/.strict .venv/.test-tools  ## the Python tests alone
+	@echo "Python tests:"
+	@$(BIN)/python -m pytest
+
+lint: $(INSTALLED) .venv/.test-tools .venv/.lint-tools  ## ruff, mypy, clang-format, stub
+	@echo "ruff check";         $(BIN)/ruff check
+	@echo "ruff format";        $(BIN)/ruff format --check --quiet
+	@echo "mypy";               $(BIN)/mypy
+	@echo "clang-format";       find cpp -name '*.[ch]pp' -print0 | xargs -0 $(BIN)/clang-format --dry-run -Werror
+	@echo stub;                 $(BIN)/python tools/stub.py --check
+
+format: .venv/.lint-tools  ## format Python and C++ in place
+	@$(BIN)/ruff check --fix --quiet || true
+	@$(BIN)/ruff format --quiet
+	@find cpp -name '*.[ch]pp' -print0 | xargs -0 $(BIN)/clang-format -i
+
+stub: .venv/.installed .venv/.lint-tools  ## write python/jointid/_core.pyi anew
+	@$(BIN)/python tools/stub.py
+
+develop: .venv/.test-tools .venv/.lint-tools  ## editable install for contributors
+	@echo "Installing jointid in place"
+	@PATH="$$PWD/$(BIN):$$PATH" $(INSTALL) --no-build-isolation -Cbuild-dir=build/editable $(STRICT) -e .
+	@rm -f .venv/.installed .venv/.strict
+
+sdist: .venv/.test-tools  ## dist/jointid-VERSION.tar.gz
+	@rm -f dist/jointid-*.tar.gz
+	@$(BIN)/python -m build -qq --sdist --outdir dist .
+
+check-sdist: sdist  ## the sdist installs, imports and runs in an environment of its own
+	@echo "Installing $$(ls dist/jointid-*.tar.gz) into a fresh environment"
+	@rm -rf build/sdist-venv
+	@$(BIN)/python -m venv build/sdist-venv
+	@build/sdist-venv/bin/python -m pip install --quiet --no-input --disable-pip-version-check dist/jointid-*.tar.gz
+	@sdist="$$PWD/build/sdist-venv/bin"; cd / && "$$sdist/python" -c 'import jointid' && "$$sdist/jointid" --help >/dev/null
+	@echo "The sdist works."
+
+study: $(INSTALLED)  ## accuracy over many seeds; by hand, the results go to docs/
+	@$(BIN)/python benchmarks/accuracy_study.py
+
+bench: $(INSTALLED)  ## speed; by hand
+	@$(BIN)/python benchmarks/speed.py
+
+soak: $(INSTALLED)  ## hours of identification; by hand
+	@$(BIN)/python benchmarks/soak.py
+
+clean:  ## remove everything made here, .venv too
+	@rm -rf .venv build dist demo .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+.venv/.created:
+	@python="$$(tools/find_python.sh)"; \
+	  echo "Making .venv with $$($$python --version)"; \
+	  $$python -m venv .venv
+	@$(INSTALL) --upgrade 'pip>=25.1'  # dependency groups
+	@touch $@
+
+.venv/.test-tools: .venv/.created pyproject.toml
+	@echo "Installing what the tests need"
+	@$(INSTALL) --group test
+	@touch $@
+
+.venv/.lint-tools: .venv/.created pyproject.toml
+	@echo "Installing ruff, mypy, clang-format and the stub generator"
+	@$(INSTALL) --group lint
+	@touch $@
+
+.venv/.installed: .venv/.created $(SOURCES)
+	@echo "Building and installing jointid (a minute or two)"
+	@$(INSTALL) .
+	@touch $@
+
+.venv/.strict: .venv/.created $(SOURCES)
+	@echo "Building and installing jointid, warnings are errors (a minute or two)"
+	@$(INSTALL) $(STRICT) .
+	@touch .venv/.installed $@

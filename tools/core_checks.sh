@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Builds the core's checks in build/checks-NAME and runs them. NAME: plain, address or thread.
+# Uses cmake, ninja and Eigen's headers from .venv; no Python extension is built.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+name="$1"
+build="build/checks-$name"
+export PATH="$PWD/.venv/bin:$PATH"
+
+# Plain: as shipped, warnings are errors. Under a sanitizer: with Eigen's own assertions (no NDEBUG),
+# and no -Werror, because instrumented code makes the compiler warn about what is not there.
+options=(-DCMAKE_BUILD_TYPE=Debug)
+case "$name" in
+  plain) options=(-DCMAKE_BUILD_TYPE=Release -DJOINTID_WARNINGS_AS_ERRORS=ON) ;;
+  address) options+=(-DJOINTID_SANITIZE=address,undefined) ;;
+  thread) options+=(-DJOINTID_SANITIZE=thread) ;;
+  *) echo "core_checks.sh: NAME must be plain, address or thread, got '$name'" >&2; exit 2 ;;
+esac
+
+cmake -S . -B "$build" -G Ninja -DJOINTID_BUILD_CHECKS=ON \
+  -DPython_EXECUTABLE="$PWD/.venv/bin/python" "${options[@]}" >"$build.log" 2>&1 ||
+  { cat "$build.log"; exit 1; }
+cmake --build "$build" >"$build.log" 2>&1 || { cat "$build.log"; exit 1; }
+
+export ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1
+export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1  # by default UBSan only remarks
+export TSAN_OPTIONS=halt_on_error=1
+run=()
+# The thread sanitizer of older compilers dies at start when addresses are randomised too widely.
+if [ "$name" = thread ] && setarch "$(uname -m)" -R true 2>/dev/null; then
+  run=(setarch "$(uname -m)" -R)
+fi
+${run[@]+"${run[@]}"} "$build/core_check"
