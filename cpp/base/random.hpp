@@ -4,6 +4,7 @@
 // individual, draw number) and of nothing else, so the same seed gives the same bits in whatever
 // order, on however many threads, individuals are made.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -26,6 +27,12 @@ inline std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter,
   return counter;
 }
 
+/// The middle of one of 2^53 equal cells of the unit interval. In the upper half the sum rounds to
+/// even, so the last cell would give 1: it gives the number below.
+inline double unit_interval(std::uint64_t cell) {
+  return std::min((static_cast<double>(cell) + 0.5) * 0x1p-53, 0x1.fffffffffffffp-1);
+}
+
 /// The draws of one individual in one generation of one stream (a trial or an island).
 class Random {
  public:
@@ -39,8 +46,7 @@ class Random {
   double uniform() {
     const std::uint64_t high = next();
     const std::uint64_t low = next();
-    const std::uint64_t bits = (high << 21U) ^ (low >> 11U);
-    return (static_cast<double>(bits) + 0.5) * 0x1p-53;
+    return unit_interval((high << 21U) ^ (low >> 11U));
   }
 
   /// Uniform integer in [0, count); count at least 1.

@@ -28,6 +28,13 @@ void bind_recording(py::module_& m) {
            py::kw_only(), py::arg("time"), py::arg("position"), py::arg("velocity"),
            py::arg("torque"), py::arg("sensor"), py::arg("torque_hold"), py::arg("gap_after"))
       .def_property_readonly("samples", &Recording::samples);
+  m.def(
+      "usable_intervals",
+      [](const Recording& recording, bool mask_standstill) {
+        return identify::usable_intervals(recording, mask_standstill).usable;
+      },
+      py::arg("recording"), py::arg("mask_standstill") = true,
+      "One flag per sample interval: 1 where the joint moves and the recording has no gap.");
   value(m, "WindowOptions",
         "How to cut a recording into windows: a number, a duration, or neither (chosen from the "
         "noise).",

@@ -2,4 +2,4 @@
 
 
 class InputError(ValueError):
-    """Input that cannot be used: one sentence says what is wrong, where, and what would be right."""
+    """Input that cannot be used: one sentence says what is wrong, where, what would be right."""

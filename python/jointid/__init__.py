@@ -1,0 +1,48 @@
+"""Identify a robot joint's friction and its built-in torque sensor from one recording of ordinary motion.
+
+>>> import jointid as jid
+>>> recording = jid.load("run.csv")
+>>> joint = jid.Joint.load("joint.toml")
+>>> estimate = jid.identify(recording, joint)
+>>> print(estimate.report())
+"""
+
+try:
+    from jointid import _core
+except ModuleNotFoundError as error:
+    if error.name != "jointid._core":
+        raise
+    raise ModuleNotFoundError(
+        "jointid's compiled core is missing; install the package with pip instead of running it from its source folder",
+        name=error.name,
+    ) from error
+
+from jointid import plotting as plot
+from jointid._core import GaOptions, Generation, WindowOptions
+from jointid.errors import InputError
+from jointid.estimate import Estimate
+from jointid.identification import identify
+from jointid.joint import Joint, Limits, Link, thesis_joint
+from jointid.loading import load
+from jointid.parameters import Parameter
+from jointid.recording import Recording
+
+__version__ = _core.__version__
+
+__all__ = [
+    "Estimate",
+    "GaOptions",
+    "Generation",
+    "InputError",
+    "Joint",
+    "Limits",
+    "Link",
+    "Parameter",
+    "Recording",
+    "WindowOptions",
+    "__version__",
+    "identify",
+    "load",
+    "plot",
+    "thesis_joint",
+]

@@ -1,0 +1,8 @@
+"""`python -m jointid` is the command line."""
+
+import sys
+
+from jointid.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,265 @@
+"""Which column of a table is which signal, and in what unit: headers, `columns=`, `units=`."""
+
+import operator
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from jointid.errors import InputError
+from jointid.signals import SIGNALS, FloatArray, check_signal_name, closest, dimensions
+from jointid.units import Unit, find_unit, unit_named, unit_names
+
+_ALIASES: dict[str, str] = {
+    alias: signal
+    for signal, aliases in {
+        "time": "time t",
+        "position": "position pos angle q",
+        "velocity": "velocity vel speed",
+        "torque": "torque tau force motor_force motor_torque_output output_torque",
+        "sensor": "sensor sensor_raw torque_sensor",
+        "reference": "reference position_ref position_reference goal_position",
+        "link_position": "link_position",
+        "temperature": "temperature",
+        "motor_torque": "motor_torque",
+        "current": "current motor_current",
+    }.items()
+    for alias in aliases.split()
+}
+# Signals whose dimension tells the kind of joint, the most telling first.
+_TELLING = ("position", "link_position", "reference", "velocity", "torque")
+_LIKELY = {"time": ("time", "stamp", "clock"), "position": ("pos", "ang", "travel")}
+_SHOWN = 8  # headers listed in a message
+
+
+class Table(Protocol):
+    """Named columns, wherever they come from."""
+
+    @property
+    def source(self) -> str:
+        """What the messages call it."""
+
+    @property
+    def headers(self) -> tuple[str, ...]:
+        """One for each column."""
+
+    @property
+    def header_place(self) -> str:
+        """Where the headers stand, for messages."""
+
+    @property
+    def saved(self) -> Mapping[str, Any] | None:
+        """What a saved recording says of itself; None for a foreign table."""
+
+    def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
+        """Return columns as numbers, or say which cell is none."""
+
+    def text(self, column: int) -> list[str]:
+        """Return a column as text."""
+
+    def place(self, column: int, row: int) -> str:
+        """Return where a cell stands, for messages."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Column:
+    """A column that holds a signal.
+
+    Attributes
+    ----------
+    index : int
+        0-based number of the column.
+    unit : Unit or None
+        None: no unit is named anywhere, SI is assumed.
+    unknown : str
+        What stands where a unit should, but is none. Default: nothing.
+    """
+
+    index: int
+    unit: Unit | None
+    unknown: str = ""
+
+
+def match_columns(
+    table: Table,
+    *,
+    columns: Mapping[str, str | int | None] | None,
+    units: Mapping[str, str] | None,
+    kind: str | None,
+) -> tuple[dict[str, Column], str]:
+    """Return the column of each signal present, and the kind of joint their units tell.
+
+    Raises
+    ------
+    InputError
+        A signal without a column that needs one, with two, or with a unit of another dimension;
+        a header, signal or unit that does not exist.
+    """
+    candidates = _candidates(table, columns or {})
+    for signal in ("time", "position"):
+        if not candidates.get(signal):
+            raise _missing(table, signal)
+    for signal, text in (units or {}).items():
+        check_signal_name(signal, "units")
+        if not candidates.get(signal):
+            raise InputError(
+                f"{table.header_place}: units names {signal!r}, but no column is recognised as it"
+            )
+        unit = unit_named(
+            text, dimensions=dimensions(signal, kind), place=f"{table.source}, units[{signal!r}]"
+        )
+        candidates[signal] = [Column(index=c.index, unit=unit) for c in candidates[signal]]
+    kind = kind or _kind(table, candidates)
+    return {
+        signal: _the_one(table, signal, candidates[signal], kind)
+        for signal in SIGNALS
+        if candidates.get(signal)
+    }, kind
+
+
+def column_index(table: Table, column: object, argument: str) -> int:
+    """Return the number of the column that a header or a number names."""
+    if isinstance(column, str):
+        return _by_header(table, column, argument)
+    try:
+        if isinstance(column, bool):
+            raise TypeError
+        index = operator.index(column)  # type: ignore[arg-type]
+    except TypeError:
+        raise InputError(
+            f"{argument} is {column!r}; a header or a 0-based column number is expected"
+        ) from None
+    if not 0 <= index < len(table.headers):
+        raise InputError(
+            f"{table.header_place}: {argument} is column {index}; "
+            f"the columns are 0 to {len(table.headers) - 1}"
+        )
+    return index
+
+
+def _by_header(table: Table, header: str, argument: str) -> int:
+    for same in (str.strip, lambda text: text.strip().casefold()):
+        found = [k for k, each in enumerate(table.headers) if same(each) == same(header)]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            raise InputError(
+                f"{table.header_place}: {argument} is {header!r}, which is the header of columns "
+                f"{' and '.join(map(str, found))}; give the number"
+            )
+    close = closest(header, table.headers)
+    meant = f"did you mean {close!r}" if close else f"headers are {_listed(table.headers)}"
+    raise InputError(f"{table.header_place}: {argument} is {header!r}, no such header; {meant}")
+
+
+def _candidates(table: Table, columns: Mapping[str, str | int | None]) -> dict[str, list[Column]]:
+    """Return the columns that `columns=` or the header gives to each signal."""
+    chosen: dict[int, str] = {}
+    for signal, column in columns.items():
+        check_signal_name(signal, "columns")
+        if column is None:  # leave this signal out
+            continue
+        index = column_index(table, column, f"columns[{signal!r}]")
+        if index in chosen:
+            raise InputError(
+                f"{table.header_place}: columns gives {table.headers[index]!r} to "
+                f"{chosen[index]!r} and {signal!r}; one column holds one signal"
+            )
+        chosen[index] = signal
+    candidates: dict[str, list[Column]] = {}
+    for index, header in enumerate(table.headers):
+        name, unit, unknown = _parsed(header)
+        signal_here = chosen.get(index) or _ALIASES.get(name)
+        if signal_here and (index in chosen or signal_here not in columns):
+            column_here = Column(index=index, unit=unit, unknown=unknown)
+            candidates.setdefault(signal_here, []).append(column_here)
+    return candidates
+
+
+def _parsed(header: str) -> tuple[str, Unit | None, str]:
+    """Return a header's plain name, its unit, and what stands for a unit but is none."""
+    bracketed = re.fullmatch(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*", header)
+    if bracketed and bracketed[2].strip():
+        unit = find_unit(bracketed[2])
+        return _plain(bracketed[1]), unit, "" if unit else bracketed[2].strip()
+    parts = re.split(r"[_\s]+", (bracketed[1] if bracketed else header).strip())
+    for first in range(1, len(parts)):  # the longest unit: rad_s before s
+        suffix = "_".join(parts[first:])
+        unit = find_unit(suffix) if suffix and not suffix[0].isdigit() else None
+        if unit:
+            return _plain("_".join(parts[:first])), unit, ""
+    return _plain("_".join(parts)), None, ""
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[\s_.-]+", "_", name.strip().casefold())
+
+
+def _kind(table: Table, candidates: Mapping[str, list[Column]]) -> str:
+    for signal in _TELLING:
+        kinds = {
+            kind: column
+            for kind in ("revolute", "prismatic")
+            for column in candidates.get(signal, [])
+            if column.unit and column.unit.dimension in dimensions(signal, kind)
+        }
+        if len(kinds) == 2:
+            first, second = (table.headers[column.index] for column in kinds.values())
+            raise InputError(
+                f"{table.header_place}: {first!r} and {second!r} both look like {signal}, of a "
+                "revolute and of a prismatic joint; choose with kind= or columns="
+            )
+        if kinds:
+            return next(iter(kinds))
+    return "revolute"
+
+
+def _the_one(table: Table, signal: str, candidates: list[Column], kind: str) -> Column:
+    """Return the candidate whose unit fits, the only one that may."""
+    fitting = [
+        column
+        for column in candidates
+        if not column.unknown
+        and (column.unit is None or column.unit.dimension in dimensions(signal, kind))
+    ]
+    if len(fitting) == 1:
+        return fitting[0]
+    if fitting:
+        names = " and ".join(
+            f"{table.headers[column.index]!r} (column {column.index})" for column in fitting
+        )
+        raise InputError(
+            f"{table.header_place}: {names} both look like {signal}; choose one with "
+            f"columns={{{signal!r}: {fitting[0].index}}}"
+        )
+    header, column = table.headers[candidates[0].index], candidates[0]
+    known = ", ".join(unit_names(dimensions(signal, kind)))
+    if column.unit is None:
+        what = f"names the unknown unit {column.unknown!r}"
+    else:
+        what = f"is in {column.unit.name} ({column.unit.dimension})"
+    wanted = " or ".join(dimensions(signal, kind))
+    raise InputError(
+        f"{table.header_place}: {signal} of a {kind} joint, column {header!r}, {what}; {wanted} "
+        f"is expected, in {known}: name it with units= or another column with columns="
+    )
+
+
+def _missing(table: Table, signal: str) -> InputError:
+    likely = [
+        header
+        for header in table.headers
+        if any(part in _plain(header) for part in _LIKELY[signal])
+    ]
+    shown = likely or list(table.headers)
+    example = f"columns={{{signal!r}: {shown[0]!r}}}" if shown else "columns="
+    return InputError(
+        f"{table.header_place}: no column is recognised as {signal}; "
+        f"candidates are {_listed(shown)}; choose one with {example}"
+    )
+
+
+def _listed(headers: Sequence[str]) -> str:
+    shown = ", ".join(repr(header[:60]) for header in headers[:_SHOWN])
+    rest = len(headers) - _SHOWN
+    return f"{shown} and {rest} more" if rest > 0 else shown

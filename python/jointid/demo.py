@@ -1,0 +1,41 @@
+"""The demonstration: identify joint 1 of a KUKA KR300 from its log, which ships with the package."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+
+from jointid._core import Generation
+from jointid.estimate import Estimate
+from jointid.identification import identify
+from jointid.joint import Joint
+from jointid.loading import load
+
+# Published beside the log by its authors (Weigand et al.).
+NOMINAL = {"viscous": 2050.0, "coulomb": 355.0}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Demonstration:
+    """What the demonstration made: the estimate, and the authors' values to hold it against."""
+
+    estimate: Estimate
+    nominal: dict[str, float]
+
+
+def data_folder() -> Path:
+    """Folder with the demonstration's recordings and joint files."""
+    installed = Path(str(files("jointid"))) / "data"
+    if installed.is_dir():
+        return installed
+    return Path(__file__).resolve().parents[2] / "examples" / "data"  # run from the source folder
+
+
+def demonstrate(callback: Callable[[Generation], bool | None] | None = None) -> Demonstration:
+    """Identify the robot's joint 1."""
+    folder = data_folder()
+    recording = load(folder / "kr300_joint1.csv.gz")
+    joint = Joint.load(folder / "kr300_joint1.toml")
+    return Demonstration(
+        estimate=identify(recording, joint, callback=callback), nominal=dict(NOMINAL)
+    )

@@ -1,0 +1,199 @@
+"""The parts of an estimate: parameters, residuals, windows, convergence, warnings, curves."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ParameterEstimate:
+    """One parameter of an estimate.
+
+    Attributes
+    ----------
+    value : float
+        In `unit`.
+    stderr : float or None
+        Standard error, robust to autocorrelated residuals; None when fixed or held at a bound.
+    interval : tuple of float or None
+        95 % confidence interval (Student's t).
+    min, max : float
+        Where the search could look.
+    vary : bool
+        False when it was fixed.
+    at_bound : str or None
+        "min" or "max" when the search ended on a bound.
+    shift_halved, shift_doubled : float or None
+        How the value moves when the windows are halved and doubled.
+    """
+
+    name: str
+    meaning: str
+    unit: str
+    value: float
+    stderr: float | None
+    interval: tuple[float, float] | None
+    min: float
+    max: float
+    vary: bool
+    at_bound: str | None
+    shift_halved: float | None
+    shift_doubled: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ResidualStatistics:
+    """The window residuals in numbers.
+
+    Attributes
+    ----------
+    windows : int
+        Windows used.
+    window_duration : float
+        [s]
+    noise_share : float
+        Variance of the velocity's noise over that of its change across a window.
+    rms : float
+        Root mean square of the residual, as a mean over a window [unit of the compared signal].
+    relative : float
+        Norm of the residuals over the norm of the measured integrals.
+    r_squared : float
+        Share of the measured variance that the model explains.
+    autocorrelation : float
+        Of neighbouring windows; 0 for a perfect model with white noise.
+    samples : int
+        Samples in the recordings.
+    left_out : float
+        Share of the sample intervals left out: standing still, sticking, gaps.
+    standing : float
+        Share of the samples at which the joint stood still or stuck.
+    """
+
+    windows: int
+    window_duration: float
+    noise_share: float
+    rms: float
+    relative: float
+    r_squared: float
+    autocorrelation: float
+    samples: int
+    left_out: float
+    standing: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class WindowTable:
+    """One row a window; integrals of the compared signal, and means for pictures.
+
+    Attributes
+    ----------
+    recording : ndarray of int
+        Which recording.
+    start, stop : ndarray
+        [s], on the recording's clock.
+    duration : ndarray
+        Integrated time [s]; less than stop - start where samples were left out.
+    measured, fitted : ndarray
+        Integrals of the sensor reading, or of the torque [N·m·s].
+    velocity : ndarray
+        Mean velocity [rad/s or m/s].
+    friction : ndarray
+        Mean friction that the recording shows: torque less all other fitted terms [N·m or N].
+    """
+
+    recording: NDArray[np.int64]
+    start: Array
+    stop: Array
+    duration: Array
+    measured: Array
+    fitted: Array
+    velocity: Array
+    friction: Array
+
+    @property
+    def residual(self) -> Array:
+        """Measured less fitted."""
+        return self.measured - self.fitted
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Convergence:
+    """The search, generation by generation.
+
+    Attributes
+    ----------
+    generation : ndarray of int
+    best, mean : ndarray
+        Penalty of the best individual so far and mean over the population.
+    evaluations : ndarray of int
+        Penalties computed so far.
+    """
+
+    generation: NDArray[np.int64]
+    best: Array
+    mean: Array
+    evaluations: NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Warned:
+    """One warning.
+
+    Attributes
+    ----------
+    code : str
+        Stable name, e.g. "undetermined"; the README lists them.
+    parameters : tuple of str
+        Concerned parameters.
+    message : str
+        Plain language: what, how bad, what to do.
+    """
+
+    code: str
+    parameters: tuple[str, ...]
+    message: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FrictionCurve:
+    """The identified friction map; `numpy.asarray` of it is `torque`.
+
+    Attributes
+    ----------
+    velocity : ndarray
+        [rad/s or m/s]
+    torque : ndarray
+        [N·m or N]; 0 at rest, where friction takes any value up to Coulomb + static.
+    lower, upper : ndarray
+        Pointwise 95 % band.
+    """
+
+    velocity: Array
+    torque: Array
+    lower: Array
+    upper: Array
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:
+        """The torque."""
+        return np.array(self.torque, dtype=dtype)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Prediction:
+    """What an estimate says of a recording it may never have seen.
+
+    Attributes
+    ----------
+    windows : WindowTable
+    relative : float
+        Norm of the residuals over the norm of the measured integrals.
+    r_squared : float
+    """
+
+    windows: WindowTable
+    relative: float
+    r_squared: float

@@ -1,0 +1,52 @@
+"""Reading a data frame: pandas, or anything with `columns` and `frame[column]`."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from jointid.errors import InputError
+from jointid.signals import FloatArray, signal_array
+
+
+class FrameTable:
+    """A data frame as a table of columns.
+
+    Parameters
+    ----------
+    frame : DataFrame
+
+    Raises
+    ------
+    InputError
+        It has no columns.
+    """
+
+    source = "data frame"
+    header_place = "data frame"
+    saved: Mapping[str, Any] | None = None
+
+    def __init__(self, frame: Any) -> None:
+        if not hasattr(frame, "columns") or not hasattr(frame, "__getitem__"):
+            raise InputError(
+                f"a data frame with columns is expected, not a {type(frame).__name__}; "
+                "arrays go to Recording(time=..., position=...)"
+            )
+        self._frame = frame
+        self._labels = list(frame.columns)
+        self.headers = tuple(map(str, self._labels))
+
+    def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
+        """Return columns as arrays of shape (n,), or name the one that is none."""
+        return [
+            signal_array(f"column {self.headers[k]!r}", self._frame[self._labels[k]], self.source)
+            for k in columns
+        ]
+
+    def text(self, column: int) -> list[str]:
+        """Return the values of a column as text."""
+        return [str(value) for value in np.asarray(self._frame[self._labels[column]]).tolist()]
+
+    def place(self, column: int, row: int) -> str:
+        """Return row and column of a value."""
+        return f"{self.source}, row {row}, column {self.headers[column]!r}"

@@ -1,0 +1,43 @@
+"""The identified friction map with its band."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.estimate import Estimate
+from jointid.findings import FrictionCurve
+from jointid.student import quantile
+
+Array = NDArray[np.float64]
+
+_STEP = 1e-6  # relative, for the derivative by a shape parameter
+
+
+def friction_torque(values: dict[str, float], velocity: Array) -> Array:
+    """Friction of the given parameters (all of one model's) at each velocity [N·m or N]."""
+    total = np.zeros_like(velocity)
+    for term in _core.terms():
+        if term.friction and term.name in values:
+            shape = values.get(term.shape, 0.0)
+            total += values[term.name] * _core.friction_basis(term.name, velocity, shape)
+    return total
+
+
+def friction_curve(estimate: Estimate, velocity: Array) -> FrictionCurve:
+    """Friction at each velocity, and its pointwise 95 % band by linear propagation of the covariance."""
+    values = {name: parameter.value for name, parameter in estimate.parameters.items()}
+    torque = friction_torque(values, velocity)
+    sensitivity = np.zeros((len(velocity), len(estimate.free)))
+    for column, name in enumerate(estimate.free):
+        step = _STEP * max(abs(values[name]), 1e-3)
+        above = friction_torque({**values, name: values[name] + step}, velocity)
+        below = friction_torque({**values, name: values[name] - step}, velocity)
+        sensitivity[:, column] = (above - below) / (2.0 * step)
+    # An infinite variance must not meet a sensitivity of exactly zero.
+    finite = np.where(np.isfinite(estimate.covariance), estimate.covariance, 0.0)
+    unknown = ~np.isfinite(np.diag(estimate.covariance))
+    variance = np.einsum("ij,jk,ik->i", sensitivity, finite, sensitivity)
+    variance[np.any(np.abs(sensitivity[:, unknown]) > 0.0, axis=1)] = np.inf
+    freedom = max(1, estimate.residuals.windows - len(estimate.free))
+    half = quantile(0.975, freedom) * np.sqrt(np.maximum(variance, 0.0))
+    return FrictionCurve(velocity=velocity, torque=torque, lower=torque - half, upper=torque + half)

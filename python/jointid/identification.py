@@ -1,0 +1,238 @@
+"""`identify`: from recordings and a joint to an estimate."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.errors import InputError
+from jointid.estimate import Estimate
+from jointid.findings import Convergence, Prediction
+from jointid.inference import infer, r_squared
+from jointid.joint import Joint
+from jointid.model_terms import TermChoice, choose_terms
+from jointid.parameters import Parameter
+from jointid.problem import Problem, listed
+from jointid.recording import Recording
+from jointid.search_domain import SearchDomain, domain_for
+
+Array = NDArray[np.float64]
+Windows = int | float | _core.WindowOptions | None
+Callback = Callable[[_core.Generation], bool | None]
+
+_METHODS = ("ga", "separable")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Outcome:
+    best: Array
+    convergence: Convergence | None
+    status: str
+    message: str
+
+
+def identify(
+    recordings: Recording | Sequence[Recording],
+    joint: Joint | None = None,
+    *,
+    model: str | None = None,
+    parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
+    method: str = "ga",
+    ga: _core.GaOptions | None = None,
+    residual: str | None = None,
+    windows: Windows = None,
+    torque_hold: str | None = None,
+    mask_standstill: bool = True,
+    seed: int = 0,
+    threads: int = 0,
+    callback: Callback | None = None,
+) -> Estimate:
+    """Identify a joint's friction, and its torque sensor if it has one, from ordinary motion.
+
+    The penalty is the sum of squared window residuals of the integrated torque balance (thesis 4-21 to
+    4-24): it needs no acceleration.
+
+    Parameters
+    ----------
+    recordings : Recording or sequence of Recording
+        One run, or several that share all parameters.
+    joint : Joint, optional
+        Known facts, bounds and the model. Without one, inertia, Coulomb and viscous friction and an
+        offset are identified with bounds from the data, and the sensor if the recording has one.
+    model : str, optional
+        "coulomb_viscous" (2-1) or "stribeck" (4-1). Default: the joint's, else "coulomb_viscous".
+    parameters : mapping, optional
+        Changes by name: a number fixes; {"value", "min", "max", "vary"} or a `Parameter` change those
+        fields. Values in SI.
+    method : str
+        "ga" (default): genetic algorithm, then a local polish. "separable": linear parameters
+        eliminated exactly, a scan over the shape.
+    ga : GaOptions, optional
+        Settings of the genetic algorithm.
+    residual : str, optional
+        "sensor" (default with a sensor) or "torque".
+    windows : int, float or WindowOptions, optional
+        An int is their number, a float their duration [s]. Default: the shortest that the noise of
+        the velocity allows.
+    torque_hold : str, optional
+        "zoh" when the torque is a command held between samples, "linear" when it is measured.
+        Default: the recording's, else the joint's, else "linear".
+    mask_standstill : bool
+        Leave out runs in which the joint sticks or stands still (default), where friction is
+        set-valued and the model says nothing.
+    seed : int
+        Same seed, same bits, whatever `threads` is.
+    threads : int
+        0 (default): all.
+    callback : callable, optional
+        Called with each `Generation`; returning True stops the search.
+
+    Returns
+    -------
+    Estimate
+
+    Raises
+    ------
+    InputError
+        Anything that cannot be used, in one sentence.
+    KeyboardInterrupt
+        Ctrl-C, within 0.1 s.
+    """
+    started = time.perf_counter()
+    runs = listed(recordings)
+    if method not in _METHODS:
+        raise InputError(f"method '{method}' is not known; known are {', '.join(_METHODS)}")
+    choice = choose_terms(runs, joint, model, residual)
+    problem = Problem(
+        recordings=runs,
+        joint=joint,
+        choice=choice,
+        torque_hold=torque_hold,
+        mask_standstill=mask_standstill,
+    )
+    penalty = problem.penalty(windows)
+    domain = domain_for(penalty, joint, parameters, problem.peak_speed)
+    options = ga if ga is not None else _core.GaOptions()
+    outcome = _search(penalty, domain, method, options, seed, threads, callback)
+    settings: dict[str, Any] = {
+        "version": _core.__version__,
+        "kind": runs[0].kind,
+        "method": method,
+        "model": choice.model,
+        "terms": list(choice.terms),
+        "residual": choice.residual,
+        "windows": penalty.window_duration,
+        "torque_hold": torque_hold,
+        "mask_standstill": mask_standstill,
+        "seed": seed,
+        "ga": options.asdict() if method == "ga" else None,
+        "bounds_from_data": list(domain.from_data),
+        "recordings": [{"name": run.name, "fingerprint": run.fingerprint} for run in runs],
+    }
+    return infer(
+        problem=problem,
+        penalty=penalty,
+        domain=domain,
+        best=outcome.best,
+        shifts=_window_shifts(problem, penalty, domain, outcome.best),
+        convergence=outcome.convergence,
+        status=outcome.status,
+        message=outcome.message,
+        settings=settings,
+        seconds=time.perf_counter() - started,
+    )
+
+
+def predict(estimate: Estimate, recording: Recording) -> Prediction:
+    """Hold an estimate against a recording: see `Estimate.predict`."""
+    settings = estimate.settings
+    choice = TermChoice(
+        terms=tuple(settings["terms"]),
+        model=settings["model"],
+        residual=settings["residual"],
+        sensor="sensor_gain" in settings["terms"],
+    )
+    if choice.sensor and recording.sensor is None:
+        raise InputError(
+            "the estimate has a torque sensor, but the recording has no signal 'sensor'"
+        )
+    problem = Problem(
+        recordings=listed(recording),
+        joint=estimate.joint,
+        choice=choice,
+        torque_hold=settings["torque_hold"],
+        mask_standstill=settings["mask_standstill"],
+    )
+    penalty = problem.penalty(settings["windows"])
+    theta = np.array([estimate.parameters[name].value for name in penalty.names])
+    table = problem.table(penalty, theta)
+    return Prediction(
+        windows=table,
+        relative=float(np.linalg.norm(table.residual) / np.linalg.norm(table.measured)),
+        r_squared=r_squared(table.measured, table.residual),
+    )
+
+
+def _search(
+    penalty: _core.Penalty,
+    domain: SearchDomain,
+    method: str,
+    options: _core.GaOptions,
+    seed: int,
+    threads: int,
+    callback: Callback | None,
+) -> _Outcome:
+    if method == "separable":
+        found = _core.minimise_separable(penalty, domain.lower, domain.upper, threads=threads)
+        told = f"separable optimum after {found.evaluations} shapes"
+        return _Outcome(best=found.best, convergence=None, status="converged", message=told)
+    result = _core.minimise_genetic(
+        penalty,
+        domain.lower,
+        domain.upper,
+        options=options,
+        seed=seed,
+        threads=threads,
+        callback=callback,
+    )
+    convergence = Convergence(
+        generation=np.array([g.number for g in result.history], dtype=np.int64),
+        best=np.array([g.best for g in result.history]),
+        mean=np.array([g.mean for g in result.history]),
+        evaluations=np.array([g.evaluations for g in result.history], dtype=np.int64),
+    )
+    told = f"{convergence.generation[-1]} generations, {result.evaluations} penalties"
+    best, status = result.best, "converged"
+    if result.stop == _core.Stop.observer:
+        status, told = "stopped", f"stopped by the callback after {told}"
+    elif options.polish:
+        polished = _core.polish(penalty, domain.lower, domain.upper, best)
+        best = polished.best
+        told = f"{told}, then {polished.iterations} polish steps"
+        if not polished.converged:
+            status, told = "stopped", f"the polish did not settle after {told}"
+    return _Outcome(best=best, convergence=convergence, status=status, message=told)
+
+
+def _window_shifts(
+    problem: Problem, penalty: _core.Penalty, domain: SearchDomain, best: Array
+) -> tuple[Array | None, Array | None]:
+    """How the answer moves when windows are halved and doubled; None where such windows cannot be cut."""
+    shifts: list[Array | None] = []
+    for factor in (0.5, 2.0):
+        try:
+            other = problem.penalty(penalty.window_duration * factor)
+        except InputError:  # fewer windows than parameters, or longer than the recording
+            shifts.append(None)
+            continue
+        if other.window_count == penalty.window_count:
+            shifts.append(None)
+            continue
+        shifts.append(_core.polish(other, domain.lower, domain.upper, best).best - best)
+    return shifts[0], shifts[1]

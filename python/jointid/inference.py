@@ -1,0 +1,216 @@
+"""From the minimum of the penalty to an estimate: errors, correlations, statistics, warnings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.covariance import Covariance, parameter_covariance
+from jointid.diagnosis import Facts, diagnose
+from jointid.estimate import Estimate
+from jointid.findings import Convergence, ParameterEstimate, ResidualStatistics, WindowTable
+from jointid.joint import Joint
+from jointid.parameters import Parameter
+from jointid.problem import Problem
+from jointid.search_domain import SearchDomain
+from jointid.student import quantile
+
+Array = NDArray[np.float64]
+
+# Components of the weakest direction below this share are not worth naming.
+_NAMED = 0.3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Freedom:
+    """Which parameters were really free, and which ended on a bound."""
+
+    indices: tuple[int, ...]
+    at_bound: tuple[str | None, ...]
+
+
+def infer(
+    *,
+    problem: Problem,
+    penalty: _core.Penalty,
+    domain: SearchDomain,
+    best: Array,
+    shifts: tuple[Array | None, Array | None],
+    convergence: Convergence | None,
+    status: str,
+    message: str,
+    settings: dict[str, Any],
+    seconds: float,
+) -> Estimate:
+    """The estimate at a minimum.
+
+    Parameters
+    ----------
+    shifts : tuple of ndarray or None
+        How each parameter moves when the windows are halved and doubled.
+    """
+    freedom = _freedom(domain, best)
+    free = list(freedom.indices)
+    residual = penalty.residuals(best)
+    table = problem.table(penalty, best)
+    spread = parameter_covariance(
+        penalty.jacobian(best)[:, free], residual, _centre(penalty, best, free)
+    )
+    parameters = _parameters(problem, domain, best, freedom, spread, len(residual), shifts)
+    statistics = _statistics(problem, penalty, table)
+    named = sorted(zip(free, np.abs(spread.weakest), strict=True), key=lambda pair: -pair[1])
+    weakest = tuple(domain.names[i] for i, share in named if share > _NAMED)
+    torque_level = float(np.sqrt(np.mean((penalty.target / penalty.usable_duration) ** 2)))
+    warnings = diagnose(
+        Facts(
+            recordings=problem.recordings,
+            parameters=parameters,
+            residuals=statistics,
+            model=problem.choice.model,
+            noise_limited=penalty.noise_limited,
+            torque_level=torque_level,
+            status=status,
+            message=message,
+            bounds_from_data=domain.from_data,
+            correlations={
+                (domain.names[free[i]], domain.names[free[j]]): float(spread.correlation[i, j])
+                for i in range(len(free))
+                for j in range(i)
+            },
+        )
+    )
+    return Estimate(
+        parameters=parameters,
+        free=tuple(domain.names[i] for i in free),
+        status=status,
+        message=message,
+        penalty=float(penalty(best)),
+        correlation=spread.correlation,
+        condition=spread.condition,
+        weakest=weakest,
+        covariance=spread.matrix,
+        residuals=statistics,
+        windows=table,
+        convergence=convergence,
+        warnings=warnings,
+        joint=_joint(problem, parameters),
+        settings=settings,
+        seconds=seconds,
+    )
+
+
+def r_squared(measured: Array, residual: Array) -> float:
+    """Share of the measured variance that the model explains."""
+    spread = measured - measured.mean()
+    total = float(spread @ spread)
+    return 1.0 - float(residual @ residual) / total if total > 0.0 else 0.0
+
+
+def _freedom(domain: SearchDomain, best: Array) -> _Freedom:
+    at_bound: list[str | None] = []
+    free = []
+    for index in range(len(domain.names)):
+        room = 1e-6 * (domain.upper[index] - domain.lower[index])
+        bound = None
+        if room > 0.0 and best[index] <= domain.lower[index] + room:
+            bound = "min"
+        elif room > 0.0 and best[index] >= domain.upper[index] - room:
+            bound = "max"
+        at_bound.append(bound)
+        # On its bound a parameter is not free to vary: an error would not be a standard error.
+        if room > 0.0 and bound is None:
+            free.append(index)
+    return _Freedom(indices=tuple(free), at_bound=tuple(at_bound))
+
+
+def _centre(penalty: _core.Penalty, best: Array, free: list[int]) -> tuple[int, int, float] | None:
+    names = [penalty.names[i] for i in free]
+    if not {"sensor_gain", "sensor_offset"} <= set(names):
+        return None
+    columns = penalty.columns(best[penalty.coefficients :])
+    reading = columns[:, penalty.names.index("sensor_gain")].sum()
+    mean = float(reading / penalty.usable_duration.sum())
+    return names.index("sensor_gain"), names.index("sensor_offset"), mean
+
+
+def _statistics(problem: Problem, penalty: _core.Penalty, table: WindowTable) -> ResidualStatistics:
+    residual = table.residual
+    intervals = penalty.total_samples - len(problem.recordings)
+    return ResidualStatistics(
+        windows=penalty.window_count,
+        window_duration=penalty.window_duration,
+        noise_share=penalty.noise_share,
+        rms=float(np.sqrt(np.mean((residual / table.duration) ** 2))),
+        relative=float(np.linalg.norm(residual) / np.linalg.norm(table.measured)),
+        r_squared=r_squared(table.measured, residual),
+        autocorrelation=float(residual[1:] @ residual[:-1])
+        / max(float(residual @ residual), 1e-300),
+        samples=penalty.total_samples,
+        left_out=penalty.unusable_intervals / intervals,
+        standing=penalty.standing_samples / penalty.total_samples,
+    )
+
+
+def _parameters(
+    problem: Problem,
+    domain: SearchDomain,
+    best: Array,
+    freedom: _Freedom,
+    spread: Covariance,
+    windows: int,
+    shifts: tuple[Array | None, Array | None],
+) -> dict[str, ParameterEstimate]:
+    facts: dict[str, _core.Term | _core.Shape] = {term.name: term for term in _core.terms()}
+    facts |= {shape.name: shape for shape in _core.shapes()}
+    factor = quantile(0.975, max(1, windows - len(freedom.indices)))
+    errors = dict(zip(freedom.indices, spread.stderr.tolist(), strict=True))
+    prismatic = problem.recordings[0].kind == "prismatic"
+    result = {}
+    for name in _core.parameter_names():
+        if name not in domain.names:
+            continue
+        i = domain.names.index(name)
+        value, error, vary = float(best[i]), errors.get(i), not domain.fixed(name)
+        halved, doubled = (None if s is None or not vary else float(s[i]) for s in shifts)
+        result[name] = ParameterEstimate(
+            name=name,
+            meaning=facts[name].meaning,
+            unit=facts[name].unit_prismatic if prismatic else facts[name].unit,
+            value=value,
+            stderr=error,
+            interval=None if error is None else (value - factor * error, value + factor * error),
+            min=float(domain.lower[i]),
+            max=float(domain.upper[i]),
+            vary=vary,
+            at_bound=freedom.at_bound[i],
+            shift_halved=halved,
+            shift_doubled=doubled,
+        )
+    return result
+
+
+def _joint(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Joint:
+    """The joint with the estimated values in its parameter table; what it knew for a fact stays a fact."""
+    choice, recording = problem.choice, problem.recordings[0]
+    base = problem.joint
+    if base is None:
+        base = Joint(
+            name=recording.name,
+            kind=recording.kind,
+            sensor=choice.sensor,
+            torque_offset="torque_offset" in choice.terms,
+        )
+    table = dict(base.parameters)
+    for name, found in parameters.items():
+        known = table.get(name)
+        if known is None and not found.vary and (name == "inertia" or name.startswith("gravity")):
+            continue
+        low = None if known is None or known.min is None else min(known.min, found.value)
+        high = None if known is None or known.max is None else max(known.max, found.value)
+        vary = found.vary if known is None else known.vary
+        table[name] = Parameter(name=name, value=found.value, min=low, max=high, vary=vary)
+    return base.replace(parameters=table, friction=choice.model)

@@ -1,0 +1,461 @@
+"""A joint: what is known of it before its friction is identified, and what was found."""
+
+import functools
+import math
+import os
+from collections.abc import Collection, Mapping
+from dataclasses import MISSING, dataclass, field, fields, replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Literal, Self, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.errors import InputError
+from jointid.parameters import (
+    FieldError,
+    Parameter,
+    check_flag,
+    finite_number,
+    merge,
+    parameter_table,
+    suggestion,
+)
+
+if TYPE_CHECKING:
+    from jointid.recording import Recording
+
+Kind = Literal["revolute", "prismatic"]
+TorqueHold = Literal["zoh", "linear"]
+Gravity = Literal["none", "known", "free"]
+
+STANDARD_GRAVITY = 9.80665  # m/s²
+# Two statements of the same inertia may differ by this share: printed values are rounded.
+_INERTIA_TOLERANCE = 1e-3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GravityCoefficients:
+    """Torque of gravity at the joint as ``cos * cos(q) + sin * sin(q)``.
+
+    Attributes
+    ----------
+    cos, sin : float
+        [N·m]
+    """
+
+    cos: float
+    sin: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Link:
+    """What hangs on the joint.
+
+    Parameters
+    ----------
+    mass : float
+        [kg]
+    centre_of_mass : float
+        Its distance from the joint's axis [m].
+    angle : float
+        Angle of the centre of mass above the horizontal where the position is zero [rad].
+        Default 0.
+    inertia : float, optional
+        About the joint's axis [kg·m²]. Default: not known.
+    gravity : float
+        [m/s²], across the axis. Default 9.80665.
+
+    Raises
+    ------
+    InputError
+        A value that is not finite, or negative (angle aside).
+    """
+
+    mass: float
+    centre_of_mass: float
+    angle: float = 0.0
+    inertia: float | None = None
+    gravity: float = STANDARD_GRAVITY
+
+    def __post_init__(self) -> None:
+        for item in fields(self):
+            value = getattr(self, item.name)
+            if item.name == "inertia" and value is None:
+                continue
+            number = finite_number("link", item.name, value)
+            if item.name != "angle" and number < 0.0:
+                raise FieldError("link", item.name, f"is {number!r}; 0 or more is expected")
+            object.__setattr__(self, item.name, number)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """What the joint must not exceed; a limit that is None is not known.
+
+    Parameters
+    ----------
+    position : tuple of float, optional
+        Lowest and highest [rad] or [m].
+    velocity : float, optional
+        Largest magnitude [rad/s] or [m/s].
+    torque : float, optional
+        Largest magnitude at the output [N·m] or [N].
+    current : float, optional
+        Largest magnitude in the motor [A].
+
+    Raises
+    ------
+    InputError
+        A limit that is not finite or not positive, or a position range that is none.
+    """
+
+    position: tuple[float, float] | None = None
+    velocity: float | None = None
+    torque: float | None = None
+    current: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.position is not None:
+            object.__setattr__(self, "position", _range("limits", "position", self.position))
+        for name in ("velocity", "torque", "current"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, _positive("limits", name, getattr(self, name)))
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Joint:
+    """One joint of a robot: drive, friction model, sensor, link, parameters and limits.
+
+    Everything is on the output side of the gear unless it says motor side. For a prismatic joint
+    read force [N] for torque, mass [kg] for inertia, metres for radians; the gear ratio is then
+    the motor's angle per travel [rad/m].
+
+    Parameters
+    ----------
+    name : str
+        Default ``""``.
+    kind : {"revolute", "prismatic"}
+        Default ``"revolute"``.
+    inertia : float, optional
+        Of the drive, at the output [kg·m²]. Default: from `rotor_inertia`; without it, identified.
+    rotor_inertia : float, optional
+        Motor side [kg·m²].
+    gear_ratio : float
+        Motor's angle per output angle; negative when they turn against each other. Default 1.
+    torque_constant : float, optional
+        Motor side [N·m/A].
+    torque_hold : {"zoh", "linear"}, optional
+        How the torque lives between samples: held, or on a straight line. Default: not known.
+    sensor : bool
+        Whether the joint has a torque sensor. Default False.
+    friction : str
+        Name of the friction model. Default ``"coulomb_viscous"``.
+    gravity : {"none", "known", "free"}
+        Torque of gravity that the drive carries and no sensor sees: none, computed from `link`,
+        or to be identified. Default ``"none"``.
+    torque_offset : bool, optional
+        Whether the torque has a constant offset. Default: only without a sensor.
+    link : Link, optional
+        Default: not known.
+    parameters : mapping of str to Parameter
+        What is known of each parameter: values, bounds of the search. Default: nothing.
+    limits : Limits
+        Default: none known.
+
+    Raises
+    ------
+    InputError
+        A field that cannot be used, or fields that contradict each other.
+
+    Notes
+    -----
+    The model is eq. (4-2) to (4-4) of the thesis this package began with:
+    ``inertia * acceleration + friction + link torque = torque``.
+    """
+
+    name: str = ""
+    kind: Kind = "revolute"
+    inertia: float | None = None
+    rotor_inertia: float | None = None
+    gear_ratio: float = 1.0
+    torque_constant: float | None = None
+    torque_hold: TorqueHold | None = None
+    sensor: bool = False
+    friction: str = "coulomb_viscous"
+    gravity: Gravity = "none"
+    torque_offset: bool | None = None
+    link: Link | None = None
+    parameters: Mapping[str, Parameter] = field(default_factory=dict, hash=False)
+    limits: Limits = field(default_factory=Limits)
+
+    def __post_init__(self) -> None:
+        owner = _checked_name(self.name)
+        for name, known in (("kind", get_args(Kind)), ("friction", _core.model_names())):
+            _check_choice(owner, name, getattr(self, name), known)
+        if self.torque_hold is not None:
+            _check_choice(owner, "torque_hold", self.torque_hold, get_args(TorqueHold))
+        _check_choice(owner, "gravity", self.gravity, get_args(Gravity))
+        for name in ("inertia", "rotor_inertia", "torque_constant"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, _positive(owner, name, getattr(self, name)))
+        object.__setattr__(self, "gear_ratio", finite_number(owner, "gear_ratio", self.gear_ratio))
+        if self.gear_ratio == 0.0:
+            raise FieldError(owner, "gear_ratio", "is 0; 1 stands for a joint without a gear")
+        check_flag(owner, "sensor", self.sensor)
+        if self.torque_offset is not None:
+            check_flag(owner, "torque_offset", self.torque_offset)
+        if self.link is not None and not isinstance(self.link, Link):
+            raise FieldError(owner, "link", f"is {self.link!r}; a Link is expected")
+        if not isinstance(self.limits, Limits):
+            raise FieldError(owner, "limits", f"is {self.limits!r}; Limits are expected")
+        table = parameter_table(self.parameters)
+        object.__setattr__(self, "parameters", MappingProxyType(table))
+        self._check_inertia(owner)
+        self._check_gravity(owner)
+
+    def _check_inertia(self, owner: str) -> None:
+        if self.rotor_inertia is None:
+            return
+        reflected = self.gear_ratio * self.gear_ratio * self.rotor_inertia
+        product = f"gear_ratio² · rotor_inertia is {reflected:.6g}"
+        if not math.isfinite(reflected) or reflected == 0.0:
+            raise FieldError(owner, "rotor_inertia", f"cannot be used: {product} kg·m²")
+        if (
+            self.inertia is not None
+            and abs(self.inertia - reflected) > _INERTIA_TOLERANCE * reflected
+        ):
+            raise FieldError(
+                owner, "inertia", f"is {self.inertia!r}, but {product}; give only one of the two"
+            )
+
+    def _check_gravity(self, owner: str) -> None:
+        if self.gravity == "none":
+            return
+        if self.kind == "prismatic":
+            raise FieldError(
+                owner,
+                "gravity",
+                f"is {self.gravity!r} on a prismatic joint, whose weight is the same everywhere; "
+                "use 'none' with torque_offset = true",
+            )
+        if self.gravity == "known" and self.link is None:
+            raise FieldError(
+                owner,
+                "gravity",
+                "is 'known', but there is no link; give [link] with mass and centre_of_mass, "
+                "or use 'free' to have it identified",
+            )
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Return the joint that a joint file (TOML) describes.
+
+        Raises
+        ------
+        InputError
+            No such file, not TOML, or something in it cannot be used: one sentence names file,
+            table and key.
+        """
+        from jointid.joint_file import load_joint
+
+        loaded = load_joint(path)
+        return cls(**_values(loaded))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the joint to a joint file, whole or not at all.
+
+        An existing joint file keeps its comments, its order and its tables `user` and `estimate`.
+
+        Raises
+        ------
+        InputError
+            The folder does not exist, or the existing file is not a joint file.
+        OSError
+            The file cannot be written; an existing one is untouched.
+        """
+        from jointid.joint_file import save_joint
+
+        save_joint(self, path)
+
+    def replace(self, **changes: Any) -> Self:
+        """Return a joint with some fields changed.
+
+        Raises
+        ------
+        InputError
+            No such field, or a value that cannot be used.
+        """
+        known = [item.name for item in fields(self)]
+        for name in changes:
+            if name not in known:
+                raise InputError(f"replace: '{name}' is no field; {suggestion(name, known)}")
+        return replace(self, **changes)
+
+    def with_parameters(self, values: Mapping[str, float]) -> Self:
+        """Return a joint with some parameters' values set; their min, max and vary stay.
+
+        Parameters
+        ----------
+        values : mapping of str to float
+            By parameter name, in SI units at the output.
+
+        Raises
+        ------
+        InputError
+            An unknown parameter, no finite number, or a value outside the parameter's bounds.
+        """
+        table = merge(self.parameters, {name: {"value": value} for name, value in values.items()})
+        for name in values:
+            finite_number(f"parameter '{name}'", "value", table[name].value)
+        return replace(self, parameters=table)
+
+    @property
+    def reflected_inertia(self) -> float | None:
+        """Inertia of the drive at the output [kg·m²], or [kg]; None when it is not known."""
+        if self.inertia is not None or self.rotor_inertia is None:
+            return self.inertia
+        return self.gear_ratio * self.gear_ratio * self.rotor_inertia
+
+    @property
+    def gravity_coefficients(self) -> GravityCoefficients:
+        """Torque of gravity on the link, mass · gravity · centre_of_mass · cos(q + angle), expanded.
+
+        Raises
+        ------
+        InputError
+            The joint has no link.
+        """
+        if self.link is None:
+            raise InputError(f"{_owner(self.name)}: the torque of gravity needs a link; give one")
+        weight = self.link.mass * self.link.gravity * self.link.centre_of_mass
+        return GravityCoefficients(
+            cos=weight * math.cos(self.link.angle), sin=-weight * math.sin(self.link.angle)
+        )
+
+    def output_torque(self, recording: "Recording") -> NDArray[np.float64]:
+        """Return the drive's torque at the output, from the first of the signals that is there.
+
+        Parameters
+        ----------
+        recording : Recording
+            With `torque`, or `motor_torque` (times the gear ratio), or `current` (times torque
+            constant and gear ratio).
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            [N·m] or [N].
+
+        Raises
+        ------
+        InputError
+            None of the signals is there, or the current without a torque constant.
+        """
+        if recording.torque is not None:
+            return recording.torque
+        if recording.motor_torque is not None:
+            return recording.motor_torque * self.gear_ratio
+        if recording.current is None:
+            raise InputError(
+                "the recording has no signal 'torque', 'motor_torque' or 'current'; map one of "
+                "them with columns={'torque': ...}"
+            )
+        if self.torque_constant is None:
+            raise InputError(
+                f"the recording has only 'current', and {_owner(self.name)} has no "
+                "torque_constant; give it in N·m/A, in the joint file under [drive]"
+            )
+        return recording.current * (self.torque_constant * self.gear_ratio)
+
+    def __repr__(self) -> str:
+        shown = []
+        for item in fields(self):
+            value = _values(self)[item.name]
+            usual = item.default_factory() if item.default_factory is not MISSING else item.default
+            if value != usual:
+                shown.append(f"{item.name}={value!r}")
+        return f"Joint({', '.join(shown)})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Through the constructor: read-only mappings cannot be pickled.
+        return functools.partial(type(self), **_values(self)), ()
+
+
+def thesis_joint() -> Joint:
+    """Return the joint of the 2007 thesis: a strain-wave drive with a built-in torque sensor.
+
+    Facts of the drive and the domain of the search; no values of friction or sensor.
+    """
+    domain = {
+        "coulomb": (0.0, 50.0),
+        "static": (0.0, 40.0),
+        "stribeck": (0.0, 200.0),
+        "viscous": (0.0, 40.0),
+        "sensor_offset": (-30.0, 30.0),
+        "sensor_gain": (0.1, 5.0),
+    }
+    length, mass = 0.5, 3.0  # of the link, a slender rod held at its end
+    return Joint(
+        name="thesis joint",
+        rotor_inertia=2.472e-4,
+        gear_ratio=101.0,
+        torque_constant=0.198,
+        torque_hold="zoh",
+        sensor=True,
+        friction="stribeck",
+        gravity="none",  # behind the sensor, which measures it with the link's torque
+        link=Link(
+            mass=mass, centre_of_mass=length / 2.0, inertia=mass * length**2 / 3.0, gravity=9.817
+        ),
+        parameters={
+            name: Parameter(name=name, min=low, max=high) for name, (low, high) in domain.items()
+        },
+        limits=Limits(torque=160.0, current=8.0),
+    )
+
+
+def _values(joint: Joint) -> dict[str, Any]:
+    """Return the arguments that build this joint again."""
+    values = {item.name: getattr(joint, item.name) for item in fields(joint)}
+    return values | {"parameters": dict(joint.parameters)}
+
+
+def _owner(name: str) -> str:
+    return f"joint '{name}'" if name else "joint"
+
+
+def _checked_name(name: object) -> str:
+    if not isinstance(name, str):
+        raise FieldError("joint", "name", f"is {name!r}; a text is expected")
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        raise FieldError("joint", "name", f"is {name!r}, which no file can hold") from None
+    return _owner(name)
+
+
+def _check_choice(owner: str, name: str, value: object, known: Collection[str]) -> None:
+    if value not in known:
+        raise FieldError(owner, name, f"is {value!r}, which is unknown; {suggestion(value, known)}")
+
+
+def _positive(owner: str, name: str, value: object) -> float:
+    number = finite_number(owner, name, value)
+    if number <= 0.0:
+        raise FieldError(
+            owner, name, f"is {number!r}; more than 0 is expected, leave it out when not known"
+        )
+    return number
+
+
+def _range(owner: str, name: str, value: Any) -> tuple[float, float]:
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise FieldError(owner, name, f"is {value!r}; lowest and highest, [low, high], is expected")
+    low, high = (finite_number(owner, name, bound) for bound in value)
+    if not low < high:
+        raise FieldError(
+            owner, name, f"is [{low!r}, {high!r}]; the lower limit comes first, then the higher"
+        )
+    return low, high

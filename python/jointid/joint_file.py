@@ -1,0 +1,317 @@
+"""Joint files: a joint as TOML, read with its place in every complaint, written keeping comments."""
+
+import os
+import re
+import tomllib
+from collections.abc import Collection, Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, NoReturn
+
+from jointid.errors import InputError
+from jointid.files import write_whole
+from jointid.joint import Joint, Limits, Link
+from jointid.parameters import (
+    FieldError,
+    Parameter,
+    check_flag,
+    check_parameter_name,
+    parameter_table,
+    suggestion,
+)
+
+SCHEMA = 1
+"""Raised when a reader of the old form would misread the new one."""
+
+_TOP = ("schema", "name", "kind")
+_DRIVE = ("inertia", "rotor_inertia", "gear_ratio", "torque_constant", "torque_hold")
+_MODEL = ("friction", "gravity", "torque_offset")
+_KEYS: dict[str, tuple[str, ...]] = {
+    "drive": _DRIVE,
+    "model": _MODEL,
+    "sensor": ("present",),
+    "link": tuple(field.name for field in fields(Link)),
+    "parameters": (),  # the core knows the names
+    "limits": tuple(field.name for field in fields(Limits)),
+}
+# Not the joint's: kept as they are. `estimate` tells where values come from, `user` is free.
+_KEPT = ("estimate", "user")
+
+
+def load_joint(path: str | os.PathLike[str]) -> Joint:
+    """Read a joint file: see `Joint.load`."""
+    place = Path(path)
+    return joint_from_document(_parsed(_text(place), place), str(place))
+
+
+def save_joint(joint: Joint, path: str | os.PathLike[str]) -> None:
+    """Write a joint file: see `Joint.save`."""
+    place = Path(path)
+    if not place.parent.is_dir():
+        raise InputError(f"{place}: the folder '{place.parent}' does not exist; create it first")
+    before = _text(place) if place.exists() else ""
+    if before.strip():
+        # Whatever is there is overwritten only when it is a joint file.
+        joint_from_document(_parsed(before, place), str(place))
+    write_whole(place, _edited(before, joint, place).encode())
+
+
+def joint_document(joint: Joint) -> dict[str, Any]:
+    """Return a joint as the tables and keys of its file, of JSON's types; what is None is left out."""
+    document: dict[str, Any] = {
+        "schema": SCHEMA,
+        "name": joint.name,
+        "kind": joint.kind,
+        "drive": _known(joint, _DRIVE),
+        "model": _known(joint, _MODEL),
+    }
+    if joint.sensor:
+        document["sensor"] = {"present": True}
+    if joint.link is not None:
+        document["link"] = _known(joint.link, _KEYS["link"])
+    if joint.parameters:
+        document["parameters"] = {
+            name: _known(parameter, ("value", "min", "max", "vary"))
+            for name, parameter in joint.parameters.items()
+        }
+    if joint.limits != Limits():
+        document["limits"] = _known(joint.limits, _KEYS["limits"])
+    return document
+
+
+def joint_from_document(document: Mapping[str, Any], source: str) -> Joint:
+    """Return the joint that tables and keys describe; the inverse of `joint_document`.
+
+    Parameters
+    ----------
+    document : mapping
+        Tables `estimate` and `user` are ignored.
+    source : str
+        Where it comes from, for complaints: the name of a file.
+
+    Raises
+    ------
+    InputError
+        Names source, table and key.
+    """
+    _check_schema(document, source)
+    for key in document:
+        if key not in (*_TOP, *_KEYS, *_KEPT):
+            _refuse_key(source, "", key, (*_TOP, *_KEYS, *_KEPT))
+    tables = {name: _table(document, name, source) for name in _KEYS}
+    arguments = {
+        **{key: document[key] for key in _TOP[1:] if key in document},
+        **tables["drive"],
+        **tables["model"],
+        "sensor": _sensor(document, tables["sensor"], source),
+        "link": _link(document, tables["link"], source),
+        "parameters": _parameters(tables["parameters"], source),
+    }
+    try:
+        arguments["limits"] = Limits(**tables["limits"])
+    except FieldError as error:
+        _refuse(source, "limits", error)
+    try:
+        return Joint(**arguments)
+    except FieldError as error:
+        tables_of = {key: table for table in ("drive", "model") for key in _KEYS[table]}
+        _refuse(source, tables_of.get(error.field, ""), error)
+
+
+def _known(source: object, names: tuple[str, ...]) -> dict[str, Any]:
+    """Return the attributes that are not None; TOML and JSON have lists for tuples."""
+    values = {name: getattr(source, name) for name in names}
+    return {
+        name: list(value) if isinstance(value, tuple) else value
+        for name, value in values.items()
+        if value is not None
+    }
+
+
+def _check_schema(document: Mapping[str, Any], source: str) -> None:
+    if "schema" not in document:
+        raise InputError(f"{source}: schema is missing; write schema = {SCHEMA} at the top")
+    schema = document["schema"]
+    if isinstance(schema, bool) or not isinstance(schema, int) or schema < 1:
+        raise InputError(f"{source}: schema is {schema!r}; schema = {SCHEMA} is expected")
+    if schema > SCHEMA:
+        raise InputError(
+            f"{source}: schema is {schema}, this jointid reads up to {SCHEMA}; update jointid"
+        )
+
+
+def _table(document: Mapping[str, Any], name: str, source: str) -> dict[str, Any]:
+    table = document.get(name, {})
+    if not isinstance(table, Mapping):
+        raise InputError(f"{source}: {name} is {table!r}; a table [{name}] is expected")
+    for key in table:
+        if name != "parameters" and key not in _KEYS[name]:
+            _refuse_key(source, name, key, _KEYS[name])
+    return dict(table)
+
+
+def _sensor(document: Mapping[str, Any], table: dict[str, Any], source: str) -> bool:
+    present = table.get("present", "sensor" in document)
+    try:
+        check_flag("sensor", "present", present)
+    except FieldError as error:
+        _refuse(source, "sensor", error)
+    return bool(present)
+
+
+def _link(document: Mapping[str, Any], table: dict[str, Any], source: str) -> Link | None:
+    if "link" not in document:
+        return None
+    for needed in ("mass", "centre_of_mass"):
+        if needed not in table:
+            raise InputError(f"{source}: [link] has no {needed}; give it, or leave [link] out")
+    try:
+        return Link(**table)
+    except FieldError as error:
+        _refuse(source, "link", error)
+
+
+def _parameters(table: dict[str, Any], source: str) -> dict[str, Parameter]:
+    parameters: dict[str, Parameter] = {}
+    for name, entry in table.items():
+        place = "parameters"
+        try:
+            check_parameter_name(name)
+            place += f".{name}" if isinstance(entry, Mapping) else ""
+            parameters |= parameter_table({name: entry})
+        except FieldError as error:
+            _refuse(source, place, error)
+    return parameters
+
+
+def _refuse(source: str, table: str, error: FieldError) -> NoReturn:
+    """Say what a constructor said, with the place in the file instead of the object."""
+    place = f"[{table}] " if table else ""
+    raise InputError(f"{source}: {place}{error.field} {error.sentence}") from error
+
+
+def _refuse_key(source: str, table: str, key: str, known: tuple[str, ...]) -> NoReturn:
+    place = f"[{table}] " if table else ""
+    for other, keys in _KEYS.items():
+        if key in keys:
+            raise InputError(f"{source}: {place}{key!r} does not belong here, but in [{other}]")
+    raise InputError(f"{source}: {place}{key!r} is unknown; {suggestion(key, known)}")
+
+
+# --- Text ---
+
+
+def _text(path: Path) -> str:
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError:
+        raise InputError(f"{path}: there is no such file; check the path") from None
+    except IsADirectoryError:
+        raise InputError(
+            f"{path}: this is a folder; the name of a joint file is expected"
+        ) from None
+    except OSError as error:
+        raise InputError(f"{path}: the file cannot be read: {error.strerror}") from error
+    try:
+        return content.decode("utf-8-sig")  # some editors of Windows begin a file with a mark
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise InputError(
+            f"{path}, line {line}: this is no text in UTF-8; save the file as UTF-8"
+        ) from None
+
+
+def _parsed(text: str, path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        raise InputError(f"{path}: not a joint file: it is nested too deeply") from None
+    except ValueError as error:  # mostly a TOMLDecodeError; numbers of 5000 digits are another
+        reason, _, position = str(error).partition(" (at ")
+        found = re.match(r"line (\d+)", position)
+        line = int(found[1]) if found else text.rstrip().count("\n") + 1
+        raise InputError(
+            f"{path}, line {line}: not TOML: {reason}; a joint file has lines like gear_ratio = 101"
+        ) from None
+
+
+def _edited(before: str, joint: Joint, path: Path) -> str:
+    """Return the text of a joint file turned into that of another joint."""
+    import tomlkit
+
+    windows = "\r\n" in before
+    editable = tomlkit.parse(before.replace("\r\n", "\n"))
+    wanted = joint_document(joint)
+    if "sensor" in editable:  # a sensor that is gone leaves its table, and what is said there
+        wanted["sensor"] = {"present": joint.sensor}
+    _update(editable, wanted, _KEPT)
+    text = tomlkit.dumps(editable)
+    # The promise is checked, not trusted: TOML can be laid out in very many ways.
+    if joint_from_document(_parsed(text, path), str(path)) != joint:
+        raise InputError(
+            f"{path}: the layout of this file cannot be kept; save the joint as a new file"
+        )
+    return text.replace("\n", "\r\n") if windows else text
+
+
+def _update(table: Any, wanted: Mapping[str, Any], kept: Collection[str] = ()) -> None:
+    """Change a tomlkit table where it differs, and leave the rest as it was written."""
+    for key in [key for key in table if key not in wanted and key not in kept]:
+        _remove(table, key)
+    for key, value in wanted.items():
+        present = table.get(key)
+        if isinstance(value, Mapping) and isinstance(present, Mapping):
+            _update(present, value)
+        elif isinstance(value, Mapping):
+            _insert(table, key, value)
+        elif present is None and value is True and key in ("vary", "present"):
+            continue  # goes without saying
+        elif present is None or present != value:
+            table[key] = value
+
+
+def _insert(table: Any, key: str, value: Mapping[str, Any]) -> None:
+    """Put a table where there is none yet, or where there is a number that fixes a parameter."""
+    if key in table and set(value) == {"value", "vary"} and not value["vary"]:
+        if table[key] != value["value"]:
+            table[key] = value["value"]
+        return
+    entries = {
+        name: {k: v for k, v in entry.items() if (k, v) != ("vary", True)}
+        if isinstance(entry, Mapping)
+        else entry
+        for name, entry in value.items()
+        if (name, entry) != ("vary", True)
+    }
+    table[key] = entries
+
+
+def _remove(table: Any, key: str) -> None:
+    """Remove a key, or a table but for the comments behind its last key: those lead to the next."""
+    from tomlkit.container import Container
+    from tomlkit.items import Table, Whitespace
+
+    container = table if isinstance(table, Container) else table.value
+    slots = [
+        (slot, item)
+        for slot, (name, item) in enumerate(getattr(container, "body", ()))
+        if name is not None and name.key == key and isinstance(item, Table)
+    ]
+    tails = [(slot, _tail(item)) for slot, item in slots]
+    del table[key]
+    for slot, tail in tails:
+        if "#" in tail:
+            container.body[slot] = (None, Whitespace(tail))
+
+
+def _tail(table: Any) -> str:
+    """Return the comments and blank lines behind the last key of a tomlkit table."""
+    from tomlkit.items import Null, Table
+
+    tail = ""
+    for key, item in reversed(table.value.body):
+        if key is not None:
+            return (_tail(item) if isinstance(item, Table) else "") + tail
+        if not isinstance(item, Null):
+            tail = item.as_string() + tail
+    return tail

@@ -1,0 +1,90 @@
+"""Reading .npz files: arrays by name, never pickles."""
+
+import io
+import zipfile
+import zlib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jointid.errors import InputError
+from jointid.saving import NPZ_MEMBER, saved_attributes
+from jointid.signals import FloatArray, signal_array
+
+# What zipfile, zlib and numpy raise on damaged, encrypted or absurd members.
+_DAMAGED = (
+    *(ValueError, OSError, EOFError, KeyError, RuntimeError, MemoryError, OverflowError),
+    *(zipfile.BadZipFile, zlib.error, NotImplementedError),
+)
+
+
+class NpzTable:
+    """A .npz file as a table of columns.
+
+    Parameters
+    ----------
+    path : Path
+
+    Raises
+    ------
+    InputError
+        The file is no archive of arrays.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.source = str(path)
+        self.header_place = self.source
+        content = io.BytesIO(path.read_bytes())
+        if not zipfile.is_zipfile(content):
+            raise InputError(
+                f"{path}: the file is no .npz archive (or is cut off); numpy.savez writes one"
+            )
+        content.seek(0)
+        try:
+            archive = np.load(content, allow_pickle=False)
+        except _DAMAGED as error:
+            raise InputError(f"{path}: the archive is damaged ({_short(error)})") from None
+        self._archive: Mapping[str, Any] = archive
+        self.saved: Mapping[str, Any] | None = None
+        if NPZ_MEMBER in archive.files:
+            text = self._member(NPZ_MEMBER)
+            self.saved = saved_attributes(str(text), f"{path}, member {NPZ_MEMBER!r}")
+        self.headers = tuple(name for name in archive.files if name != NPZ_MEMBER)
+        if not self.headers:
+            raise InputError(f"{path}: the archive is empty; arrays time and position are expected")
+
+    def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
+        """Return members as arrays of shape (n,), or name the one that is none."""
+        names = [self.headers[column] for column in columns]
+        return [signal_array(f"member {name!r}", self._member(name), self.source) for name in names]
+
+    def text(self, column: int) -> list[str]:
+        """Return the values of a member as text."""
+        return [str(value) for value in np.ravel(self._member(self.headers[column])).tolist()]
+
+    def place(self, column: int, row: int) -> str:
+        """Return file, member and index of a value."""
+        return f"{self.source}, member {self.headers[column]!r}, index {row}"
+
+    def _member(self, name: str) -> npt.NDArray[Any]:
+        try:
+            value = self._archive[name]
+        except _DAMAGED as error:
+            if "allow_pickle" in str(error):
+                raise InputError(
+                    f"{self.source}: member {name!r} holds Python objects (a pickle), which are "
+                    "never read; save it as an array of floats"
+                ) from None
+            raise InputError(
+                f"{self.source}: member {name!r} cannot be read ({_short(error)})"
+            ) from None
+        if not isinstance(value, np.ndarray):
+            raise InputError(f"{self.source}: member {name!r} is not an array")
+        return value
+
+
+def _short(error: BaseException) -> str:
+    return " ".join(str(error).split())[:120].rstrip(".") or type(error).__name__

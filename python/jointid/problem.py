@@ -1,0 +1,183 @@
+"""Recordings, joint and terms put together: the penalty they define, and its windows in numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.errors import InputError
+from jointid.findings import WindowTable
+from jointid.joint import Joint
+from jointid.model_terms import TermChoice
+from jointid.recording import Recording
+
+Array = NDArray[np.float64]
+
+_HOLDS = {"zoh": _core.Hold.zero_order, "linear": _core.Hold.linear}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Problem:
+    """What is identified from what; how finely it is cut into windows is left open.
+
+    Attributes
+    ----------
+    recordings : tuple of Recording
+    joint : Joint or None
+    choice : TermChoice
+    torque_hold : str or None
+        Overrides what recording and joint say.
+    mask_standstill : bool
+    """
+
+    recordings: tuple[Recording, ...]
+    joint: Joint | None
+    choice: TermChoice
+    torque_hold: str | None
+    mask_standstill: bool
+
+    def penalty(self, windows: int | float | _core.WindowOptions | None) -> _core.Penalty:
+        """The penalty over these windows: an int is their number, a float their duration [s].
+
+        Raises
+        ------
+        InputError
+            Windows that cannot be cut.
+        """
+        options = window_options(windows)
+        try:
+            return _core.Penalty(
+                recordings=[self._in_core(recording) for recording in self.recordings],
+                terms=list(self.choice.terms),
+                windows=options,
+                residual=_core.Residual[self.choice.residual],
+                mask_standstill=self.mask_standstill,
+            )
+        except ValueError as error:
+            raise InputError(str(error)) from error
+
+    @property
+    def peak_speed(self) -> float:
+        """Largest speed in the recordings [rad/s or m/s]."""
+        return max(float(np.abs(recording.velocity).max()) for recording in self.recordings)
+
+    def table(self, penalty: _core.Penalty, theta: Array) -> WindowTable:
+        """The penalty's windows at a parameter vector."""
+        residual = penalty.residuals(theta)
+        columns = penalty.columns(theta[penalty.coefficients :])
+        names = penalty.names[: penalty.coefficients]
+        bounds = penalty.windows
+        run = np.asarray(penalty.recording_of, dtype=np.int64)
+        start = np.empty(len(run))
+        stop = np.empty(len(run))
+        travel = np.empty(len(run))
+        for number, recording in enumerate(self.recordings):
+            mine = run == number
+            first, last = bounds[mine, 0], bounds[mine, 1]
+            start[mine], stop[mine] = recording.time[first], recording.time[last]
+            travel[mine] = recording.position[last] - recording.position[first]
+        if self.choice.residual == "sensor":
+            measured = columns[:, names.index("sensor_gain")]
+            fitted = measured + residual
+            torque_residual = residual * theta[names.index("sensor_gain")]
+        else:
+            measured = np.asarray(penalty.target)
+            fitted = measured - residual
+            torque_residual = residual
+        friction_terms = {term.name for term in _core.terms() if term.friction}
+        friction = torque_residual.copy()
+        for index, name in enumerate(names):
+            if name in friction_terms:
+                friction += theta[index] * columns[:, index]
+        return WindowTable(
+            recording=run,
+            start=start,
+            stop=stop,
+            duration=np.asarray(penalty.usable_duration),
+            measured=measured,
+            fitted=fitted,
+            velocity=travel / (stop - start),
+            friction=friction / penalty.usable_duration,
+        )
+
+    def _in_core(self, recording: Recording) -> _core.Recording:
+        hold = self.torque_hold or recording.torque_hold
+        if hold is None:
+            hold = (self.joint.torque_hold if self.joint is not None else None) or "linear"
+        if hold not in _HOLDS:
+            raise InputError(f"torque_hold '{hold}' is not known; known are {', '.join(_HOLDS)}")
+        return _core.Recording(
+            time=recording.time,
+            position=recording.position,
+            velocity=recording.velocity,
+            torque=_output_torque(recording, self.joint),
+            sensor=recording.sensor if self.choice.sensor else None,
+            torque_hold=_HOLDS[hold],
+            gap_after=[gap.index for gap in recording.gaps],
+        )
+
+
+def _output_torque(recording: Recording, joint: Joint | None) -> Array:
+    if joint is not None:
+        return joint.output_torque(recording)
+    if recording.torque is not None:
+        return recording.torque
+    for signal, needs in (
+        ("motor_torque", "gear_ratio"),
+        ("current", "torque_constant and gear_ratio"),
+    ):
+        if getattr(recording, signal) is not None:
+            raise InputError(
+                f"the recording has '{signal}' on the motor side; give a joint with {needs} to turn it into torque"
+            )
+    raise InputError("the recording has no signal 'torque'; map it with columns={'torque': ...}")
+
+
+def window_options(windows: int | float | _core.WindowOptions | None) -> _core.WindowOptions:
+    """The call's `windows=` as options.
+
+    Raises
+    ------
+    InputError
+        Not a positive number.
+    """
+    if windows is None:
+        return _core.WindowOptions()
+    if isinstance(windows, _core.WindowOptions):
+        return windows
+    if isinstance(windows, bool) or not isinstance(windows, int | float | np.integer | np.floating):
+        raise InputError(
+            f"windows must be a number (int), a duration in seconds (float) or WindowOptions, got {windows!r}"
+        )
+    if not np.isfinite(windows) or windows <= 0:
+        raise InputError(f"windows must be positive, got {windows!r}")
+    if isinstance(windows, int | np.integer):
+        return _core.WindowOptions(count=int(windows))
+    return _core.WindowOptions(duration=float(windows))
+
+
+def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]:
+    """One recording or several, checked.
+
+    Raises
+    ------
+    InputError
+        None, something else, or revolute and prismatic mixed.
+    """
+    runs = (recordings,) if isinstance(recordings, Recording) else tuple(recordings)
+    if not runs:
+        raise InputError("identify needs at least one recording, got none")
+    for number, run in enumerate(runs):
+        if not isinstance(run, Recording):
+            raise InputError(
+                f"recording {number} is a {type(run).__name__}, not a Recording; read a file with jointid.load"
+            )
+        if run.kind != runs[0].kind:
+            raise InputError(
+                f"recording {number} is {run.kind}, recording 0 is {runs[0].kind}; identify them apart"
+            )
+    return runs

@@ -1,0 +1,359 @@
+"""A recording: the signals of one joint over time, measured or simulated."""
+
+import functools
+import hashlib
+import json
+import os
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, Literal, NoReturn, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from jointid.errors import InputError
+from jointid.gaps import Gap, derived_velocity, find_gaps
+from jointid.signals import (
+    KINDS,
+    SHORTEST,
+    SIGNALS,
+    FloatArray,
+    check_signal_name,
+    check_signals,
+    shown_unit,
+    signal_array,
+)
+
+Kind = Literal["revolute", "prismatic"]
+TorqueHold = Literal["zoh", "linear"]
+
+
+class Recording:
+    """The signals of one joint over time, in SI units, read-only.
+
+    Values are on the output (link) side of the gear unless the name says otherwise. For a
+    prismatic joint read metres for radians and newtons for newton metres.
+
+    Parameters
+    ----------
+    time : array_like, shape (n,)
+        Time stamps [s], strictly increasing, not necessarily uniform; n is at least 8.
+    position : array_like, shape (n,)
+        Joint angle [rad] or travel [m].
+    velocity : array_like, shape (n,), optional
+        [rad/s] or [m/s]. Default: derived from position by second-order differences on the true
+        time stamps, never across a gap (`velocity_derived` is then True). A sample alone between
+        two gaps has no velocity of its own and gets 0; no window can hold it.
+    torque : array_like, shape (n,), optional
+        Torque of the actuator at the output, commanded or from the motor [N·m], or force [N].
+    sensor : array_like, shape (n,), optional
+        Raw reading of the joint's torque sensor.
+    reference : array_like, shape (n,), optional
+        Desired position [rad] or [m].
+    link_position : array_like, shape (n,), optional
+        Position behind the gear, from a second encoder [rad] or [m].
+    temperature : array_like, shape (n,), optional
+        [°C].
+    motor_torque : array_like, shape (n,), optional
+        Torque on the motor's side of the gear [N·m].
+    current : array_like, shape (n,), optional
+        Motor current [A].
+    kind : {"revolute", "prismatic"}
+        Default ``"revolute"``.
+    torque_hold : {"zoh", "linear"}, optional
+        How the torque lives between samples: held, or on a straight line. Default: not known.
+    velocity_derived : bool
+        Whether the given velocity was derived from position. Default False.
+    name : str
+        Default ``""``.
+    metadata : mapping of str to JSON value, optional
+        Default: empty.
+    truth : mapping of str to JSON value, optional
+        True parameters of a simulated recording. Default: not known.
+
+    Raises
+    ------
+    InputError
+        A signal is not one-dimensional, not finite, of another length or too short; time does not
+        strictly increase; an option has no such value.
+    """
+
+    time: FloatArray
+    position: FloatArray
+    velocity: FloatArray
+    torque: FloatArray | None
+    sensor: FloatArray | None
+    reference: FloatArray | None
+    link_position: FloatArray | None
+    temperature: FloatArray | None
+    motor_torque: FloatArray | None
+    current: FloatArray | None
+    kind: Kind
+    torque_hold: TorqueHold | None
+    velocity_derived: bool
+    name: str
+    metadata: Mapping[str, Any]
+    truth: Mapping[str, Any] | None
+
+    def __init__(
+        self,
+        *,
+        time: npt.ArrayLike,
+        position: npt.ArrayLike,
+        velocity: npt.ArrayLike | None = None,
+        torque: npt.ArrayLike | None = None,
+        sensor: npt.ArrayLike | None = None,
+        reference: npt.ArrayLike | None = None,
+        link_position: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        motor_torque: npt.ArrayLike | None = None,
+        current: npt.ArrayLike | None = None,
+        kind: str = "revolute",
+        torque_hold: str | None = None,
+        velocity_derived: bool = False,
+        name: str = "",
+        metadata: Mapping[str, Any] | None = None,
+        truth: Mapping[str, Any] | None = None,
+    ) -> None:
+        check_kind(kind)
+        check_torque_hold(torque_hold)
+        if not isinstance(name, str):
+            raise InputError(f"name is {name!r}; a string is expected")
+        if not isinstance(velocity_derived, bool):
+            raise InputError(f"velocity_derived is {velocity_derived!r}; True or False is expected")
+        given: dict[str, npt.ArrayLike | None] = {
+            "time": time,
+            "position": position,
+            "velocity": velocity,
+            "torque": torque,
+            "sensor": sensor,
+            "reference": reference,
+            "link_position": link_position,
+            "temperature": temperature,
+            "motor_torque": motor_torque,
+            "current": current,
+        }
+        for needed in ("time", "position"):
+            if given[needed] is None:
+                raise InputError(f"{needed} is missing; a recording needs time and position")
+        arrays = {
+            signal: signal_array(signal, values)
+            for signal, values in given.items()
+            if values is not None
+        }
+        check_signals(arrays)
+        # Frozen: attributes are set here, past __setattr__, and nowhere else.
+        vars(self).update(dict.fromkeys(SIGNALS), **arrays)
+        vars(self).update(
+            kind=kind,
+            torque_hold=torque_hold,
+            velocity_derived=velocity_derived or velocity is None,
+            name=name,
+            metadata=_json_mapping("metadata", metadata or {}),
+            truth=None if truth is None else _json_mapping("truth", truth),
+        )
+        if velocity is None:
+            vars(self)["velocity"] = derived_velocity(self.time, self.position, self.gaps)
+
+    @classmethod
+    def from_dataframe(
+        cls,
+        df: Any,
+        *,
+        columns: Mapping[str, str | int | None] | None = None,
+        units: Mapping[str, str] | None = None,
+        kind: str | None = None,
+        torque_hold: str | None = None,
+    ) -> Self:
+        """Return the recording that a table of columns holds (pandas or alike).
+
+        Parameters
+        ----------
+        df : DataFrame
+            Anything with `columns` and `df[column]`; headers are read as `load` reads a file's.
+        columns, units, kind, torque_hold
+            As in `load`.
+
+        Raises
+        ------
+        InputError
+            As in `load`; a row is named by its 0-based number.
+        """
+        from jointid.frame_reader import FrameTable
+        from jointid.loading import fields_from
+
+        table = FrameTable(df)
+        return cls(
+            **fields_from(table, columns=columns, units=units, kind=kind, torque_hold=torque_hold)
+        )
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """Names of the signals present, time first, always in the same order."""
+        return tuple(name for name in SIGNALS if getattr(self, name) is not None)
+
+    @functools.cached_property
+    def sample_period(self) -> float:
+        """Median time between samples [s]."""
+        return float(np.median(np.diff(self.time)))
+
+    @property
+    def duration(self) -> float:
+        """Time from the first sample to the last [s]."""
+        return float(self.time[-1]) - float(self.time[0])
+
+    @functools.cached_property
+    def gaps(self) -> tuple[Gap, ...]:
+        """Intervals longer than 3.5 median sample periods, in order of time."""
+        return find_gaps(self.time)
+
+    @functools.cached_property
+    def fingerprint(self) -> str:
+        """First 16 hexadecimal digits of the SHA-256 of the signals' names and bytes."""
+        digest = hashlib.sha256()
+        for name in self.signals:
+            digest.update(f"{name}:{len(self)};".encode())
+            digest.update(getattr(self, name).astype("<f8").tobytes())
+        return digest.hexdigest()[:16]
+
+    def unit(self, signal: str) -> str:
+        """Return the unit of a signal, e.g. ``"rad/s"``, ``"N·m"``; ``"1"`` for the sensor."""
+        check_signal_name(signal, "unit")
+        return shown_unit(signal, self.kind)
+
+    def crop(self, start: float | None = None, stop: float | None = None) -> Self:
+        """Return the samples from one time to another.
+
+        Parameters
+        ----------
+        start, stop : float, optional
+            [s], on the recording's clock, both included. Default: the first and last sample.
+
+        Returns
+        -------
+        Recording
+            With the same time stamps and velocities, derived ones too.
+
+        Raises
+        ------
+        InputError
+            Fewer than 8 samples would be left, or a bound is no number.
+        """
+        low = self.time[0] if start is None else start
+        high = self.time[-1] if stop is None else stop
+        for bound, value in (("start", low), ("stop", high)):
+            if not isinstance(value, int | float | np.number) or np.isnan(value):
+                raise InputError(f"crop: {bound} is {value!r}; a time [s] is expected")
+        kept = slice(
+            int(np.searchsorted(self.time, low, side="left")),
+            int(np.searchsorted(self.time, high, side="right")),
+        )
+        left = max(0, kept.stop - kept.start)
+        if left < SHORTEST:
+            raise InputError(
+                f"crop from {low!s} s to {high!s} s leaves {left} samples of {len(self)} "
+                f"({self.time[0]!s} s to {self.time[-1]!s} s); at least {SHORTEST} are needed"
+            )
+        fields = self._fields()
+        fields.update({signal: fields[signal][kept] for signal in self.signals})
+        return type(self)(**fields)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the recording to a file, whole or not at all.
+
+        `load` returns an equal recording, bit for bit.
+
+        Parameters
+        ----------
+        path : path-like
+            Ends in ``.npz``, ``.csv`` or ``.csv.gz``; an existing file is replaced.
+
+        Raises
+        ------
+        InputError
+            Another ending, or the folder does not exist.
+        OSError
+            The file cannot be written; an existing one is untouched.
+        """
+        from jointid.saving import save_recording
+
+        save_recording(self, path)
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Recording):
+            return NotImplemented
+        mine, theirs = self._fields(), other._fields()
+        return self.signals == other.signals and all(
+            # Bytes, not values: -0.0 is not 0.0 here.
+            mine[name].tobytes() == theirs[name].tobytes()
+            if name in self.signals
+            else mine[name] == theirs[name]
+            for name in mine
+        )
+
+    def __hash__(self) -> int:
+        return hash(self.fingerprint)
+
+    def __repr__(self) -> str:
+        named = f" {self.name!r}" if self.name else ""
+        derived = "velocity (derived)" if self.velocity_derived else "velocity"
+        shown = [derived if name == "velocity" else name for name in self.signals]
+        gaps = f", {len(self.gaps)} gap{'s' * (len(self.gaps) > 1)}" if self.gaps else ""
+        return (
+            f"<Recording{named}: {self.kind}, {len(self)} samples over {self.duration:.6g} s, "
+            f"period {self.sample_period:.6g} s{gaps}; {', '.join(shown)}>"
+        )
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise AttributeError(f"a recording is read-only, '{name}' cannot be set")
+
+    def __delattr__(self, name: str) -> NoReturn:
+        raise AttributeError(f"a recording is read-only, '{name}' cannot be deleted")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Through the constructor: pickles of arrays forget that they are read-only.
+        return functools.partial(type(self), **self._fields()), ()
+
+    def _fields(self) -> dict[str, Any]:
+        """Return the arguments that build this recording again."""
+        fields = {name: getattr(self, name) for name in (*SIGNALS, "kind", "torque_hold", "name")}
+        return fields | {
+            "velocity_derived": self.velocity_derived,
+            "metadata": dict(self.metadata),
+            "truth": None if self.truth is None else dict(self.truth),
+        }
+
+
+def check_kind(kind: object) -> None:
+    """Refuse a kind of joint that does not exist."""
+    if kind not in KINDS:
+        raise InputError(f"kind is {kind!r}; 'revolute' or 'prismatic' is expected")
+
+
+def check_torque_hold(torque_hold: object) -> None:
+    """Refuse a way of holding the torque that does not exist."""
+    if torque_hold not in (None, "zoh", "linear"):
+        raise InputError(
+            f"torque_hold is {torque_hold!r}; 'zoh' (held between samples), 'linear' or None "
+            "(not known) is expected"
+        )
+
+
+def _json_mapping(argument: str, mapping: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return a read-only copy, as JSON would give it back."""
+    if not isinstance(mapping, Mapping):
+        raise InputError(f"{argument} is a {type(mapping).__name__}; a mapping is expected")
+    copy = {}
+    for key, value in mapping.items():
+        if not isinstance(key, str):
+            raise InputError(f"{argument}: the key {key!r} is not a string")
+        try:
+            copy[key] = json.loads(json.dumps(value, allow_nan=False))
+        except (TypeError, ValueError, RecursionError):
+            raise InputError(
+                f"{argument}: {key!r} holds no JSON value (text, finite number, list, mapping)"
+            ) from None
+    return MappingProxyType(copy)

@@ -1,0 +1,123 @@
+"""One self-contained HTML page about an estimate, with its pictures inside."""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Callable
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from jointid import plotting
+from jointid.estimate import Estimate
+from jointid.files import write_whole
+from jointid.tables import html_table, html_warnings, quality
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_CSS = """
+body { font: 15px/1.5 system-ui, sans-serif; color: #222; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
+h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2rem; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
+th, td { padding: .25rem .8rem; border-bottom: 1px solid #ddd; text-align: left; }
+td:nth-child(2), td:nth-child(3) { text-align: right; }
+table.facts td:nth-child(2) { text-align: left; }
+figure { margin: 1rem 0; } img { max-width: 100%; height: auto; }
+figcaption { color: #555; font-size: .9rem; }
+ul.warnings li { margin-bottom: .4rem; }
+footer { margin-top: 3rem; color: #777; font-size: .85rem; }
+"""
+
+
+def html_report(estimate: Estimate) -> str:
+    """The report as one HTML page that needs no other file.
+
+    Parameters
+    ----------
+    estimate : Estimate
+    """
+    title = f"{escape(estimate.joint.name or 'joint')}: friction identified by jointid"
+    parts = [
+        "<!doctype html><html lang='en'><head><meta charset='utf-8'>",
+        f"<title>{title}</title><style>{_CSS}</style></head><body><h1>{title}</h1>",
+        "<h2>Parameters</h2>",
+        html_table(estimate),
+        "<h2>What to mind</h2>",
+        html_warnings(estimate),
+        "<h2>Friction map</h2>",
+        _picture(
+            "Friction map: a grey point is the friction that the recording shows over one window, the line is the "
+            "identified model with its 95 % band.",
+            lambda axes: plotting.friction_map(None, estimate, axes[0]),
+        ),
+        "<h2>Windows</h2>",
+        _picture(
+            "Above: what was measured over each window and what the model makes of it. Below: the difference. Windows "
+            "in which the joint stands still are left out.",
+            lambda axes: (
+                plotting.window_means(estimate, axes[0]),
+                plotting.residuals(estimate, axes[1]),
+            ),
+            rows=2,
+        ),
+    ]
+    if estimate.convergence is not None:
+        parts += [
+            "<h2>Convergence</h2>",
+            _picture(
+                "The genetic search, generation by generation; dashed: the penalty after the local polish.",
+                lambda axes: plotting.convergence(estimate, axes[0]),
+            ),
+        ]
+    parts += ["<h2>How it was found</h2>", _facts(estimate), _footer(estimate), "</body></html>"]
+    return "\n".join(parts)
+
+
+def save_report(estimate: Estimate, path: str | Path) -> Path:
+    """Write the report, whole or not at all; returns its path."""
+    target = Path(path)
+    write_whole(target, html_report(estimate).encode())
+    return target
+
+
+def _picture(caption: str, draw: Callable[[list[Axes]], object], rows: int = 1) -> str:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    with plotting.style():
+        figure = Figure(figsize=(8.0, 3.6 + 1.8 * (rows - 1)))
+        FigureCanvasAgg(figure)  # no pyplot: nothing global, no window, no display needed
+        ratios = [2.0] + [1.0] * (rows - 1)
+        axes = figure.subplots(rows, 1, sharex=True, squeeze=False, height_ratios=ratios)[:, 0]
+        draw(list(axes))
+        for upper in axes[:-1]:
+            upper.set_xlabel("")
+        image = _png(figure)
+    text = escape(caption)
+    return f"<figure><img alt='{text}' src='data:image/png;base64,{image}'><figcaption>{text}</figcaption></figure>"
+
+
+def _png(figure: Figure) -> str:
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=150)
+    return base64.b64encode(buffer.getvalue()).decode("ascii")
+
+
+def _facts(estimate: Estimate) -> str:
+    rows = "".join(
+        f"<tr><td>{escape(label)}</td><td>{escape(text)}</td></tr>"
+        for label, text in quality(estimate)
+    )
+    return f"<table class='facts'>{rows}</table>"
+
+
+def _footer(estimate: Estimate) -> str:
+    settings = estimate.settings
+    runs = "; ".join(
+        f"{escape(str(run['name'] or 'recording'))} ({escape(str(run['fingerprint']))})"
+        for run in settings["recordings"]
+    )
+    return f"<footer>jointid {escape(str(settings['version']))}, seed {settings['seed']}; {runs}</footer>"

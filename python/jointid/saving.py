@@ -1,0 +1,106 @@
+"""Writing a recording: .npz, .csv and .csv.gz, which `load` reads back bit for bit."""
+
+import gzip
+import io
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jointid.errors import InputError
+from jointid.files import write_whole
+from jointid.signals import KINDS, header_unit
+
+if TYPE_CHECKING:
+    from jointid.recording import Recording
+
+SCHEMA = 1
+CSV_MARK = "# jointid recording "
+NPZ_MEMBER = "jointid_recording"
+ENDINGS = (".csv", ".csv.gz", ".npz")
+_ATTRIBUTES = ("name", "kind", "torque_hold", "velocity_derived", "metadata", "truth")
+
+
+def save_recording(recording: "Recording", path: str | os.PathLike[str]) -> None:
+    """Write a recording to a file: see `Recording.save`."""
+    target = Path(path)
+    ending = ending_of(target)
+    if not target.parent.is_dir():
+        raise InputError(f"{target}: the folder '{target.parent}' does not exist; create it first")
+    if target.is_dir():
+        raise InputError(f"{target}: this is a folder; the name of a file is expected")
+    if ending == ".npz":
+        write_whole(target, _npz(recording))
+    elif ending == ".csv":
+        write_whole(target, _csv(recording))
+    else:  # no time stamp inside: the same recording gives the same file
+        write_whole(target, gzip.compress(_csv(recording), compresslevel=6, mtime=0))
+
+
+def ending_of(path: Path) -> str:
+    """Return which of the known endings a file's name has.
+
+    Raises
+    ------
+    InputError
+        None of them.
+    """
+    name = path.name.lower()
+    for ending in (".csv.gz", ".csv", ".npz"):
+        if name.endswith(ending):
+            return ending
+    raise InputError(
+        f"{path}: a name that ends in {path.suffix!r} is not known; {', '.join(ENDINGS)} are"
+    )
+
+
+def _attributes(recording: "Recording") -> str:
+    attributes = {name: getattr(recording, name) for name in _ATTRIBUTES}
+    for name in ("metadata", "truth"):  # JSON knows dict, not read-only views
+        attributes[name] = None if attributes[name] is None else dict(attributes[name])
+    return json.dumps({"schema": SCHEMA, **attributes})
+
+
+def _csv(recording: "Recording") -> bytes:
+    names = recording.signals
+    headers = [f"{name}_{header_unit(name, recording.kind)}" for name in names]
+    columns = [getattr(recording, name).tolist() for name in names]
+    rows = (",".join(map(repr, row)) for row in zip(*columns, strict=True))
+    lines = [CSV_MARK + _attributes(recording), ",".join(headers), *rows, ""]
+    return "\n".join(lines).encode("ascii")
+
+
+def _npz(recording: "Recording") -> bytes:
+    arrays = {name: getattr(recording, name) for name in recording.signals}
+    arrays[NPZ_MEMBER] = np.array(_attributes(recording))
+    stream = io.BytesIO()
+    np.savez_compressed(stream, allow_pickle=False, **arrays)
+    return stream.getvalue()
+
+
+def saved_attributes(text: str, place: str) -> dict[str, object]:
+    """Return what a saved recording says of itself besides its signals.
+
+    Raises
+    ------
+    InputError
+        The text is not what `save_recording` writes, or a later version wrote it.
+    """
+    try:
+        attributes = json.loads(text)
+    except (ValueError, RecursionError):
+        raise InputError(f"{place}: the description of the recording is damaged JSON") from None
+    if not isinstance(attributes, dict):
+        raise InputError(f"{place}: the description of the recording is not a JSON object")
+    schema = attributes.get("schema")
+    if schema != SCHEMA:
+        raise InputError(
+            f"{place}: the recording has the schema {schema!r}, this version reads {SCHEMA}; "
+            "a later jointid may have written it"
+        )
+    kind = attributes.get("kind", KINDS[0])
+    if kind not in KINDS:
+        raise InputError(f"{place}: kind is {kind!r}; {' or '.join(map(repr, KINDS))} is expected")
+    return {key: attributes[key] for key in _ATTRIBUTES if key in attributes}

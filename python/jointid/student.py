@@ -1,0 +1,8 @@
+"""Student's t."""
+
+
+def quantile(probability: float, freedom: int) -> float:
+    """Quantile of Student's t with `freedom` degrees of freedom."""
+    from scipy.special import stdtrit
+
+    return float(stdtrit(freedom, probability))

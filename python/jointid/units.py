@@ -1,0 +1,152 @@
+"""Units that a header or `units=` may name, and their way to SI."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jointid.errors import InputError
+
+_BLANKS = str.maketrans("", "", "·⋅*. \u00a0")
+_SPELLINGS = {"°": "deg", "µ": "u", "μ": "u", "/": "_", "_per_": "_"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unit:
+    """A unit of measurement.
+
+    Attributes
+    ----------
+    name : str
+        As it stands in a header, e.g. ``"rad_s"``.
+    dimension : str
+        What it measures, in words: ``"angle"``, ``"torque"``, ...
+    factor : float
+        SI value of one of it. Default 1.
+    offset : float
+        Added after the factor, in SI units. Default 0; only temperatures have one.
+    """
+
+    name: str
+    dimension: str
+    factor: float = 1.0
+    offset: float = 0.0
+
+    def to_si(self, values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return the values in SI units (temperatures in °C); SI values keep their very bits."""
+        if self.factor == 1.0 and self.offset == 0.0:
+            return values
+        parts = round(1.0 / self.factor)
+        # An overflow becomes inf, which the recording refuses by name.
+        with np.errstate(over="ignore", under="ignore"):
+            if parts > 1 and self.factor == 1.0 / parts:
+                # NOTE: 9 ms / 1000 is the double 0.009, 9 ms * 1e-3 is its neighbour.
+                return values / parts + self.offset
+            return values * self.factor + self.offset
+
+
+_TURN = 2.0 * math.pi
+
+UNITS: dict[str, Unit] = {
+    name: Unit(name=name, dimension=dimension, factor=factor, offset=offset)
+    for name, dimension, factor, offset in [
+        ("rad", "angle", 1.0, 0.0),
+        ("mrad", "angle", 1e-3, 0.0),
+        ("deg", "angle", math.pi / 180.0, 0.0),
+        ("rev", "angle", _TURN, 0.0),
+        ("m", "length", 1.0, 0.0),
+        ("cm", "length", 1e-2, 0.0),
+        ("mm", "length", 1e-3, 0.0),
+        ("um", "length", 1e-6, 0.0),
+        ("s", "time", 1.0, 0.0),
+        ("ms", "time", 1e-3, 0.0),
+        ("us", "time", 1e-6, 0.0),
+        ("ns", "time", 1e-9, 0.0),
+        ("rad_s", "angular velocity", 1.0, 0.0),
+        ("mrad_s", "angular velocity", 1e-3, 0.0),
+        ("deg_s", "angular velocity", math.pi / 180.0, 0.0),
+        ("rev_s", "angular velocity", _TURN, 0.0),
+        ("rpm", "angular velocity", _TURN / 60.0, 0.0),
+        ("m_s", "linear velocity", 1.0, 0.0),
+        ("cm_s", "linear velocity", 1e-2, 0.0),
+        ("mm_s", "linear velocity", 1e-3, 0.0),
+        ("Nm", "torque", 1.0, 0.0),
+        ("mNm", "torque", 1e-3, 0.0),
+        ("kNm", "torque", 1e3, 0.0),
+        ("N", "force", 1.0, 0.0),
+        ("mN", "force", 1e-3, 0.0),
+        ("kN", "force", 1e3, 0.0),
+        ("A", "current", 1.0, 0.0),
+        ("mA", "current", 1e-3, 0.0),
+        ("degC", "temperature", 1.0, 0.0),
+        ("K", "temperature", 1.0, -273.15),
+        ("V", "voltage", 1.0, 0.0),
+        ("mV", "voltage", 1e-3, 0.0),
+        ("raw", "raw reading", 1.0, 0.0),
+    ]
+}
+
+_ALIASES: dict[str, str] = {
+    alias: name
+    for name, aliases in {
+        "rad": "radian radians",
+        "deg": "degree degrees",
+        "m": "metre meter metres meters",
+        "s": "sec second seconds",
+        "rad_s": "rads",
+        "deg_s": "degs dps",
+        "rpm": "rev_min 1_min",
+        "Nm": "n_m",
+        "mNm": "mn_m",
+        "kNm": "kn_m",
+        "degC": "celsius",
+        "K": "kelvin",
+        "raw": "1 - counts lsb",
+    }.items()
+    for alias in aliases.split()
+}
+_BY_FOLDED: dict[str, Unit] = {name.casefold(): unit for name, unit in UNITS.items()}
+
+
+def find_unit(text: str) -> Unit | None:
+    """Return the unit that a text names (`rad_s`, `rad/s`, `N·m`, `°`; any case), or None."""
+    name = text.strip().translate(_BLANKS)
+    for spelling, plain in _SPELLINGS.items():
+        name = name.replace(spelling, plain)
+    if name in UNITS:
+        return UNITS[name]
+    folded = name.casefold()
+    return _BY_FOLDED.get(folded) or UNITS.get(_ALIASES.get(folded, ""))
+
+
+def unit_named(text: str, *, dimensions: tuple[str, ...] = (), place: str = "") -> Unit:
+    """Return the unit that a text names, or say which ones are known.
+
+    Parameters
+    ----------
+    text : str
+        A unit's name.
+    dimensions : tuple of str
+        Dimensions whose units are listed when the name is unknown. Default: all.
+    place : str
+        Where the text stands, put before the message. Default: nowhere.
+
+    Raises
+    ------
+    InputError
+        The unit is unknown.
+    """
+    unit = find_unit(text) if isinstance(text, str) else None
+    if unit is None:
+        known = unit_names(dimensions)
+        before = f"{place}: " if place else ""
+        raise InputError(f"{before}unknown unit {text!r}; known are {', '.join(known)}")
+    return unit
+
+
+def unit_names(dimensions: tuple[str, ...] = ()) -> tuple[str, ...]:
+    """Return the names of the units of some dimensions; without any, of all."""
+    return tuple(
+        name for name, unit in UNITS.items() if not dimensions or unit.dimension in dimensions
+    )

@@ -1,0 +1,116 @@
+"""Units: names as people write them, and values in SI."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from jointid.errors import InputError
+from jointid.units import UNITS, find_unit, unit_named, unit_names
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "si"),
+    [
+        ("rad", 1.25, 1.25),
+        ("mrad", 1250.0, 1.25),
+        ("deg", 180.0, math.pi),
+        ("rev", 0.5, math.pi),
+        ("m", 0.3, 0.3),
+        ("cm", 30.0, 0.3),
+        ("mm", 300.0, 0.3),
+        ("um", 3e5, 0.3),
+        ("s", 2.5, 2.5),
+        ("ms", 2500.0, 2.5),
+        ("us", 2.5e6, 2.5),
+        ("ns", 2.5e9, 2.5),
+        ("rad_s", 3.0, 3.0),
+        ("mrad_s", 3000.0, 3.0),
+        ("deg_s", 90.0, math.pi / 2),
+        ("rev_s", 1.0, 2 * math.pi),
+        ("rpm", 60.0, 2 * math.pi),
+        ("m_s", 0.1, 0.1),
+        ("cm_s", 10.0, 0.1),
+        ("mm_s", 100.0, 0.1),
+        ("Nm", 7.0, 7.0),
+        ("mNm", 7000.0, 7.0),
+        ("kNm", 0.007, 7.0),
+        ("N", 12.0, 12.0),
+        ("mN", 12000.0, 12.0),
+        ("kN", 0.012, 12.0),
+        ("A", 8.0, 8.0),
+        ("mA", 8000.0, 8.0),
+        ("degC", 28.0, 28.0),
+        ("K", 301.15, 28.0),
+        ("V", 1.5, 1.5),
+        ("mV", 1500.0, 1.5),
+        ("raw", 2048.0, 2048.0),
+    ],
+)
+def test_values_become_si(name: str, value: float, si: float) -> None:
+    assert UNITS[name].to_si(np.array([value]))[0] == pytest.approx(si, rel=1e-14)
+
+
+def test_every_unit_is_tested_above() -> None:
+    marks = test_values_become_si.pytestmark  # type: ignore[attr-defined]
+    assert {case[0] for case in marks[0].args[1]} == set(UNITS)
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("rad/s", "rad_s"),
+        ("RAD_S", "rad_s"),
+        ("deg/s", "deg_s"),
+        ("°/s", "deg_s"),
+        ("°", "deg"),
+        ("°C", "degC"),
+        ("N·m", "Nm"),
+        ("N m", "Nm"),
+        ("N*m", "Nm"),
+        ("N_m", "Nm"),
+        ("NM", "Nm"),
+        ("μs", "us"),
+        ("µs", "us"),
+        (" ms ", "ms"),
+        ("ma", "mA"),
+        ("m/s", "m_s"),
+        ("1", "raw"),
+        ("1/min", "rpm"),
+        ("degrees", "deg"),
+        ("rad_per_s", "rad_s"),
+    ],
+)
+def test_spellings(text: str, name: str) -> None:
+    assert find_unit(text) is UNITS[name]
+
+
+@pytest.mark.parametrize("text", ["", "furlong", "rad_rad", "Nms", "__"])
+def test_what_is_no_unit(text: str) -> None:
+    assert find_unit(text) is None
+
+
+def test_unknown_unit_lists_the_known_ones() -> None:
+    with pytest.raises(InputError, match=r"^run\.csv: unknown unit 'furlong'; known are m, cm"):
+        unit_named("furlong", dimensions=("length",), place="run.csv")
+
+
+def test_names_by_dimension() -> None:
+    assert unit_names(("current",)) == ("A", "mA")
+    assert unit_names() == tuple(UNITS)
+
+
+def test_milliseconds_are_the_decimal_second() -> None:
+    """9 ms is the number that 0.009 s reads as, and not its neighbour."""
+    stamps = np.arange(100_000.0)
+    seconds = UNITS["ms"].to_si(stamps)
+    assert all(second == float(f"{int(k)}e-3") for k, second in zip(stamps, seconds, strict=True))
+
+
+@given(st.lists(st.floats(allow_nan=False), min_size=1))
+def test_si_values_keep_their_bits(values: list[float]) -> None:
+    array = np.array(values)
+    for name in ("rad", "m", "s", "Nm", "N", "A", "degC", "raw"):
+        assert UNITS[name].to_si(array).tobytes() == array.tobytes()
