@@ -62,6 +62,9 @@ Penalty::Penalty(std::vector<Recording> recordings, const std::vector<std::strin
     recording_of_.insert(recording_of_.end(), cut.back().size(), static_cast<int>(i));
   }
   const auto rows = static_cast<Eigen::Index>(windows_.size());
+  if (rows == 0) {
+    throw std::invalid_argument("the joint stands still or sticks throughout: record motion");
+  }
   if (rows < parameters()) {
     throw std::invalid_argument(
         "windows: " + std::to_string(rows) + " windows with motion cannot determine " +

@@ -153,8 +153,9 @@ void Recording::validate() const {
 
 UsableIntervals usable_intervals(const Recording& r, bool mask_standstill) {
   const double peak = r.velocity.cwiseAbs().maxCoeff();
-  if (!(peak > 0.0))
-    throw std::invalid_argument("the joint never moves: velocity is zero throughout");
+  if (!(peak > 0.0) || r.position.maxCoeff() == r.position.minCoeff()) {
+    throw std::invalid_argument("the joint never moves: there is no friction to identify");
+  }
   const auto n = static_cast<std::size_t>(r.samples());
   UsableIntervals result{std::vector<std::uint8_t>(n - 1, 1), 0};
   if (mask_standstill) {

@@ -161,7 +161,7 @@ def _undetermined(facts: Facts) -> Iterator[Warned]:
     yield Warned(
         code="undetermined",
         parameters=tuple(found),
-        message=message + "; to cure it, " + ", and ".join(advice),
+        message=message + " — " + "; ".join(advice),
     )
 
 

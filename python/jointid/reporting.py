@@ -12,7 +12,13 @@ from typing import TYPE_CHECKING
 from jointid import plotting
 from jointid.estimate import Estimate
 from jointid.files import write_whole
-from jointid.tables import html_table, html_warnings, quality
+from jointid.tables import (
+    html_correlation,
+    html_shifts,
+    html_table,
+    html_warnings,
+    quality,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,6 +31,7 @@ table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .25rem .8rem; border-bottom: 1px solid #ddd; text-align: left; }
 td:nth-child(2), td:nth-child(3) { text-align: right; }
 table.facts td:nth-child(2) { text-align: left; }
+table.numbers th { text-align: left; font-weight: normal; } table.numbers td { text-align: right; }
 figure { margin: 1rem 0; } img { max-width: 100%; height: auto; }
 figcaption { color: #555; font-size: .9rem; }
 ul.warnings li { margin-bottom: .4rem; }
@@ -72,7 +79,17 @@ def html_report(estimate: Estimate) -> str:
                 lambda axes: plotting.convergence(estimate, axes[0]),
             ),
         ]
-    parts += ["<h2>How it was found</h2>", _facts(estimate), _footer(estimate), "</body></html>"]
+    parts += [
+        "<h2>How far to trust it</h2>",
+        "<p>Shift of each value when the windows are halved and doubled; about a standard error is usual.</p>",
+        html_shifts(estimate),
+        "<p>Correlation of the estimates (offsets taken at the mean reading); near ±1, two cannot be told apart.</p>",
+        html_correlation(estimate),
+        "<h2>How it was found</h2>",
+        _facts(estimate),
+        _footer(estimate),
+        "</body></html>",
+    ]
     return "\n".join(parts)
 
 

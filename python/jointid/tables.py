@@ -2,6 +2,8 @@
 
 from html import escape
 
+import numpy as np
+
 from jointid.diagnosis import percent
 from jointid.estimate import Estimate
 from jointid.findings import ParameterEstimate
@@ -21,6 +23,13 @@ def number(value: float) -> str:
     return f"{value:.6g}"
 
 
+def two_digits(value: float) -> str:
+    """Two significant digits, as people write them: 110, not 1.1e+02."""
+    if not np.isfinite(value) or value < 1e-4:
+        return f"{value:.2g}"
+    return str(np.format_float_positional(float(f"{value:.1e}"), trim="-"))
+
+
 def rows(estimate: Estimate) -> list[tuple[str, str, str, str, str, str]]:
     """The parameter table, one row a parameter."""
     table = []
@@ -28,7 +37,7 @@ def rows(estimate: Estimate) -> list[tuple[str, str, str, str, str, str]]:
         error = interval = ""
         if p.stderr is not None and p.interval is not None:
             share = f" ({percent(p.stderr / abs(p.value))})" if p.value else ""
-            error = f"{p.stderr:.2g}{share}"
+            error = f"{two_digits(p.stderr)}{share}"
             interval = f"{p.interval[0]:.5g} … {p.interval[1]:.5g}"
         table.append((p.name, number(p.value), error, interval, p.unit, remark(p)))
     return table
@@ -61,8 +70,19 @@ def quality(estimate: Estimate) -> list[tuple[str, str]]:
             "condition",
             f"{estimate.condition:.3g}, weakest direction: {', '.join(estimate.weakest)}",
         ),
+        ("correlation", strongest_correlation(estimate)),
         ("search", f"{estimate.message}; {estimate.status} in {estimate.seconds:.2f} s"),
     ]
+
+
+def strongest_correlation(estimate: Estimate) -> str:
+    """The pair of parameters that the recording separates least."""
+    size = np.abs(np.triu(estimate.correlation, 1))
+    if size.size < 2:
+        return "a single free parameter"
+    first, second = np.unravel_index(int(np.argmax(size)), size.shape)
+    pair = f"{estimate.free[first]} and {estimate.free[second]}"
+    return f"strongest {estimate.correlation[first, second]:.2f}, between {pair}"
 
 
 def text_report(estimate: Estimate) -> str:
@@ -87,6 +107,28 @@ def text_report(estimate: Estimate) -> str:
         lines.append("no warnings")
     lines += [f"warning ({w.code}): {w.message}" for w in estimate.warnings]
     return "\n".join(lines)
+
+
+def html_correlation(estimate: Estimate) -> str:
+    """The correlation matrix of the free parameters as HTML."""
+    head = "".join(f"<th>{escape(name)}</th>" for name in ("", *estimate.free))
+    body = ""
+    for name, row in zip(estimate.free, estimate.correlation, strict=True):
+        body += f"<tr><th>{escape(name)}</th>" + "".join(f"<td>{x:.2f}</td>" for x in row) + "</tr>"
+    return f"<table class='numbers'><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def html_shifts(estimate: Estimate) -> str:
+    """How each value moves when the windows are halved and doubled, as HTML."""
+    head = "<th>parameter</th><th>windows halved</th><th>windows doubled</th><th>std. error</th><th>unit</th>"
+    body = ""
+    for p in estimate.parameters.values():
+        if p.vary:
+            shown = (p.shift_halved, p.shift_doubled)
+            cells = "".join(f"<td>{'–' if s is None else f'{s:+.3g}'}</td>" for s in shown)
+            cells += f"<td>{'–' if p.stderr is None else two_digits(p.stderr)}</td>"
+            body += f"<tr><th>{escape(p.name)}</th>{cells}<th>{escape(p.unit)}</th></tr>"
+    return f"<table class='numbers'><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
 def html_table(estimate: Estimate) -> str:

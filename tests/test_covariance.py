@@ -1,0 +1,74 @@
+"""Standard errors: right for white residuals, wide enough for drifting ones, infinite where nothing is known."""
+
+import numpy as np
+import pytest
+
+from jointid.covariance import parameter_covariance
+from jointid.student import quantile
+
+ROWS = 400
+
+
+def _design(rng: np.random.Generator) -> np.ndarray:
+    time = np.linspace(0.0, 1.0, ROWS)
+    return np.column_stack([np.ones(ROWS), np.sin(7.0 * time), rng.normal(size=ROWS)])
+
+
+def _noise(rng: np.random.Generator, memory: float) -> np.ndarray:
+    white = rng.normal(size=ROWS)
+    noise = np.empty(ROWS)
+    level = white[0] / np.sqrt(1.0 - memory**2)
+    for k in range(ROWS):
+        level = memory * level + white[k] if k else level
+        noise[k] = level
+    return noise
+
+
+@pytest.mark.parametrize(("memory", "low"), [(0.0, 0.92), (0.5, 0.88)])
+def test_intervals_cover(memory: float, low: float) -> None:
+    rng = np.random.default_rng(5)
+    truth = np.array([1.0, -2.0, 0.5])
+    factor = quantile(0.975, ROWS - 3)
+    inside = np.zeros(3)
+    trials = 300
+    for _ in range(trials):
+        design = _design(rng)
+        measured = design @ truth + _noise(rng, memory)
+        found, *_ = np.linalg.lstsq(design, measured, rcond=None)
+        spread = parameter_covariance(design, measured - design @ found, None)
+        inside += np.abs(found - truth) < factor * spread.stderr
+    assert np.all(inside / trials >= low)
+    assert np.all(inside / trials <= 0.995)
+
+
+def test_classical_errors_would_flatter_where_ours_do_not() -> None:
+    rng = np.random.default_rng(6)
+    design = _design(rng)
+    residual = _noise(rng, 0.8)
+    residual -= design @ np.linalg.lstsq(design, residual, rcond=None)[0]
+    variance = residual @ residual / (ROWS - 3)
+    classical = np.sqrt(np.diag(np.linalg.inv(design.T @ design)) * variance)
+    ours = parameter_covariance(design, residual, None).stderr
+    assert ours[0] > 1.5 * classical[0]
+    assert np.all(ours >= classical * (1 - 1e-9))
+
+
+def test_what_nothing_determines_has_an_infinite_error() -> None:
+    rng = np.random.default_rng(7)
+    design = _design(rng)
+    design = np.column_stack([design, design[:, 1] * 3.0, np.zeros(ROWS)])
+    stderr = parameter_covariance(design, rng.normal(size=ROWS), None).stderr
+    assert np.isfinite(stderr[[0, 2]]).all()
+    assert np.isinf(stderr[[1, 3, 4]]).all()
+
+
+def test_centring_takes_the_sensors_zero_out_of_the_correlation() -> None:
+    rng = np.random.default_rng(8)
+    signal = rng.normal(size=ROWS) + 40.0
+    design = np.column_stack([signal, np.ones(ROWS)])
+    residual = rng.normal(size=ROWS)
+    raw = parameter_covariance(design, residual, None)
+    centred = parameter_covariance(design, residual, (0, 1, float(signal.mean())))
+    assert abs(raw.correlation[0, 1]) > 0.99
+    assert abs(centred.correlation[0, 1]) < 1e-6
+    np.testing.assert_allclose(raw.stderr, centred.stderr)
