@@ -59,10 +59,12 @@ void mark_runs(Eigen::Index count, std::vector<std::uint8_t>& mark, Same same,
   }
 }
 
-void mark_sticking(const Recording& r, double peak, std::vector<std::uint8_t>& standing) {
+void mark_sticking(const Recording& r, double peak, const std::vector<std::uint8_t>& after_gap,
+                   std::vector<std::uint8_t>& standing) {
   const double quantum = smallest_positive(r.position, true);
   const auto unchanged = [&](Eigen::Index k) {  // the interval k-1 -> k, told by its end
-    return k > 0 && r.position[k] == r.position[k - 1];
+    return k > 0 && after_gap[static_cast<std::size_t>(k)] == 0 &&
+           r.position[k] == r.position[k - 1];
   };
   mark_runs(r.samples(), standing, unchanged, [&](Eigen::Index first, Eigen::Index last) {
     return last - first >= 2 && r.time[last] - r.time[first - 1] >= quantum / (kResolved * peak);
@@ -99,7 +101,8 @@ double motion_period(const Recording& r) {
   return 2.0 * (r.time[r.samples() - 1] - r.time[0]) / std::max(1, changes);
 }
 
-void mark_standing(const Recording& r, double peak, std::vector<std::uint8_t>& standing) {
+void mark_standing(const Recording& r, double peak, const std::vector<std::uint8_t>& after_gap,
+                   std::vector<std::uint8_t>& standing) {
   const double span = std::max(kShortestStanding, kStandingOfPeriod * motion_period(r));
   const double reach = kSlow * peak * span;
   std::deque<Eigen::Index> highest;
@@ -107,6 +110,11 @@ void mark_standing(const Recording& r, double peak, std::vector<std::uint8_t>& s
   Eigen::Index first = 0;
   Eigen::Index marked = 0;  // samples before this one are settled
   for (Eigen::Index k = 0; k < r.samples(); ++k) {
+    if (after_gap[static_cast<std::size_t>(k)] != 0) {  // nobody saw what happened meanwhile
+      first = k;
+      highest.clear();
+      lowest.clear();
+    }
     while (!highest.empty() && r.position[highest.back()] <= r.position[k]) highest.pop_back();
     while (!lowest.empty() && r.position[lowest.back()] >= r.position[k]) lowest.pop_back();
     highest.push_back(k);
@@ -160,8 +168,10 @@ UsableIntervals usable_intervals(const Recording& r, bool mask_standstill) {
   UsableIntervals result{std::vector<std::uint8_t>(n - 1, 1), 0};
   if (mask_standstill) {
     std::vector<std::uint8_t> standing(n, 0);
-    mark_sticking(r, peak, standing);
-    mark_standing(r, peak, standing);
+    std::vector<std::uint8_t> after_gap(n, 0);
+    for (const auto gap : r.gap_after) after_gap[static_cast<std::size_t>(gap) + 1] = 1;
+    mark_sticking(r, peak, after_gap, standing);
+    mark_standing(r, peak, after_gap, standing);
     result.standing = std::count(standing.begin(), standing.end(), std::uint8_t{1});
     // The interval that touches a stuck sample holds a break-away or a stop; the one beside it has
     // a derived velocity that saw the stop, and friction that changes too fast for the trapezoid.

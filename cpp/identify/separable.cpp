@@ -196,8 +196,11 @@ SeparableResult minimise_separable(const Penalty& penalty, const search::Domain&
   }
   result.best = full(at(at_a <= at_b ? a : b));
   result.penalty = penalty(result.best);
-  for (const double edge : {low, high}) {  // golden sections never touch an end of the domain
-    const Eigen::VectorXd theta = full(at(edge));
+  // Golden sections never touch an end of the domain, and a root squared may miss it by an ulp.
+  const double lowest = domain.lower[p + free_shapes[0]];
+  const double highest = domain.upper[p + free_shapes[0]];
+  for (const double edge : {std::clamp(0.0, lowest, highest), highest}) {
+    const Eigen::VectorXd theta = full(edge);
     const double p_edge = penalty(theta);
     if (p_edge <= result.penalty) {
       result.best = theta;

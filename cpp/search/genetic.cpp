@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <sstream>
 #include <stdexcept>
 
 #include "base/random.hpp"
@@ -14,11 +15,10 @@ namespace {
 
 void require(bool holds, const char* name, double value, const char* limit) {
   if (holds) return;
-  std::string text = std::to_string(value);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  throw std::invalid_argument("GaOptions." + std::string(name) + " must be " + limit + ", got " +
-                              text);
+  std::ostringstream text;
+  text.precision(15);
+  text << "GaOptions." << name << " must be " << limit << ", got " << value;
+  throw std::invalid_argument(text.str());
 }
 
 bool probability(double p) {

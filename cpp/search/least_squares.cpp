@@ -1,6 +1,7 @@
 #include "search/least_squares.hpp"
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -11,6 +12,8 @@ namespace {
 
 constexpr double kRidge =
     1e-9;  // on unit columns: changes a well-posed answer by 1e-18 relative to its conditioning
+constexpr double kViolation =
+    1e-7;  // of the distance moved: beyond, no x satisfies all constraints
 
 Eigen::VectorXd solve_columns(const Eigen::MatrixXd& a, const Eigen::VectorXd& b,
                               const std::vector<Eigen::Index>& set) {
@@ -98,13 +101,21 @@ LeastSquaresResult constrained_least_squares(const Eigen::MatrixXd& a, const Eig
   result.x = upper.solve(f).cwiseProduct(scale);
   result.feasible = true;
   if (g.rows() == 0) return result;
-  const double slack = 1e-12 * (1.0 + h.cwiseAbs().maxCoeff());
-  if (((g * result.x - h).array() >= -slack).all()) return result;
+  const Eigen::ArrayXd size = (g.cwiseAbs() * result.x.cwiseAbs() + h.cwiseAbs()).array();
+  if (((g * result.x - h).array() >= -1e-12 * size).all()) return result;
 
   // z = R x' - f with x = scale x':  min |z| subject to (G scale R^-1) z >= h - G scale R^-1 f.
   const Eigen::MatrixXd scaled = g * scale.asDiagonal();
   const Eigen::MatrixXd distance = upper.transpose().solve(scaled.transpose()).transpose();
   Eigen::VectorXd offset = h - distance * f;
+  // In units of the farthest single constraint, so that |z| is not far from 1 whatever the units of
+  // the data: the method finds |z|^2 only to rounding of 1.
+  double reach = 0.0;
+  for (Eigen::Index i = 0; i < g.rows(); ++i) {
+    const double norm = distance.row(i).norm();
+    if (norm > 0.0) reach = std::max(reach, offset[i] / norm);
+  }
+  if (reach > 0.0) offset /= reach;
   // Rows of unit norm: bounds of large and small parameters weigh the same.
   Eigen::MatrixXd dual(n + 1, g.rows());
   for (Eigen::Index i = 0; i < g.rows(); ++i) {
@@ -122,7 +133,10 @@ LeastSquaresResult constrained_least_squares(const Eigen::MatrixXd& a, const Eig
     return result;
   }
   const Eigen::VectorXd z = -gap.head(n) / gap[n];
-  result.x = upper.solve(z + f).cwiseProduct(scale);
+  const Eigen::ArrayXd margin = (distance * z - offset).array();
+  result.feasible = (margin >= -kViolation * z.norm() * distance.rowwise().norm().array()).all();
+  if (!result.feasible) return result;
+  result.x = upper.solve((reach > 0.0 ? reach : 1.0) * z + f).cwiseProduct(scale);
   return result;
 }
 

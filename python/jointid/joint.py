@@ -3,8 +3,8 @@
 import functools
 import math
 import os
-from collections.abc import Collection, Mapping
-from dataclasses import MISSING, dataclass, field, fields, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, Self, get_args
 
@@ -16,10 +16,14 @@ from jointid.errors import InputError
 from jointid.parameters import (
     FieldError,
     Parameter,
+    check_choice,
     check_flag,
     finite_number,
     merge,
+    not_negative,
     parameter_table,
+    positive_number,
+    set_numbers,
     suggestion,
 )
 
@@ -37,13 +41,7 @@ _INERTIA_TOLERANCE = 1e-3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GravityCoefficients:
-    """Torque of gravity at the joint as ``cos * cos(q) + sin * sin(q)``.
-
-    Attributes
-    ----------
-    cos, sin : float
-        [N·m]
-    """
+    """Torque of gravity at the joint [N·m] as ``cos * cos(q) + sin * sin(q)``."""
 
     cos: float
     sin: float
@@ -63,7 +61,7 @@ class Link:
         Angle of the centre of mass above the horizontal where the position is zero [rad].
         Default 0.
     inertia : float, optional
-        About the joint's axis [kg·m²]. Default: not known.
+        About the joint's axis [kg·m²].
     gravity : float
         [m/s²], across the axis. Default 9.80665.
 
@@ -80,14 +78,8 @@ class Link:
     gravity: float = STANDARD_GRAVITY
 
     def __post_init__(self) -> None:
-        for item in fields(self):
-            value = getattr(self, item.name)
-            if item.name == "inertia" and value is None:
-                continue
-            number = finite_number("link", item.name, value)
-            if item.name != "angle" and number < 0.0:
-                raise FieldError("link", item.name, f"is {number!r}; 0 or more is expected")
-            object.__setattr__(self, item.name, number)
+        set_numbers(self, "link", ("angle",), finite_number)
+        set_numbers(self, "link", ("mass", "centre_of_mass", "inertia", "gravity"), not_negative)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,12 +90,8 @@ class Limits:
     ----------
     position : tuple of float, optional
         Lowest and highest [rad] or [m].
-    velocity : float, optional
-        Largest magnitude [rad/s] or [m/s].
-    torque : float, optional
-        Largest magnitude at the output [N·m] or [N].
-    current : float, optional
-        Largest magnitude in the motor [A].
+    velocity, torque, current : float, optional
+        Largest magnitude: [rad/s] or [m/s]; at the output, [N·m] or [N]; in the motor, [A].
 
     Raises
     ------
@@ -118,10 +106,15 @@ class Limits:
 
     def __post_init__(self) -> None:
         if self.position is not None:
-            object.__setattr__(self, "position", _range("limits", "position", self.position))
-        for name in ("velocity", "torque", "current"):
-            if getattr(self, name) is not None:
-                object.__setattr__(self, name, _positive("limits", name, getattr(self, name)))
+            if not isinstance(self.position, list | tuple) or len(self.position) != 2:
+                sentence = f"is {self.position!r}; [lowest, highest] is expected"
+                raise FieldError("limits", "position", sentence)
+            low, high = (finite_number("limits", "position", bound) for bound in self.position)
+            if not low < high:
+                sentence = f"is [{low!r}, {high!r}]; the lower limit comes first, then the higher"
+                raise FieldError("limits", "position", sentence)
+            object.__setattr__(self, "position", (low, high))
+        set_numbers(self, "limits", ("velocity", "torque", "current"), positive_number)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -158,21 +151,14 @@ class Joint:
     torque_offset : bool, optional
         Whether the torque has a constant offset. Default: only without a sensor.
     link : Link, optional
-        Default: not known.
     parameters : mapping of str to Parameter
         What is known of each parameter: values, bounds of the search. Default: nothing.
     limits : Limits
-        Default: none known.
 
     Raises
     ------
     InputError
         A field that cannot be used, or fields that contradict each other.
-
-    Notes
-    -----
-    The model is eq. (4-2) to (4-4) of the thesis this package began with:
-    ``inertia * acceleration + friction + link torque = torque``.
     """
 
     name: str = ""
@@ -191,29 +177,35 @@ class Joint:
     limits: Limits = field(default_factory=Limits)
 
     def __post_init__(self) -> None:
-        owner = _checked_name(self.name)
-        for name, known in (("kind", get_args(Kind)), ("friction", _core.model_names())):
-            _check_choice(owner, name, getattr(self, name), known)
+        if not isinstance(self.name, str):
+            raise FieldError("joint", "name", f"is {self.name!r}; a text is expected")
+        if any("\ud800" <= letter <= "\udfff" for letter in self.name):
+            raise FieldError("joint", "name", f"is {self.name!r}, which no file can hold")
+        owner = self._owner
+        check_choice(owner, "kind", self.kind, get_args(Kind))
+        check_choice(owner, "friction", self.friction, _core.model_names())
+        check_choice(owner, "gravity", self.gravity, get_args(Gravity))
         if self.torque_hold is not None:
-            _check_choice(owner, "torque_hold", self.torque_hold, get_args(TorqueHold))
-        _check_choice(owner, "gravity", self.gravity, get_args(Gravity))
-        for name in ("inertia", "rotor_inertia", "torque_constant"):
-            if getattr(self, name) is not None:
-                object.__setattr__(self, name, _positive(owner, name, getattr(self, name)))
-        object.__setattr__(self, "gear_ratio", finite_number(owner, "gear_ratio", self.gear_ratio))
+            check_choice(owner, "torque_hold", self.torque_hold, get_args(TorqueHold))
+        set_numbers(self, owner, ("inertia", "rotor_inertia", "torque_constant"), positive_number)
+        set_numbers(self, owner, ("gear_ratio",), finite_number)
         if self.gear_ratio == 0.0:
             raise FieldError(owner, "gear_ratio", "is 0; 1 stands for a joint without a gear")
         check_flag(owner, "sensor", self.sensor)
         if self.torque_offset is not None:
             check_flag(owner, "torque_offset", self.torque_offset)
-        if self.link is not None and not isinstance(self.link, Link):
+        if not isinstance(self.link, Link | None):
             raise FieldError(owner, "link", f"is {self.link!r}; a Link is expected")
         if not isinstance(self.limits, Limits):
             raise FieldError(owner, "limits", f"is {self.limits!r}; Limits are expected")
-        table = parameter_table(self.parameters)
-        object.__setattr__(self, "parameters", MappingProxyType(table))
+        table = MappingProxyType(parameter_table(self.parameters))
+        object.__setattr__(self, "parameters", table)
         self._check_inertia(owner)
         self._check_gravity(owner)
+
+    @property
+    def _owner(self) -> str:
+        return f"joint '{self.name}'" if self.name else "joint"
 
     def _check_inertia(self, owner: str) -> None:
         if self.rotor_inertia is None:
@@ -222,34 +214,24 @@ class Joint:
         product = f"gear_ratio² · rotor_inertia is {reflected:.6g}"
         if not math.isfinite(reflected) or reflected == 0.0:
             raise FieldError(owner, "rotor_inertia", f"cannot be used: {product} kg·m²")
-        if (
-            self.inertia is not None
-            and abs(self.inertia - reflected) > _INERTIA_TOLERANCE * reflected
-        ):
-            raise FieldError(
-                owner, "inertia", f"is {self.inertia!r}, but {product}; give only one of the two"
-            )
+        tolerance = _INERTIA_TOLERANCE * reflected
+        if self.inertia is not None and abs(self.inertia - reflected) > tolerance:
+            sentence = f"is {self.inertia!r}, but {product}; give only one of the two"
+            raise FieldError(owner, "inertia", sentence)
 
     def _check_gravity(self, owner: str) -> None:
-        if self.gravity == "none":
-            return
-        if self.kind == "prismatic":
-            raise FieldError(
-                owner,
-                "gravity",
+        if self.gravity != "none" and self.kind == "prismatic":
+            sentence = (
                 f"is {self.gravity!r} on a prismatic joint, whose weight is the same everywhere; "
-                "use 'none' with torque_offset = true",
+                "use 'none' with torque_offset = true"
             )
+            raise FieldError(owner, "gravity", sentence)
         if self.gravity == "known" and self.link is None:
-            raise FieldError(
-                owner,
-                "gravity",
-                "is 'known', but there is no link; give [link] with mass and centre_of_mass, "
-                "or use 'free' to have it identified",
-            )
+            sentence = "is 'known', but there is no link; give its mass and centre_of_mass"
+            raise FieldError(owner, "gravity", sentence)
 
-    @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Self:
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> "Joint":
         """Return the joint that a joint file (TOML) describes.
 
         Raises
@@ -260,8 +242,7 @@ class Joint:
         """
         from jointid.joint_file import load_joint
 
-        loaded = load_joint(path)
-        return cls(**_values(loaded))
+        return load_joint(path)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the joint to a joint file, whole or not at all.
@@ -328,10 +309,10 @@ class Joint:
             The joint has no link.
         """
         if self.link is None:
-            raise InputError(f"{_owner(self.name)}: the torque of gravity needs a link; give one")
+            raise InputError(f"{self._owner}: the torque of gravity needs a link; give one")
         weight = self.link.mass * self.link.gravity * self.link.centre_of_mass
         return GravityCoefficients(
-            cos=weight * math.cos(self.link.angle), sin=-weight * math.sin(self.link.angle)
+            cos=weight * math.cos(self.link.angle), sin=0.0 - weight * math.sin(self.link.angle)
         )
 
     def output_torque(self, recording: "Recording") -> NDArray[np.float64]:
@@ -364,18 +345,14 @@ class Joint:
             )
         if self.torque_constant is None:
             raise InputError(
-                f"the recording has only 'current', and {_owner(self.name)} has no "
+                f"the recording has only 'current', and {self._owner} has no "
                 "torque_constant; give it in N·m/A, in the joint file under [drive]"
             )
         return recording.current * (self.torque_constant * self.gear_ratio)
 
     def __repr__(self) -> str:
-        shown = []
-        for item in fields(self):
-            value = _values(self)[item.name]
-            usual = item.default_factory() if item.default_factory is not MISSING else item.default
-            if value != usual:
-                shown.append(f"{item.name}={value!r}")
+        usual = _values(Joint())
+        shown = [f"{name}={v!r}" for name, v in _values(self).items() if v != usual[name]]
         return f"Joint({', '.join(shown)})"
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -396,7 +373,9 @@ def thesis_joint() -> Joint:
         "sensor_offset": (-30.0, 30.0),
         "sensor_gain": (0.1, 5.0),
     }
-    length, mass = 0.5, 3.0  # of the link, a slender rod held at its end
+    mass, length = 3.0, 0.5  # a slender rod held at its end
+    centre, inertia = length / 2.0, mass * length**2 / 3.0
+    link = Link(mass=mass, centre_of_mass=centre, inertia=inertia, gravity=9.817)
     return Joint(
         name="thesis joint",
         rotor_inertia=2.472e-4,
@@ -406,9 +385,7 @@ def thesis_joint() -> Joint:
         sensor=True,
         friction="stribeck",
         gravity="none",  # behind the sensor, which measures it with the link's torque
-        link=Link(
-            mass=mass, centre_of_mass=length / 2.0, inertia=mass * length**2 / 3.0, gravity=9.817
-        ),
+        link=link,
         parameters={
             name: Parameter(name=name, min=low, max=high) for name, (low, high) in domain.items()
         },
@@ -420,42 +397,3 @@ def _values(joint: Joint) -> dict[str, Any]:
     """Return the arguments that build this joint again."""
     values = {item.name: getattr(joint, item.name) for item in fields(joint)}
     return values | {"parameters": dict(joint.parameters)}
-
-
-def _owner(name: str) -> str:
-    return f"joint '{name}'" if name else "joint"
-
-
-def _checked_name(name: object) -> str:
-    if not isinstance(name, str):
-        raise FieldError("joint", "name", f"is {name!r}; a text is expected")
-    try:
-        name.encode()
-    except UnicodeEncodeError:
-        raise FieldError("joint", "name", f"is {name!r}, which no file can hold") from None
-    return _owner(name)
-
-
-def _check_choice(owner: str, name: str, value: object, known: Collection[str]) -> None:
-    if value not in known:
-        raise FieldError(owner, name, f"is {value!r}, which is unknown; {suggestion(value, known)}")
-
-
-def _positive(owner: str, name: str, value: object) -> float:
-    number = finite_number(owner, name, value)
-    if number <= 0.0:
-        raise FieldError(
-            owner, name, f"is {number!r}; more than 0 is expected, leave it out when not known"
-        )
-    return number
-
-
-def _range(owner: str, name: str, value: Any) -> tuple[float, float]:
-    if not isinstance(value, list | tuple) or len(value) != 2:
-        raise FieldError(owner, name, f"is {value!r}; lowest and highest, [low, high], is expected")
-    low, high = (finite_number(owner, name, bound) for bound in value)
-    if not low < high:
-        raise FieldError(
-            owner, name, f"is [{low!r}, {high!r}]; the lower limit comes first, then the higher"
-        )
-    return low, high

@@ -8,6 +8,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any, NoReturn
 
+from jointid import _core
 from jointid.errors import InputError
 from jointid.files import write_whole
 from jointid.joint import Joint, Limits, Link
@@ -240,78 +241,153 @@ def _edited(before: str, joint: Joint, path: Path) -> str:
     import tomlkit
 
     windows = "\r\n" in before
-    editable = tomlkit.parse(before.replace("\r\n", "\n"))
-    wanted = joint_document(joint)
-    if "sensor" in editable:  # a sensor that is gone leaves its table, and what is said there
-        wanted["sensor"] = {"present": joint.sensor}
-    _update(editable, wanted, _KEPT)
-    text = tomlkit.dumps(editable)
-    # The promise is checked, not trusted: TOML can be laid out in very many ways.
-    if joint_from_document(_parsed(text, path), str(path)) != joint:
-        raise InputError(
-            f"{path}: the layout of this file cannot be kept; save the joint as a new file"
-        )
-    return text.replace("\n", "\r\n") if windows else text
+    for inline in (False, True):
+        editable = tomlkit.parse(before.replace("\r\n", "\n"))
+        wanted = joint_document(joint)
+        # Tables that may be empty stay, with what is said there.
+        if "sensor" in editable:
+            bare = "present" not in editable["sensor"]
+            wanted["sensor"] = {} if bare and joint.sensor else {"present": joint.sensor}
+        for table in {"parameters", "limits"} & set(editable):
+            wanted.setdefault(table, {})
+        unsaid = {} if inline else _defaults(new=not before.strip())
+        _update([editable], wanted, unsaid, kept=_KEPT, inline=inline)
+        text = tomlkit.dumps(editable)
+        # The promise is checked, not trusted: TOML can be laid out in very many ways, and not
+        # in all of them a new table may have lines of its own, or be empty.
+        try:
+            if joint_from_document(tomllib.loads(text), str(path)) == joint:
+                return text.replace("\n", "\r\n") if windows else text
+        except ValueError:
+            continue
+    raise InputError(
+        f"{path}: the layout of this file cannot be kept; save the joint as a new file"
+    )
 
 
-def _update(table: Any, wanted: Mapping[str, Any], kept: Collection[str] = ()) -> None:
-    """Change a tomlkit table where it differs, and leave the rest as it was written."""
-    for key in [key for key in table if key not in wanted and key not in kept]:
-        _remove(table, key)
+def _defaults(*, new: bool) -> dict[str, Any]:
+    """Return tables and keys that are not added: they go without saying."""
+    # NOTE: with the value, so that a whole table never goes without saying.
+    unsaid = {name: {"value": None, "vary": True} for name in _core.parameter_names()}
+    if new:  # tells a reader what there is to change
+        return {"parameters": unsaid}
+    link = {field.name: field.default for field in fields(Link)}
+    return {**joint_document(Joint()), "link": link, "parameters": unsaid}
+
+
+def _update(
+    parts: list[Any],
+    wanted: Mapping[str, Any],
+    unsaid: Mapping[str, Any],
+    *,
+    kept: Collection[str] = (),
+    inline: bool,
+) -> None:
+    """Change a tomlkit table, in one or several parts, where it differs; leave the rest."""
+    for part in parts:
+        for key in [key for key in part if key not in wanted and key not in kept]:
+            _remove(part, key)
     for key, value in wanted.items():
-        present = table.get(key)
-        if isinstance(value, Mapping) and isinstance(present, Mapping):
-            _update(present, value)
-        elif isinstance(value, Mapping):
-            _insert(table, key, value)
-        elif present is None and value is True and key in ("vary", "present"):
-            continue  # goes without saying
-        elif present is None or present != value:
-            table[key] = value
+        part = next((part for part in parts if key in part), None)
+        usual = unsaid.get(key, {})
+        if part is None:
+            if value != usual:
+                _add(parts[-1], key, _entries(value, usual, inline))
+        elif isinstance(value, Mapping) and isinstance(part[key], Mapping):
+            inner = [table for whole in parts for table in _parts(whole, key)]
+            _update(inner, value, usual, inline=inline)
+        else:
+            fixed = isinstance(value, Mapping) and not value.keys() - {"value", "vary"}
+            if fixed and value["vary"] is False:
+                value = value["value"]  # as it was: by a number alone
+            if part[key] != value:
+                part[key] = _entries(value, usual, inline)
 
 
-def _insert(table: Any, key: str, value: Mapping[str, Any]) -> None:
-    """Put a table where there is none yet, or where there is a number that fixes a parameter."""
-    if key in table and set(value) == {"value", "vary"} and not value["vary"]:
-        if table[key] != value["value"]:
-            table[key] = value["value"]
-        return
-    entries = {
-        name: {k: v for k, v in entry.items() if (k, v) != ("vary", True)}
-        if isinstance(entry, Mapping)
-        else entry
-        for name, entry in value.items()
-        if (name, entry) != ("vary", True)
+def _entries(value: Any, unsaid: Any, inline: bool) -> Any:
+    """Return a value as it is put into a tomlkit table."""
+    import tomlkit
+
+    if not isinstance(value, Mapping):
+        return value
+    said = {
+        key: _entries(entry, unsaid.get(key, {}), inline)
+        for key, entry in value.items()
+        if entry != unsaid.get(key, {})
     }
-    table[key] = entries
+    if not inline:
+        return said
+    table = tomlkit.inline_table()
+    table.update(said)
+    return table
+
+
+def _body(table: Any) -> list[Any]:
+    """Return keys, comments and blank lines of a tomlkit document or table as (key, item)."""
+    from tomlkit.container import Container
+
+    body: list[Any] = (table if isinstance(table, Container) else table.value).body
+    return body
+
+
+def _parts(table: Any, key: str) -> list[Any]:
+    """Return the parts of an inner table, which other tables may lie between."""
+    from tomlkit.items import Table
+
+    found = [item for name, item in _body(table) if name is not None and name.key == key]
+    blocks = [item for item in found if isinstance(item, Table)]
+    return blocks or found
+
+
+def _add(table: Any, key: str, value: Any) -> None:
+    """Put a new key behind the last one, in front of the comments that lead to what follows."""
+    from tomlkit.items import Table
+
+    if isinstance(table, Table):
+        body = _last_body(table)
+        start = _tail_start(body)
+        tail = body[start:]
+        del body[start:]
+        table[key] = value
+        _last_body(table).extend(tail)
+        return
+    first = next((item for _, item in _body(table) if isinstance(item, Table)), None)
+    indent = first.trivia.indent if first else ""
+    table[key] = value
+    if first is None or isinstance(value, Mapping):
+        return
+    # tomlkit puts it right before the first table, and a blank line behind it.
+    first.trivia.indent = indent
+    body = _body(table)
+    at = [name and name.key for name, _ in body].index(key)
+    body.insert(_tail_start(body[:at]), body.pop(at))
 
 
 def _remove(table: Any, key: str) -> None:
     """Remove a key, or a table but for the comments behind its last key: those lead to the next."""
-    from tomlkit.container import Container
     from tomlkit.items import Table, Whitespace
 
-    container = table if isinstance(table, Container) else table.value
-    slots = [
-        (slot, item)
-        for slot, (name, item) in enumerate(getattr(container, "body", ()))
-        if name is not None and name.key == key and isinstance(item, Table)
-    ]
-    tails = [(slot, _tail(item)) for slot, item in slots]
+    body = _body(table)
+    tails = {}
+    for slot, (name, item) in enumerate(body):
+        if name is not None and name.key == key and isinstance(item, Table):
+            last = _last_body(item)
+            tails[slot] = "".join(item.as_string() for _, item in last[_tail_start(last) :])
     del table[key]
-    for slot, tail in tails:
+    for slot, tail in tails.items():
         if "#" in tail:
-            container.body[slot] = (None, Whitespace(tail))
+            body[slot] = (None, Whitespace(tail))
 
 
-def _tail(table: Any) -> str:
-    """Return the comments and blank lines behind the last key of a tomlkit table."""
-    from tomlkit.items import Null, Table
+def _last_body(table: Any) -> list[Any]:
+    """Return the body of a tomlkit table, or of the last table in it."""
+    from tomlkit.items import Table
 
-    tail = ""
-    for key, item in reversed(table.value.body):
-        if key is not None:
-            return (_tail(item) if isinstance(item, Table) else "") + tail
-        if not isinstance(item, Null):
-            tail = item.as_string() + tail
-    return tail
+    body = _body(table)
+    keyed = [item for name, item in body if name is not None]
+    return _last_body(keyed[-1]) if keyed and isinstance(keyed[-1], Table) else body
+
+
+def _tail_start(body: list[Any]) -> int:
+    """Return where the comments and blank lines behind the last key begin."""
+    return max((index + 1 for index, (name, _) in enumerate(body) if name is not None), default=0)

@@ -2,7 +2,7 @@
 
 import math
 import numbers
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -59,10 +59,7 @@ class Parameter:
     def __post_init__(self) -> None:
         check_parameter_name(self.name)
         owner = f"parameter '{self.name}'"
-        for field in ("value", "min", "max"):
-            if getattr(self, field) is not None:
-                number = finite_number(owner, field, getattr(self, field))
-                object.__setattr__(self, field, number)
+        set_numbers(self, owner, ("value", "min", "max"), finite_number)
         check_flag(owner, "vary", self.vary)
         if self.min is not None and self.max is not None and self.min > self.max:
             raise FieldError(owner, "min", f"is {self.min!r}, above max {self.max!r}; swap them")
@@ -194,3 +191,39 @@ def check_flag(owner: str, field: str, value: object) -> None:
     """Refuse what is neither True nor False."""
     if not isinstance(value, bool):
         raise FieldError(owner, field, f"is {value!r}; true or false is expected")
+
+
+def positive_number(owner: str, field: str, value: object) -> float:
+    """Return a field's value as a float, or refuse it."""
+    number = finite_number(owner, field, value)
+    if number <= 0.0:
+        raise FieldError(
+            owner, field, f"is {number!r}; more than 0 is expected, leave it out when not known"
+        )
+    return number
+
+
+def check_choice(owner: str, field: str, value: object, known: Collection[str]) -> None:
+    """Refuse what is none of the known words."""
+    if value not in known:
+        raise FieldError(
+            owner, field, f"is {value!r}, which is unknown; {suggestion(value, known)}"
+        )
+
+
+def not_negative(owner: str, field: str, value: object) -> float:
+    """Return a field's value as a float, or refuse it."""
+    number = finite_number(owner, field, value)
+    if number < 0.0:
+        raise FieldError(owner, field, f"is {number!r}; 0 or more is expected")
+    return number
+
+
+def set_numbers(
+    instance: Any, owner: str, names: Collection[str], convert: Callable[[str, str, object], float]
+) -> None:
+    """Turn fields of a frozen instance into checked floats; None stays where it is the default."""
+    for field in fields(instance):
+        value = getattr(instance, field.name)
+        if field.name in names and not (value is None and field.default is None):
+            object.__setattr__(instance, field.name, convert(owner, field.name, value))

@@ -1,0 +1,86 @@
+#pragma once
+// A small harness for the core's checks: named checks register themselves, a failed condition
+// prints where it stands and its values, and the check goes on. Conditions are read on the main
+// thread only.
+
+#include <cmath>
+#include <exception>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace jointid::tests {
+
+using Body = void (*)();
+
+struct Named {
+  std::string_view name;
+  Body body;
+};
+
+/// All named checks of the program, in the order of the files.
+std::vector<Named>& registered();
+
+struct Registration {
+  Registration(std::string_view name, Body body) { registered().push_back({name, body}); }
+};
+
+/// Prints file, line and what differs when `holds` is false.
+void expect(bool holds, const char* text, const std::string& values, const char* file, int line);
+
+template <class First, class Second>
+void expect_close(const First& a, const Second& b, double tolerance, const char* text,
+                  const char* file, int line) {
+  const auto first = static_cast<double>(a);
+  const auto second = static_cast<double>(b);
+  const double difference = std::fabs(first - second);
+  std::ostringstream values;
+  values.precision(17);
+  values << a << " against " << b << ", apart " << difference << ", tolerance " << tolerance;
+  expect(first == second || difference <= tolerance, text, values.str(), file, line);
+}
+
+/// The message of what the call throws, as Exception; empty (and a failure) when it does not.
+template <class Exception, class Call>
+std::string message_of(Call call, const char* text, const char* file, int line) {
+  std::string message;
+  try {
+    call();
+    expect(false, text, "throws nothing", file, line);
+  } catch (const Exception& error) {
+    message = error.what();
+    expect(!message.empty(), text, "throws without a message", file, line);
+  }
+  return message;
+}
+
+inline bool contains(const std::string& text, std::string_view part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace jointid::tests
+
+#define JOINTID_JOIN_AGAIN(a, b) a##b
+#define JOINTID_JOIN(a, b) JOINTID_JOIN_AGAIN(a, b)
+
+/// A named check: CHECK_CASE("room: promise") { ... }
+#define CHECK_CASE(name)                                                                     \
+  static void JOINTID_JOIN(check_on_line_, __LINE__)();                                      \
+  static const ::jointid::tests::Registration JOINTID_JOIN(registration_on_line_, __LINE__){ \
+      name, JOINTID_JOIN(check_on_line_, __LINE__)};                                         \
+  static void JOINTID_JOIN(check_on_line_, __LINE__)()
+
+#define CHECK(condition) ::jointid::tests::expect((condition), #condition, "", __FILE__, __LINE__)
+/// With something to print when it fails: CHECK_WITH(a < b, "seed " + std::to_string(seed))
+#define CHECK_WITH(condition, values) \
+  ::jointid::tests::expect((condition), #condition, (values), __FILE__, __LINE__)
+#define CHECK_CLOSE(a, b, tolerance) \
+  ::jointid::tests::expect_close((a), (b), (tolerance), #a " ~ " #b, __FILE__, __LINE__)
+/// The expression must throw std::invalid_argument with `part` in its message.
+#define CHECK_REFUSED(expression, part)                                                      \
+  do {                                                                                       \
+    const std::string refusal_message = ::jointid::tests::message_of<std::invalid_argument>( \
+        [&] { static_cast<void>(expression); }, #expression, __FILE__, __LINE__);            \
+    CHECK_WITH(::jointid::tests::contains(refusal_message, part), refusal_message);          \
+  } while (false)
