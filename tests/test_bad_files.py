@@ -26,8 +26,8 @@ from recording_files import (
 )
 
 from jointid.errors import InputError
-from jointid.loading import load
-from jointid.recording import Recording
+from jointid.recording.loading import load
+from jointid.recording.recording import Recording
 
 # Name of the file, what it holds, arguments, and what the sentence says after the file's name.
 Bad = tuple[str, Any, Mapping[str, Any], str]

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from jointid.covariance import parameter_covariance
-from jointid.student import quantile
+from jointid.estimate.student import quantile
+from jointid.identification.covariance import parameter_covariance
 
 ROWS = 400
 

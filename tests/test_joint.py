@@ -185,7 +185,7 @@ def test_gravity_expanded_is_gravity(link: Link, position: float) -> None:
     gravity = Joint(link=link).gravity_coefficients
     weight = link.mass * link.gravity * link.centre_of_mass
     expanded = gravity.cos * math.cos(position) + gravity.sin * math.sin(position)
-    assert expanded == pytest.approx(weight * math.cos(position + link.angle), abs=1e-14 * weight)
+    assert expanded == pytest.approx(weight * math.cos(position + link.angle), abs=1e-13 * weight)
 
 
 def test_gravity_needs_a_link() -> None:
@@ -220,6 +220,7 @@ def test_output_torque_says_what_is_missing() -> None:
 # --- Files ---
 
 
+@settings(deadline=None)
 @given(joint=joints())
 def test_every_field_comes_back_from_a_file(
     joint: Joint, tmp_path_factory: pytest.TempPathFactory
@@ -237,6 +238,7 @@ def test_every_field_comes_back_from_a_document(joint: Joint) -> None:
     assert joint_from_document(joint_document(joint), "estimate") == joint
 
 
+@settings(deadline=None)
 @given(old=joints(), new=joints())
 def test_a_file_takes_another_joint(
     old: Joint, new: Joint, tmp_path_factory: pytest.TempPathFactory
@@ -526,6 +528,7 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
     assert "this is a folder" in refusal(tmp_path)
 
 
+@settings(deadline=None)
 @given(text=st.text() | st.text(alphabet='[]=.{}"\n #abdeilmnrstuv019', max_size=60))
 def test_any_text_is_a_joint_or_one_sentence(
     text: str, tmp_path_factory: pytest.TempPathFactory

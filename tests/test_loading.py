@@ -10,8 +10,8 @@ import pytest
 from recording_files import ROWS, N, column, lines, npz, refusal, written
 
 from jointid.errors import InputError
-from jointid.loading import load
-from jointid.recording import Recording
+from jointid.recording.loading import load
+from jointid.recording.recording import Recording
 
 
 @pytest.mark.parametrize(

@@ -14,9 +14,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from jointid.errors import InputError
-from jointid.loading import load
-from jointid.recording import Recording
-from jointid.signals import SIGNALS
+from jointid.recording.loading import load
+from jointid.recording.recording import Recording
+from jointid.recording.signals import SIGNALS
 
 N = 12
 TIME = np.arange(N) * 0.01

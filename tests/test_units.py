@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from jointid.errors import InputError
-from jointid.units import UNITS, find_unit, unit_named, unit_names
+from jointid.recording.units import UNITS, find_unit, unit_named, unit_names
 
 
 @pytest.mark.parametrize(

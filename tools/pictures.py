@@ -15,6 +15,7 @@ FOLDER = Path(__file__).resolve().parents[1] / "docs" / "pictures"
 
 
 def main() -> None:
+    """Draw and save them."""
     robot = demonstrate().estimate
     simulated = jid.identify(jid.load(data_folder() / "well_excited.csv.gz"), jid.thesis_joint())
     with style():

@@ -20,12 +20,12 @@ except ModuleNotFoundError as error:
 from jointid import plotting as plot
 from jointid._core import GaOptions, Generation, WindowOptions
 from jointid.errors import InputError
-from jointid.estimate import Estimate
-from jointid.identification import identify
+from jointid.estimate.estimate import Estimate
+from jointid.identification.identification import identify
 from jointid.joint import Joint, Limits, Link, thesis_joint
-from jointid.loading import load
 from jointid.parameters import Parameter
-from jointid.recording import Recording
+from jointid.recording.loading import load
+from jointid.recording.recording import Recording
 
 __version__ = _core.__version__
 

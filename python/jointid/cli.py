@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from jointid.recording import Recording
+    from jointid.recording.recording import Recording
 
 DONE, BAD_INPUT, INTERRUPTED = 0, 2, 130
 
@@ -152,7 +152,7 @@ def _recording_arguments(command: argparse.ArgumentParser) -> None:
 
 
 def _load(arguments: argparse.Namespace) -> Recording:
-    from jointid.loading import load
+    from jointid.recording.loading import load
 
     columns = {
         signal: int(header) if header.isdigit() else header for signal, header in arguments.column
@@ -169,7 +169,7 @@ def _load(arguments: argparse.Namespace) -> Recording:
 def _demo(arguments: argparse.Namespace) -> None:
     from jointid.demo import demonstrate
     from jointid.progress import Progress
-    from jointid.reporting import save_report
+    from jointid.reporting.html_page import save_report
 
     with Progress(enabled=not arguments.quiet) as progress:
         demonstration = demonstrate(callback=progress)
@@ -194,10 +194,10 @@ def _demo(arguments: argparse.Namespace) -> None:
 def _identify(arguments: argparse.Namespace) -> None:
     from jointid._core import GaOptions
     from jointid.errors import InputError
-    from jointid.identification import identify
+    from jointid.identification.identification import identify
     from jointid.joint import Joint
     from jointid.progress import Progress
-    from jointid.reporting import save_report
+    from jointid.reporting.html_page import save_report
 
     changes: dict[str, float] = {}
     for name, value in arguments.set:

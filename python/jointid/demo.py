@@ -6,10 +6,10 @@ from importlib.resources import files
 from pathlib import Path
 
 from jointid._core import Generation
-from jointid.estimate import Estimate
-from jointid.identification import identify
+from jointid.estimate.estimate import Estimate
+from jointid.identification.identification import identify
 from jointid.joint import Joint
-from jointid.loading import load
+from jointid.recording.loading import load
 
 # Published beside the log by its authors (Weigand et al.).
 NOMINAL = {"viscous": 2050.0, "coulomb": 355.0}

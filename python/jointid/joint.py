@@ -28,7 +28,7 @@ from jointid.parameters import (
 )
 
 if TYPE_CHECKING:
-    from jointid.recording import Recording
+    from jointid.recording.recording import Recording
 
 Kind = Literal["revolute", "prismatic"]
 TorqueHold = Literal["zoh", "linear"]

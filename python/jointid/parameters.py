@@ -8,7 +8,7 @@ from typing import Any
 
 from jointid import _core
 from jointid.errors import InputError
-from jointid.signals import closest
+from jointid.recording.signals import closest
 
 
 class FieldError(InputError):

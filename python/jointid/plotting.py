@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from jointid.estimate import Estimate
-from jointid.findings import FrictionCurve
-from jointid.recording import Recording
+from jointid.estimate.estimate import Estimate
+from jointid.estimate.findings import FrictionCurve
+from jointid.recording.recording import Recording
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

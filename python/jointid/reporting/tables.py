@@ -4,9 +4,9 @@ from html import escape
 
 import numpy as np
 
-from jointid.diagnosis import percent
-from jointid.estimate import Estimate
-from jointid.findings import ParameterEstimate
+from jointid.estimate.estimate import Estimate
+from jointid.estimate.findings import ParameterEstimate
+from jointid.estimate.wording import number, percent, two_digits
 
 _HEAD = ("parameter", "value", "± std. error", "95 % interval", "unit", "remark")
 
@@ -16,18 +16,6 @@ def remark(p: ParameterEstimate) -> str:
     if not p.vary:
         return "fixed"
     return f"at its {'lower' if p.at_bound == 'min' else 'upper'} bound" if p.at_bound else ""
-
-
-def number(value: float) -> str:
-    """Six significant digits, without an exponent where people do not write one."""
-    return f"{value:.6g}"
-
-
-def two_digits(value: float) -> str:
-    """Two significant digits, as people write them: 110, not 1.1e+02."""
-    if not np.isfinite(value) or value < 1e-4:
-        return f"{value:.2g}"
-    return str(np.format_float_positional(float(f"{value:.1e}"), trim="-"))
 
 
 def rows(estimate: Estimate) -> list[tuple[str, str, str, str, str, str]]:

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.errors import InputError
-from jointid.estimate import Estimate
-from jointid.findings import (
+from jointid.estimate.estimate import Estimate
+from jointid.estimate.findings import (
     Convergence,
     ParameterEstimate,
     ResidualStatistics,

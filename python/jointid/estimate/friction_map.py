@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.estimate import Estimate
-from jointid.findings import FrictionCurve
-from jointid.student import quantile
+from jointid.estimate.estimate import Estimate
+from jointid.estimate.findings import FrictionCurve
+from jointid.estimate.student import quantile
 
 Array = NDArray[np.float64]
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from jointid.errors import InputError
-from jointid.signals import SIGNALS, FloatArray, check_signal_name, closest, dimensions
-from jointid.units import Unit, find_unit, unit_named, unit_names
+from jointid.recording.signals import SIGNALS, FloatArray, check_signal_name, closest, dimensions
+from jointid.recording.units import Unit, find_unit, unit_named, unit_names
 
 _ALIASES: dict[str, str] = {
     alias: signal

@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.errors import InputError
-from jointid.estimate import Estimate
-from jointid.findings import Convergence, Prediction
-from jointid.inference import infer, r_squared
+from jointid.estimate.estimate import Estimate
+from jointid.estimate.findings import Convergence, Prediction
+from jointid.identification.inference import infer, r_squared
+from jointid.identification.model_terms import TermChoice, choose_terms
+from jointid.identification.problem import Problem, listed
+from jointid.identification.search_domain import SearchDomain, domain_for
 from jointid.joint import Joint
-from jointid.model_terms import TermChoice, choose_terms
 from jointid.parameters import Parameter
-from jointid.problem import Problem, listed
-from jointid.recording import Recording
-from jointid.search_domain import SearchDomain, domain_for
+from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 Windows = int | float | _core.WindowOptions | None

@@ -11,10 +11,10 @@ import numpy as np
 
 from jointid.errors import InputError
 from jointid.files import write_whole
-from jointid.signals import KINDS, header_unit
+from jointid.recording.signals import KINDS, header_unit
 
 if TYPE_CHECKING:
-    from jointid.recording import Recording
+    from jointid.recording.recording import Recording
 
 SCHEMA = 1
 CSV_MARK = "# jointid recording "

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from jointid.columns import Column, Table, column_index, match_columns
-from jointid.csv_reader import CsvTable
 from jointid.errors import InputError
-from jointid.npz_reader import NpzTable
-from jointid.recording import Recording, check_kind, check_torque_hold
-from jointid.saving import ending_of
-from jointid.signals import check_signals
+from jointid.recording.columns import Column, Table, column_index, match_columns
+from jointid.recording.csv_reader import CsvTable
+from jointid.recording.npz_reader import NpzTable
+from jointid.recording.recording import Recording, check_kind, check_torque_hold
+from jointid.recording.saving import ending_of
+from jointid.recording.signals import check_signals
 
 
 def load(

@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from jointid.errors import InputError
-from jointid.gaps import Gap, derived_velocity, find_gaps
-from jointid.signals import (
+from jointid.recording.gaps import Gap, derived_velocity, find_gaps
+from jointid.recording.signals import (
     KINDS,
     SHORTEST,
     SIGNALS,
@@ -179,8 +179,8 @@ class Recording:
         InputError
             As in `load`; a row is named by its 0-based number.
         """
-        from jointid.frame_reader import FrameTable
-        from jointid.loading import fields_from
+        from jointid.recording.frame_reader import FrameTable
+        from jointid.recording.loading import fields_from
 
         table = FrameTable(df)
         return cls(
@@ -275,7 +275,7 @@ class Recording:
         OSError
             The file cannot be written; an existing one is untouched.
         """
-        from jointid.saving import save_recording
+        from jointid.recording.saving import save_recording
 
         save_recording(self, path)
 

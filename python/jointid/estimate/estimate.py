@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from jointid.errors import InputError
-from jointid.findings import (
+from jointid.estimate.findings import (
     Convergence,
     FrictionCurve,
     ParameterEstimate,
@@ -23,7 +23,7 @@ from jointid.findings import (
 
 if TYPE_CHECKING:
     from jointid.joint import Joint
-    from jointid.recording import Recording
+    from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
@@ -92,7 +92,7 @@ class Estimate:
         velocity : array_like, shape (n,)
             [rad/s or m/s]
         """
-        from jointid.friction_map import friction_curve
+        from jointid.estimate.friction_map import friction_curve
 
         return friction_curve(self, np.atleast_1d(np.asarray(velocity, dtype=np.float64)))
 
@@ -104,24 +104,24 @@ class Estimate:
         InputError
             When the recording lacks a signal that the estimate's terms need.
         """
-        from jointid.identification import predict
+        from jointid.identification.identification import predict
 
         return predict(self, recording)
 
     def report(self) -> str:
         """The estimate as text: parameters, quality of the fit, warnings."""
-        from jointid.tables import text_report
+        from jointid.reporting.tables import text_report
 
         return text_report(self)
 
     def _repr_html_(self) -> str:
-        from jointid.tables import html_summary
+        from jointid.reporting.tables import html_summary
 
         return html_summary(self)
 
     def to_json(self) -> str:
         """Everything, as JSON with a schema version; `Estimate.from_json` reads it back."""
-        from jointid.estimate_json import write_estimate
+        from jointid.estimate.estimate_json import write_estimate
 
         return write_estimate(self)
 
@@ -134,7 +134,7 @@ class Estimate:
         InputError
             Not JSON, not an estimate, or a newer schema.
         """
-        from jointid.estimate_json import read_estimate
+        from jointid.estimate.estimate_json import read_estimate
 
         return read_estimate(text)
 

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jointid import plotting
-from jointid.estimate import Estimate
+from jointid.estimate.estimate import Estimate
 from jointid.files import write_whole
-from jointid.tables import (
+from jointid.reporting.tables import (
     html_correlation,
     html_shifts,
     html_table,

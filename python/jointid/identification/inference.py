@@ -9,15 +9,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.covariance import Covariance, parameter_covariance
-from jointid.diagnosis import Facts, diagnose
-from jointid.estimate import Estimate
-from jointid.findings import Convergence, ParameterEstimate, ResidualStatistics, WindowTable
+from jointid.estimate.estimate import Estimate
+from jointid.estimate.findings import (
+    Convergence,
+    ParameterEstimate,
+    ResidualStatistics,
+    WindowTable,
+)
+from jointid.estimate.student import quantile
+from jointid.identification.covariance import Covariance, parameter_covariance
+from jointid.identification.diagnosis import Facts, diagnose
+from jointid.identification.problem import Problem
+from jointid.identification.search_domain import SearchDomain
 from jointid.joint import Joint
 from jointid.parameters import Parameter
-from jointid.problem import Problem
-from jointid.search_domain import SearchDomain
-from jointid.student import quantile
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from jointid import _core
 from jointid.errors import InputError
 from jointid.joint import Joint
-from jointid.recording import Recording
+from jointid.recording.recording import Recording
 
 _GRAVITY = ("gravity_cos", "gravity_sin")
 _SENSOR = ("sensor_gain", "sensor_offset")

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from jointid.errors import InputError
-from jointid.saving import CSV_MARK, saved_attributes
-from jointid.signals import FloatArray
+from jointid.recording.saving import CSV_MARK, saved_attributes
+from jointid.recording.signals import FloatArray
 
 _GZIP = b"\x1f\x8b"
 

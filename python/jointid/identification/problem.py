@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.errors import InputError
-from jointid.findings import WindowTable
+from jointid.estimate.findings import WindowTable
+from jointid.identification.model_terms import TermChoice
 from jointid.joint import Joint
-from jointid.model_terms import TermChoice
-from jointid.recording import Recording
+from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 

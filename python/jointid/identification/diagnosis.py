@@ -3,8 +3,9 @@
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-from jointid.findings import ParameterEstimate, ResidualStatistics, Warned
-from jointid.recording import Recording
+from jointid.estimate.findings import ParameterEstimate, ResidualStatistics, Warned
+from jointid.estimate.wording import percent
+from jointid.recording.recording import Recording
 
 # A parameter is undetermined above this relative standard error, or when other windows move it by so many.
 _LARGE_ERROR = 0.05
@@ -45,12 +46,6 @@ class Facts:
 def diagnose(facts: Facts) -> tuple[Warned, ...]:
     """All warnings, the gravest first."""
     return tuple(warning for check in _CHECKS for warning in check(facts))
-
-
-def percent(share: float) -> str:
-    """A share as people write it: two digits, never an exponent."""
-    value = 100.0 * share
-    return f"{value:.0f} %" if value >= 10.0 else f"{value:.2g} %"
 
 
 def _stopped(facts: Facts) -> Iterator[Warned]:

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from jointid.errors import InputError
-from jointid.saving import NPZ_MEMBER, saved_attributes
-from jointid.signals import FloatArray, signal_array
+from jointid.recording.saving import NPZ_MEMBER, saved_attributes
+from jointid.recording.signals import FloatArray, signal_array
 
 # What zipfile, zlib and numpy raise on damaged, encrypted or absurd members.
 _DAMAGED = (

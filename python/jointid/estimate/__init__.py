@@ -1,0 +1,1 @@
+"""Estimates: what was found, and how far it can be believed."""

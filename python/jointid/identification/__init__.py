@@ -1,0 +1,1 @@
+"""From recordings and a joint to an estimate."""

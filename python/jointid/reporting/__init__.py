@@ -1,0 +1,1 @@
+"""Estimates told to people: as text, for notebooks, as a page."""
