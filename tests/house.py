@@ -49,7 +49,7 @@ GROUPS: dict[str, Group] = {
         packages={"numpy", "scipy", "pandas"},
     ),
     "presentation": Group(
-        modules={"plotting", "reporting."},
+        modules={"plotting", "reporting"},
         may_use={"core", "recording", "analysis"},
         packages={"numpy", "matplotlib"},
     ),

@@ -16,9 +16,11 @@ from hypothesis import strategies as st
 
 from jointid import _core
 from jointid.errors import InputError
-from jointid.joint import Joint, Limits, Link, thesis_joint
-from jointid.joint_file import joint_document, joint_from_document
-from jointid.parameters import Parameter
+from jointid.joint.joint import Joint
+from jointid.joint.joint_file import joint_document, joint_from_document
+from jointid.joint.link import Limits, Link
+from jointid.joint.parameters import Parameter
+from jointid.joint.thesis import thesis_joint
 
 POSITIVE = st.floats(min_value=1e-9, max_value=1e9)
 FINITE = st.floats(min_value=-1e9, max_value=1e9)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from jointid import _core
 from jointid.errors import InputError
-from jointid.parameters import Parameter, merge, parameter_table
+from jointid.joint.parameters import Parameter, merge, parameter_table
 
 NAMES = st.sampled_from(_core.parameter_names())
 FINITE = st.floats(allow_nan=False, allow_infinity=False)

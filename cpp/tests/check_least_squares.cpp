@@ -1,5 +1,7 @@
 // Linear least squares under inequalities, against every combination of active constraints.
 
+#include <Eigen/QR>
+#include <Eigen/SVD>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -14,12 +16,6 @@ namespace {
 
 using search::constrained_least_squares;
 using search::non_negative_least_squares;
-
-Eigen::MatrixXd drawn(base::Random& random, Eigen::Index rows, Eigen::Index columns) {
-  Eigen::MatrixXd result(rows, columns);
-  for (double& value : result.reshaped()) value = 2.0 * random.uniform() - 1.0;
-  return result;
-}
 
 struct Box {
   Eigen::MatrixXd g;

@@ -19,12 +19,6 @@ using search::Domain;
 using search::polish;
 using search::ResidualFunction;
 
-Eigen::MatrixXd drawn(base::Random& random, Eigen::Index rows, Eigen::Index columns) {
-  Eigen::MatrixXd result(rows, columns);
-  for (double& value : result.reshaped()) value = 2.0 * random.uniform() - 1.0;
-  return result;
-}
-
 Domain box(std::initializer_list<double> lower, std::initializer_list<double> upper) {
   return {Eigen::Map<const Eigen::VectorXd>(std::data(lower), std::ssize(lower)),
           Eigen::Map<const Eigen::VectorXd>(std::data(upper), std::ssize(upper))};

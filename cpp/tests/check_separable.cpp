@@ -1,5 +1,6 @@
 // Elimination of the linear parameters: against known parameters and against an exhaustive search.
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -77,7 +78,11 @@ Eigen::VectorXd exhaustive(const Penalty& penalty, const Eigen::VectorXd& shapes
   for (int i = 0; i < 60; ++i) {
     const double a = right - kSection * (right - left);
     const double b = left + kSection * (right - left);
-    (value(a) <= value(b) ? right : left) = value(a) <= value(b) ? b : a;
+    if (value(a) <= value(b)) {
+      right = b;
+    } else {
+      left = a;
+    }
   }
   return solve(2.0 / (left + right), true);
 }
@@ -93,7 +98,7 @@ void compare_at(const Penalty& penalty, const Eigen::VectorXd& shapes, const Dom
              std::to_string(penalty(found)) + " against " + std::to_string(least));
   for (Eigen::Index i = 0; i < p; ++i) {
     CHECK(found[i] >= domain.lower[i] && found[i] <= domain.upper[i]);
-    CHECK_CLOSE(found[i], expected[i], 1e-4 * (1.0 + std::fabs(expected[i])));
+    CHECK_CLOSE(found[i], expected[i], 1e-4 * (domain.upper[i] - domain.lower[i]));
   }
 }
 
@@ -154,6 +159,25 @@ CHECK_CASE("separable: bounds that hold, against the exhaustive search") {
       compare_at(stribeck_penalty(truth, residual, 1.0), vector({20.0 + 60.0 * random.uniform()}),
                  domain);
     }
+  }
+}
+
+CHECK_CASE("separable: a sensor that reads raw counts") {
+  Truth truth;
+  truth.sensor_gain = 1.4e-6;  // the reading in millionths
+  const auto theta = vector(
+      {truth.coulomb, truth.static_excess, truth.viscous, truth.sensor_gain, truth.sensor_offset});
+  truth.inertia = 0.0;
+  auto r = moving(2000, 0.001, true, 7);
+  add_torque(r, truth, true, 1e6);
+  add_noise(r, 1.0, 7);
+  auto domain = around(theta);
+  domain.upper[0] = 20.0;  // bounds hold
+  domain.lower[4] = -2.0;
+  domain.upper[4] = 10.0;
+  for (const auto residual : {Residual::torque, Residual::sensor}) {
+    compare_at(Penalty({r}, kStribeck, {0, 0.02}, residual, true), vector({truth.stribeck}),
+               domain);
   }
 }
 

@@ -55,14 +55,16 @@ inline identify::Recording moving(int samples, double period, bool jitter, std::
   return r;
 }
 
-/// Fills torque (held) and sensor such that the model holds in every interval.
-inline void add_torque(identify::Recording& r, const Truth& truth, bool with_sensor) {
+/// Fills torque (held) and sensor, in `units` a newton metre, such that the model holds in every
+/// interval.
+inline void add_torque(identify::Recording& r, const Truth& truth, bool with_sensor,
+                       double units = 1.0) {
   const Eigen::Index n = r.samples();
   r.torque = Eigen::VectorXd::Zero(n);
   r.torque_hold = identify::Hold::zero_order;
   if (with_sensor) r.sensor.resize(n);
   for (Eigen::Index k = 0; k < n && with_sensor; ++k) {
-    r.sensor[k] = 8.0 * std::sin(2.3 * r.time[k]) + 5.0 * std::cos(6.1 * r.time[k] + 1.0);
+    r.sensor[k] = units * (8.0 * std::sin(2.3 * r.time[k]) + 5.0 * std::cos(6.1 * r.time[k] + 1.0));
   }
   const auto one = [](long double) { return 1.0L; };
   const auto decay = [&](long double v) { return std::exp(-truth.stribeck * v * v); };

@@ -22,8 +22,10 @@ from jointid._core import GaOptions, Generation, WindowOptions
 from jointid.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.identification.identification import identify
-from jointid.joint import Joint, Limits, Link, thesis_joint
-from jointid.parameters import Parameter
+from jointid.joint.joint import Joint
+from jointid.joint.link import Limits, Link
+from jointid.joint.parameters import Parameter
+from jointid.joint.thesis import thesis_joint
 from jointid.recording.loading import load
 from jointid.recording.recording import Recording
 

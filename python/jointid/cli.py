@@ -169,7 +169,7 @@ def _load(arguments: argparse.Namespace) -> Recording:
 def _demo(arguments: argparse.Namespace) -> None:
     from jointid.demo import demonstrate
     from jointid.progress import Progress
-    from jointid.reporting.html_page import save_report
+    from jointid.reporting import save_report
 
     with Progress(enabled=not arguments.quiet) as progress:
         demonstration = demonstrate(callback=progress)
@@ -195,9 +195,9 @@ def _identify(arguments: argparse.Namespace) -> None:
     from jointid._core import GaOptions
     from jointid.errors import InputError
     from jointid.identification.identification import identify
-    from jointid.joint import Joint
+    from jointid.joint.joint import Joint
     from jointid.progress import Progress
-    from jointid.reporting.html_page import save_report
+    from jointid.reporting import save_report
 
     changes: dict[str, float] = {}
     for name, value in arguments.set:

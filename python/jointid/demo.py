@@ -8,7 +8,7 @@ from pathlib import Path
 from jointid._core import Generation
 from jointid.estimate.estimate import Estimate
 from jointid.identification.identification import identify
-from jointid.joint import Joint
+from jointid.joint.joint import Joint
 from jointid.recording.loading import load
 
 # Published beside the log by its authors (Weigand et al.).

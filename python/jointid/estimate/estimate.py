@@ -22,7 +22,7 @@ from jointid.estimate.findings import (
 )
 
 if TYPE_CHECKING:
-    from jointid.joint import Joint
+    from jointid.joint.joint import Joint
     from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -110,12 +110,12 @@ class Estimate:
 
     def report(self) -> str:
         """The estimate as text: parameters, quality of the fit, warnings."""
-        from jointid.reporting.tables import text_report
+        from jointid.estimate.tables import text_report
 
         return text_report(self)
 
     def _repr_html_(self) -> str:
-        from jointid.reporting.tables import html_summary
+        from jointid.estimate.tables import html_summary
 
         return html_summary(self)
 

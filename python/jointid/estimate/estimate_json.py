@@ -17,8 +17,8 @@ from jointid.estimate.findings import (
     Warned,
     WindowTable,
 )
-from jointid.joint import Joint
-from jointid.joint_file import joint_document, joint_from_document
+from jointid.joint.joint import Joint
+from jointid.joint.joint_file import joint_document, joint_from_document
 
 SCHEMA = 1
 """Raised when a reader of the old form would misread the new one."""

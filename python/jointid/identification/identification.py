@@ -18,8 +18,8 @@ from jointid.identification.inference import infer, r_squared
 from jointid.identification.model_terms import TermChoice, choose_terms
 from jointid.identification.problem import Problem, listed
 from jointid.identification.search_domain import SearchDomain, domain_for
-from jointid.joint import Joint
-from jointid.parameters import Parameter
+from jointid.joint.joint import Joint
+from jointid.joint.parameters import Parameter
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]

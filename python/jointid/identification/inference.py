@@ -21,8 +21,8 @@ from jointid.identification.covariance import Covariance, parameter_covariance
 from jointid.identification.diagnosis import Facts, diagnose
 from jointid.identification.problem import Problem
 from jointid.identification.search_domain import SearchDomain
-from jointid.joint import Joint
-from jointid.parameters import Parameter
+from jointid.joint.joint import Joint
+from jointid.joint.parameters import Parameter
 
 Array = NDArray[np.float64]
 

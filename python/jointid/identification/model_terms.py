@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from jointid import _core
 from jointid.errors import InputError
-from jointid.joint import Joint
+from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
 
 _GRAVITY = ("gravity_cos", "gravity_sin")
@@ -26,6 +26,14 @@ def _known(name: str, known: Sequence[str], what: str) -> str:
     if name not in known:
         raise InputError(f"{what} '{name}' is not known; known are {', '.join(known)}")
     return name
+
+
+def _check_kind(recordings: Sequence[Recording], joint: Joint | None) -> None:
+    if joint is not None and recordings[0].kind != joint.kind:
+        raise InputError(
+            f"the recording is {recordings[0].kind}, joint '{joint.name}' is {joint.kind}; check the position's unit, "
+            "or the joint's kind"
+        )
 
 
 def _has_sensor(recordings: Sequence[Recording], joint: Joint | None) -> bool:
@@ -57,6 +65,7 @@ def choose_terms(
         tuple(models),
         "model",
     )
+    _check_kind(recordings, joint)
     sensor = _has_sensor(recordings, joint)
     compared = _known(
         residual or ("sensor" if sensor else "torque"), ("sensor", "torque"), "residual"

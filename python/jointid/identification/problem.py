@@ -12,7 +12,7 @@ from jointid import _core
 from jointid.errors import InputError
 from jointid.estimate.findings import WindowTable
 from jointid.identification.model_terms import TermChoice
-from jointid.joint import Joint
+from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]

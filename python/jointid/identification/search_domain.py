@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.errors import InputError
-from jointid.joint import Joint
-from jointid.parameters import Parameter, merge
+from jointid.joint.joint import Joint
+from jointid.joint.parameters import Parameter, merge
 
 # A coefficient's bound is this many times the value at which its term alone would make up the torque.
 _GENEROUS = 10.0

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 
 from jointid import plotting
 from jointid.estimate.estimate import Estimate
-from jointid.files import write_whole
-from jointid.reporting.tables import (
+from jointid.estimate.tables import (
     html_correlation,
     html_shifts,
     html_table,
     html_warnings,
     quality,
 )
+from jointid.files import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

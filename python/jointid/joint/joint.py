@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.errors import InputError
-from jointid.parameters import (
+from jointid.joint.link import GravityCoefficients, Limits, Link
+from jointid.joint.parameters import (
     FieldError,
     Parameter,
     check_choice,
     check_flag,
     finite_number,
     merge,
-    not_negative,
     parameter_table,
     positive_number,
     set_numbers,
@@ -34,87 +34,8 @@ Kind = Literal["revolute", "prismatic"]
 TorqueHold = Literal["zoh", "linear"]
 Gravity = Literal["none", "known", "free"]
 
-STANDARD_GRAVITY = 9.80665  # m/s²
 # Two statements of the same inertia may differ by this share: printed values are rounded.
 _INERTIA_TOLERANCE = 1e-3
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GravityCoefficients:
-    """Torque of gravity at the joint [N·m] as ``cos * cos(q) + sin * sin(q)``."""
-
-    cos: float
-    sin: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Link:
-    """What hangs on the joint.
-
-    Parameters
-    ----------
-    mass : float
-        [kg]
-    centre_of_mass : float
-        Its distance from the joint's axis [m].
-    angle : float
-        Angle of the centre of mass above the horizontal where the position is zero [rad].
-        Default 0.
-    inertia : float, optional
-        About the joint's axis [kg·m²].
-    gravity : float
-        [m/s²], across the axis. Default 9.80665.
-
-    Raises
-    ------
-    InputError
-        A value that is not finite, or negative (angle aside).
-    """
-
-    mass: float
-    centre_of_mass: float
-    angle: float = 0.0
-    inertia: float | None = None
-    gravity: float = STANDARD_GRAVITY
-
-    def __post_init__(self) -> None:
-        set_numbers(self, "link", ("angle",), finite_number)
-        set_numbers(self, "link", ("mass", "centre_of_mass", "inertia", "gravity"), not_negative)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Limits:
-    """What the joint must not exceed; a limit that is None is not known.
-
-    Parameters
-    ----------
-    position : tuple of float, optional
-        Lowest and highest [rad] or [m].
-    velocity, torque, current : float, optional
-        Largest magnitude: [rad/s] or [m/s]; at the output, [N·m] or [N]; in the motor, [A].
-
-    Raises
-    ------
-    InputError
-        A limit that is not finite or not positive, or a position range that is none.
-    """
-
-    position: tuple[float, float] | None = None
-    velocity: float | None = None
-    torque: float | None = None
-    current: float | None = None
-
-    def __post_init__(self) -> None:
-        if self.position is not None:
-            if not isinstance(self.position, list | tuple) or len(self.position) != 2:
-                sentence = f"is {self.position!r}; [lowest, highest] is expected"
-                raise FieldError("limits", "position", sentence)
-            low, high = (finite_number("limits", "position", bound) for bound in self.position)
-            if not low < high:
-                sentence = f"is [{low!r}, {high!r}]; the lower limit comes first, then the higher"
-                raise FieldError("limits", "position", sentence)
-            object.__setattr__(self, "position", (low, high))
-        set_numbers(self, "limits", ("velocity", "torque", "current"), positive_number)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -240,7 +161,7 @@ class Joint:
             No such file, not TOML, or something in it cannot be used: one sentence names file,
             table and key.
         """
-        from jointid.joint_file import load_joint
+        from jointid.joint.joint_file import load_joint
 
         return load_joint(path)
 
@@ -256,7 +177,7 @@ class Joint:
         OSError
             The file cannot be written; an existing one is untouched.
         """
-        from jointid.joint_file import save_joint
+        from jointid.joint.joint_file import save_joint
 
         save_joint(self, path)
 
@@ -358,39 +279,6 @@ class Joint:
     def __reduce__(self) -> tuple[Any, ...]:
         # Through the constructor: read-only mappings cannot be pickled.
         return functools.partial(type(self), **_values(self)), ()
-
-
-def thesis_joint() -> Joint:
-    """Return the joint of the 2007 thesis: a strain-wave drive with a built-in torque sensor.
-
-    Facts of the drive and the domain of the search; no values of friction or sensor.
-    """
-    domain = {
-        "coulomb": (0.0, 50.0),
-        "static": (0.0, 40.0),
-        "stribeck": (0.0, 200.0),
-        "viscous": (0.0, 40.0),
-        "sensor_offset": (-30.0, 30.0),
-        "sensor_gain": (0.1, 5.0),
-    }
-    mass, length = 3.0, 0.5  # a slender rod held at its end
-    centre, inertia = length / 2.0, mass * length**2 / 3.0
-    link = Link(mass=mass, centre_of_mass=centre, inertia=inertia, gravity=9.817)
-    return Joint(
-        name="thesis joint",
-        rotor_inertia=2.472e-4,
-        gear_ratio=101.0,
-        torque_constant=0.198,
-        torque_hold="zoh",
-        sensor=True,
-        friction="stribeck",
-        gravity="none",  # behind the sensor, which measures it with the link's torque
-        link=link,
-        parameters={
-            name: Parameter(name=name, min=low, max=high) for name, (low, high) in domain.items()
-        },
-        limits=Limits(torque=160.0, current=8.0),
-    )
 
 
 def _values(joint: Joint) -> dict[str, Any]:

@@ -1,0 +1,1 @@
+"""Joints: what is known of one, its parameters, and the file that holds them."""

@@ -1,0 +1,91 @@
+"""What hangs on a joint, and what it must not exceed."""
+
+from dataclasses import dataclass
+
+from jointid.joint.parameters import (
+    FieldError,
+    finite_number,
+    not_negative,
+    positive_number,
+    set_numbers,
+)
+
+STANDARD_GRAVITY = 9.80665  # m/s²
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GravityCoefficients:
+    """Torque of gravity at the joint [N·m] as ``cos * cos(q) + sin * sin(q)``."""
+
+    cos: float
+    sin: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Link:
+    """What hangs on the joint.
+
+    Parameters
+    ----------
+    mass : float
+        [kg]
+    centre_of_mass : float
+        Its distance from the joint's axis [m].
+    angle : float
+        Angle of the centre of mass above the horizontal where the position is zero [rad].
+        Default 0.
+    inertia : float, optional
+        About the joint's axis [kg·m²].
+    gravity : float
+        [m/s²], across the axis. Default 9.80665.
+
+    Raises
+    ------
+    InputError
+        A value that is not finite, or negative (angle aside).
+    """
+
+    mass: float
+    centre_of_mass: float
+    angle: float = 0.0
+    inertia: float | None = None
+    gravity: float = STANDARD_GRAVITY
+
+    def __post_init__(self) -> None:
+        set_numbers(self, "link", ("angle",), finite_number)
+        set_numbers(self, "link", ("mass", "centre_of_mass", "inertia", "gravity"), not_negative)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """What the joint must not exceed; a limit that is None is not known.
+
+    Parameters
+    ----------
+    position : tuple of float, optional
+        Lowest and highest [rad] or [m].
+    velocity, torque, current : float, optional
+        Largest magnitude: [rad/s] or [m/s]; at the output, [N·m] or [N]; in the motor, [A].
+
+    Raises
+    ------
+    InputError
+        A limit that is not finite or not positive, or a position range that is none.
+    """
+
+    position: tuple[float, float] | None = None
+    velocity: float | None = None
+    torque: float | None = None
+    current: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.position is not None:
+            if not isinstance(self.position, list | tuple) or len(self.position) != 2:
+                sentence = f"is {self.position!r}; [lowest, highest] is expected"
+                raise FieldError("limits", "position", sentence)
+            low, high = (finite_number("limits", "position", bound) for bound in self.position)
+            if not low < high:
+                sentence = f"is [{low!r}, {high!r}]; the lower limit comes first, then the higher"
+                raise FieldError("limits", "position", sentence)
+            object.__setattr__(self, "position", (low, high))
+        set_numbers(self, "limits", ("velocity", "torque", "current"), positive_number)

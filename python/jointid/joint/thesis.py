@@ -1,0 +1,38 @@
+"""The joint of the 2007 thesis."""
+
+from jointid.joint.joint import Joint
+from jointid.joint.link import Limits, Link
+from jointid.joint.parameters import Parameter
+
+
+def thesis_joint() -> Joint:
+    """Return the joint of the 2007 thesis: a strain-wave drive with a built-in torque sensor.
+
+    Facts of the drive and the domain of the search; no values of friction or sensor.
+    """
+    domain = {
+        "coulomb": (0.0, 50.0),
+        "static": (0.0, 40.0),
+        "stribeck": (0.0, 200.0),
+        "viscous": (0.0, 40.0),
+        "sensor_offset": (-30.0, 30.0),
+        "sensor_gain": (0.1, 5.0),
+    }
+    mass, length = 3.0, 0.5  # a slender rod held at its end
+    centre, inertia = length / 2.0, mass * length**2 / 3.0
+    link = Link(mass=mass, centre_of_mass=centre, inertia=inertia, gravity=9.817)
+    return Joint(
+        name="thesis joint",
+        rotor_inertia=2.472e-4,
+        gear_ratio=101.0,
+        torque_constant=0.198,
+        torque_hold="zoh",
+        sensor=True,
+        friction="stribeck",
+        gravity="none",  # behind the sensor, which measures it with the link's torque
+        link=link,
+        parameters={
+            name: Parameter(name=name, min=low, max=high) for name, (low, high) in domain.items()
+        },
+        limits=Limits(torque=160.0, current=8.0),
+    )

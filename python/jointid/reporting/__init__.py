@@ -1,1 +1,0 @@
-"""Estimates told to people: as text, for notebooks, as a page."""
