@@ -19,6 +19,8 @@ REWRITES = [
     (r"^    @classmethod\n    def __new__\(cls, value\):\n.*\n", ""),
     # Bare containers.
     (r"(: |-> )dict(?=[,:)])", r"\1dict[str, typing.Any]"),
+    # The version is written once, in pyproject.toml.
+    (r"^__version__: str = .*$", "__version__: str"),
     (r"-> tuple:", "-> tuple[typing.Any, ...]:"),
     (r"collections\.abc\.Callable(?!\[)", "collections.abc.Callable[..., typing.Any]"),
 ]

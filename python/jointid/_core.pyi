@@ -480,4 +480,4 @@ def usable_intervals(recording: Recording, mask_standstill: bool = True) -> list
     One flag per sample interval: 1 where the joint moves and the recording has no gap.
     """
 
-__version__: str = "0.0.0"
+__version__: str
