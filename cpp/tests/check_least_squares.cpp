@@ -1,7 +1,5 @@
 // Linear least squares under inequalities, against every combination of active constraints.
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -46,8 +44,7 @@ CHECK_CASE("least squares: random boxes of up to four variables") {
     CHECK(((found.x - lower).array() >= -1e-10).all());
     CHECK(((upper - found.x).array() >= -1e-10).all());
     CHECK_CLOSE((a * found.x - b).squaredNorm(), (a * expected - b).squaredNorm(), 1e-10);
-    const double spread = a.jacobiSvd().singularValues().minCoeff();
-    if (spread > 0.05) CHECK_CLOSE((found.x - expected).norm(), 0.0, 1e-8);
+    CHECK_CLOSE((a * (found.x - expected)).norm(), 0.0, 1e-8);
   }
 }
 
@@ -145,7 +142,8 @@ CHECK_CASE("least squares: no constraint, or none that binds, is the plain answe
   base::Random random(5, 0, 0, 0);
   const Eigen::MatrixXd a = drawn(random, 20, 3);
   const Eigen::VectorXd b = drawn(random, 20, 1);
-  const Eigen::VectorXd plain = a.colPivHouseholderQr().solve(b);
+  const auto wide = Eigen::Vector3d::Constant(1e6);
+  const Eigen::VectorXd plain = box_reference(a, b, -wide, wide);
   const auto none = constrained_least_squares(a, b, Eigen::MatrixXd(0, 3), Eigen::VectorXd(0));
   CHECK(none.feasible);
   CHECK_CLOSE((none.x - plain).norm(), 0.0, 1e-13);

@@ -181,6 +181,20 @@ CHECK_CASE("quadrature: windows and unusable intervals, against one interval at 
   }
 }
 
+CHECK_CASE("quadrature: windows without a usable interval integrate to zero") {
+  const auto r = ramp(21, 1.0, 1.0, 1.0);
+  const std::vector<std::uint8_t> none(20, 0);
+  const std::vector<Window> windows{{0, 7}, {7, 20}};
+  FrictionNodes nodes;
+  identify::append_nodes(r, none, windows, nodes);
+  Eigen::VectorXd column = Eigen::VectorXd::Constant(2, 99.0);
+  Eigen::VectorXd change = column;
+  identify::integrate_friction(SpeedBasis::stribeck, nodes, 1.0, nullptr, column, &change);
+  CHECK(column.isZero(0.0) && change.isZero(0.0));
+  identify::integrate(Integral::duration, r, none, windows, column);
+  CHECK(column.isZero(0.0));
+}
+
 CHECK_CASE("quadrature: reads the cancel flag") {
   const auto r = ramp(10'000, 1.0, 1.0, 1.0);
   const Whole whole(r);
