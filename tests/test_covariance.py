@@ -24,7 +24,7 @@ def _noise(rng: np.random.Generator, memory: float) -> np.ndarray:
     return noise
 
 
-@pytest.mark.parametrize(("memory", "low"), [(0.0, 0.92), (0.5, 0.88)])
+@pytest.mark.parametrize(("memory", "low"), [(0.0, 0.92), (0.5, 0.91), (0.8, 0.88), (0.9, 0.85)])
 def test_intervals_cover(memory: float, low: float) -> None:
     rng = np.random.default_rng(5)
     truth = np.array([1.0, -2.0, 0.5])
@@ -49,7 +49,7 @@ def test_classical_errors_would_flatter_where_ours_do_not() -> None:
     variance = residual @ residual / (ROWS - 3)
     classical = np.sqrt(np.diag(np.linalg.inv(design.T @ design)) * variance)
     ours = parameter_covariance(design, residual, None).stderr
-    assert ours[0] > 1.5 * classical[0]
+    assert ours[0] > 2.2 * classical[0]
     assert np.all(ours >= classical * (1 - 1e-9))
 
 

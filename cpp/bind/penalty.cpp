@@ -18,12 +18,15 @@ void bind_penalty(py::module_& m) {
   py::class_<Penalty>(m, "Penalty",
                       "The integral penalty of recordings and terms, by the direct sum.")
       .def(py::init([](std::vector<Recording> recordings, const std::vector<std::string>& terms,
-                       const WindowOptions& windows, Residual residual, bool mask_standstill) {
+                       const WindowOptions& windows, Residual residual, bool mask_standstill,
+                       double gear_ratio, const std::vector<std::string>& per_recording) {
              const py::gil_scoped_release nogil;
-             return Penalty(std::move(recordings), terms, windows, residual, mask_standstill);
+             return Penalty(std::move(recordings), terms, windows, residual, mask_standstill,
+                            gear_ratio, per_recording);
            }),
            py::kw_only(), py::arg("recordings"), py::arg("terms"), py::arg("windows"),
-           py::arg("residual"), py::arg("mask_standstill") = true)
+           py::arg("residual"), py::arg("mask_standstill") = true, py::arg("gear_ratio") = 1.0,
+           py::arg("per_recording") = std::vector<std::string>{})
       .def(
           "__call__", [](const Penalty& p, const Eigen::VectorXd& theta) { return p(theta); },
           py::arg("theta"), py::call_guard<py::gil_scoped_release>(),
@@ -56,6 +59,8 @@ void bind_penalty(py::module_& m) {
           py::arg("shapes"), "Window integrals of all terms, shape (window_count, coefficients).")
       .def_property_readonly("target", &Penalty::target, "Window integrals of the torque [N m s].")
       .def_property_readonly("names", &Penalty::names)
+      .def_property_readonly("terms", &Penalty::terms, "The term of each coefficient.")
+      .def_property_readonly("cumulative", &Penalty::cumulative)
       .def_property_readonly("coefficients", &Penalty::coefficients)
       .def_property_readonly("window_count", &Penalty::window_count)
       .def_property_readonly("residual", &Penalty::residual)

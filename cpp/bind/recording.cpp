@@ -35,11 +35,15 @@ void bind_recording(py::module_& m) {
       },
       py::arg("recording"), py::arg("mask_standstill") = true,
       "One flag per sample interval: 1 where the joint moves and the recording has no gap.");
-  value(m, "WindowOptions",
-        "How to cut a recording into windows: a number, a duration, or neither (chosen from the "
-        "noise).",
-        Field{"count", &WindowOptions::count, "Number of windows; 0: not given."},
-        Field{"duration", &WindowOptions::duration, "Length of a window [s]; 0: not given."});
+  value(
+      m, "WindowOptions",
+      "How to cut a recording into windows: a number, a duration, or neither (chosen from the "
+      "noise).",
+      Field{"count", &WindowOptions::count, "Number of windows; 0: not given."},
+      Field{"duration", &WindowOptions::duration, "Length of a window [s]; 0: not given."},
+      Field{
+          "cumulative", &WindowOptions::cumulative,
+          "Compare running integrals at the windows' ends (thesis's MATLAB), not each window's."});
 }
 
 }  // namespace jointid::bind

@@ -1,5 +1,7 @@
 #include "identify/terms.hpp"
 
+#include <algorithm>
+
 #include "bind/bind.hpp"
 
 namespace jointid::bind {
@@ -10,38 +12,40 @@ using identify::Term;
 
 void bind_terms(py::module_& m) {
   py::class_<Term>(m, "Term", "One term of the torque balance: a coefficient times a basis.")
-      .def_property_readonly("name", [](const Term& t) { return std::string(t.name); })
-      .def_property_readonly(
-          "shape", [](const Term& t) { return std::string(t.shape); },
-          "Name of the shape parameter; empty without one.")
+      .def_readonly("key", &Term::key, "What a model lists; unique.")
+      .def_readonly("name", &Term::name, "The parameter's name.")
+      .def_readonly("shapes", &Term::shapes, "Names of the shape parameters that bend the basis.")
       .def_readonly("non_negative", &Term::non_negative)
       .def_property_readonly("friction", &identify::is_friction,
                              "True if the term belongs to the friction map.")
-      .def_property_readonly("unit", [](const Term& t) { return std::string(t.unit); })
-      .def_property_readonly("unit_prismatic",
-                             [](const Term& t) { return std::string(t.unit_prismatic); })
-      .def_property_readonly("meaning", [](const Term& t) { return std::string(t.meaning); });
+      .def_property_readonly(
+          "family", [](const Term& t) { return t.harmonic != identify::Harmonic::none; },
+          "True if the row stands for a term an order, as in ripple_sin_2.")
+      .def_readonly("unit", &Term::unit)
+      .def_readonly("unit_prismatic", &Term::unit_prismatic)
+      .def_readonly("meaning", &Term::meaning);
   py::class_<Shape>(m, "Shape", "A shape parameter: it bends the basis of a term.")
-      .def_property_readonly("name", [](const Shape& s) { return std::string(s.name); })
-      .def_property_readonly("unit", [](const Shape& s) { return std::string(s.unit); })
-      .def_property_readonly("unit_prismatic",
-                             [](const Shape& s) { return std::string(s.unit_prismatic); })
-      .def_property_readonly("meaning", [](const Shape& s) { return std::string(s.meaning); });
-  py::class_<Model>(m, "Model", "A friction model by name, as the terms it consists of.")
-      .def_property_readonly("name", [](const Model& s) { return std::string(s.name); })
-      .def_property_readonly("equation", [](const Model& s) { return std::string(s.equation); })
-      .def_property_readonly("terms", [](const Model& s) {
-        return std::vector<std::string>(s.terms.begin(), s.terms.end());
-      });
-  m.def("terms", [] { return identify::term_table(); }, "All terms, in canonical order.");
-  m.def("shapes", [] { return identify::shape_table(); }, "All shape parameters.");
-  m.def("models", [] { return identify::model_table(); }, "All friction models.");
+      .def_readonly("name", &Shape::name)
+      .def_readonly("unit", &Shape::unit)
+      .def_readonly("unit_prismatic", &Shape::unit_prismatic)
+      .def_readonly("meaning", &Shape::meaning);
+  py::class_<Model>(m, "Model", "A friction model by name, as the keys of its terms.")
+      .def_readonly("name", &Model::name)
+      .def_readonly("equation", &Model::equation)
+      .def_readonly("terms", &Model::terms);
+  m.def("terms", &identify::term_table, "All terms, in canonical order.");
+  m.def("shapes", &identify::shape_table, "All shape parameters.");
+  m.def("models", &identify::model_table, "All friction models.");
+  m.def("term", &identify::find_term, py::arg("key"),
+        "The term of that key; \"ripple_sin_2\" is order 2 of its family.");
+  m.def("is_parameter", &identify::is_parameter, py::arg("name"),
+        "Whether a parameter can have this name.");
   m.def(
       "friction_basis",
-      [](const std::string& term, const Eigen::VectorXd& velocity, double shape) {
-        return identify::friction_basis(identify::find_term(term), velocity, shape);
+      [](const std::string& key, const Eigen::VectorXd& velocity, const Eigen::VectorXd& shapes) {
+        return identify::friction_basis(identify::find_term(key), velocity, shapes);
       },
-      py::arg("term"), py::arg("velocity"), py::arg("shape") = 0.0,
+      py::arg("key"), py::arg("velocity"), py::arg("shapes"),
       "The friction term's basis at each velocity [rad/s or m/s]: what its coefficient "
       "multiplies.");
   m.def("model_names", [] {
@@ -53,13 +57,17 @@ void bind_terms(py::module_& m) {
       "parameter_names",
       [] {
         std::vector<std::string> names;
+        const auto add = [&](const std::string& name) {
+          if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+        };
         for (const auto& term : identify::term_table()) {
-          names.emplace_back(term.name);
-          if (!term.shape.empty()) names.emplace_back(term.shape);
+          if (term.harmonic != identify::Harmonic::none) continue;
+          add(term.name);
+          for (const auto& shape : term.shapes) add(shape);
         }
         return py::tuple(py::cast(names));
       },
-      "All parameters, a shape parameter behind the term it bends.");
+      "All parameters but the harmonics, a shape parameter behind the term it bends.");
 }
 
 }  // namespace jointid::bind

@@ -6,26 +6,39 @@
 
 namespace jointid::identify {
 
+void Penalty::add_term(const std::string& key) {
+  const Term term = find_term(key);
+  const auto coefficients = static_cast<std::ptrdiff_t>(terms_.size());
+  const auto begin = names_.begin();
+  if (std::find(begin, begin + coefficients, term.name) != begin + coefficients) {
+    throw std::invalid_argument("term '" + term.name + "' is listed twice");
+  }
+  names_.insert(begin + coefficients, term.name);
+  if (term.integral == Integral::sensor) gain_index_ = coefficients;
+  if (!term.shapes.empty()) {
+    Shaped shaped{coefficients, {}, term};
+    for (const auto& shape : term.shapes) {
+      const auto first = names_.begin() + coefficients + 1;
+      const auto found = std::find(first, names_.end(), shape);
+      shaped.shapes.push_back(found - first);
+      if (found == names_.end()) names_.push_back(shape);
+    }
+    shaped_.push_back(std::move(shaped));
+  }
+  terms_.push_back(term);
+}
+
 Penalty::Penalty(std::vector<Recording> recordings, const std::vector<std::string>& terms,
-                 const WindowOptions& options, Residual residual, bool mask_standstill)
-    : names_(terms), residual_(residual) {
+                 const WindowOptions& options, Residual residual, bool mask_standstill,
+                 double gear_ratio, const std::vector<std::string>& per_recording)
+    : cumulative_(options.cumulative), residual_(residual) {
   if (recordings.empty()) throw std::invalid_argument("a penalty needs at least one recording");
   if (terms.empty()) throw std::invalid_argument("a penalty needs at least one term");
-  options.validate();
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    const Term& term = find_term(terms[i]);
-    if (std::count(terms.begin(), terms.end(), terms[i]) > 1) {
-      throw std::invalid_argument("term '" + terms[i] + "' is listed twice");
-    }
-    if (term.integral == Integral::sensor) gain_index_ = static_cast<Eigen::Index>(i);
-    if (term.shape.empty()) continue;
-    const std::string shape(term.shape);
-    auto found =
-        std::find(names_.begin() + static_cast<std::ptrdiff_t>(terms.size()), names_.end(), shape);
-    const auto index = found - names_.begin() - static_cast<std::ptrdiff_t>(terms.size());
-    if (found == names_.end()) names_.push_back(shape);
-    shaped_.push_back({static_cast<Eigen::Index>(i), index, term.basis});
+  if (!std::isfinite(gear_ratio) || gear_ratio == 0.0) {
+    throw std::invalid_argument("gear_ratio must be finite and not 0");
   }
+  options.validate();
+  for (const auto& key : terms) add_term(key);
   if (residual == Residual::sensor && gain_index_ < 0) {
     throw std::invalid_argument("residual 'sensor' needs the term sensor_gain");
   }
@@ -70,24 +83,87 @@ Penalty::Penalty(std::vector<Recording> recordings, const std::vector<std::strin
         "windows: " + std::to_string(rows) + " windows with motion cannot determine " +
         std::to_string(parameters()) + " parameters; use more or shorter windows");
   }
-  columns_.setZero(rows, static_cast<Eigen::Index>(terms.size()));
+  columns_.setZero(rows, static_cast<Eigen::Index>(terms_.size()));
   target_.resize(rows);
   usable_duration_.resize(rows);
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     const auto count = static_cast<Eigen::Index>(cut[i].size());
     integrate_torque(recordings[i], usable[i].usable, cut[i], target_.segment(row, count));
-    integrate(Integral::duration, recordings[i], usable[i].usable, cut[i],
+    integrate(find_term("torque_offset"), gear_ratio, recordings[i], usable[i].usable, cut[i],
               usable_duration_.segment(row, count));
-    for (std::size_t j = 0; j < terms.size(); ++j) {
-      const Term& term = find_term(terms[j]);
-      if (!term.shape.empty()) continue;
-      integrate(term.integral, recordings[i], usable[i].usable, cut[i],
+    for (std::size_t j = 0; j < terms_.size(); ++j) {
+      if (!terms_[j].shapes.empty()) continue;
+      integrate(terms_[j], gear_ratio, recordings[i], usable[i].usable, cut[i],
                 columns_.col(static_cast<Eigen::Index>(j)).segment(row, count));
     }
-    if (!shaped_.empty()) append_nodes(recordings[i], usable[i].usable, cut[i], nodes_);
+    if (!shaped_.empty()) append_nodes(recordings[i], usable[i].usable, cut[i], nodes_[0]);
     row += count;
   }
+  for (const auto& shaped : shaped_) {
+    auto& nodes = nodes_[static_cast<std::size_t>(shaped.term.direction)];
+    if (nodes.first.size() == 1) nodes = nodes_of(shaped.term.direction, nodes_[0]);
+  }
+  own_columns(per_recording, recordings.size());
+  if (cumulative_) {
+    accumulate(target_);
+    for (Eigen::Index j = 0; j < columns_.cols(); ++j) accumulate(columns_.col(j));
+  }
+}
+
+void Penalty::own_columns(const std::vector<std::string>& per_recording, std::size_t recordings) {
+  if (recordings < 2) return;
+  for (const auto& name : per_recording) {
+    const auto found = std::find_if(terms_.begin(), terms_.end(),
+                                    [&](const Term& term) { return term.name == name; });
+    if (found == terms_.end()) {
+      throw std::invalid_argument("per_recording: '" + name +
+                                  "' is not a coefficient of the model");
+    }
+    if (!found->shapes.empty() || found->integral == Integral::sensor) {
+      throw std::invalid_argument("per_recording: '" + name +
+                                  "' must be the same in all recordings");
+    }
+    const auto at = static_cast<Eigen::Index>(found - terms_.begin());
+    const auto extra = static_cast<Eigen::Index>(recordings) - 1;
+    const Eigen::Index old = columns_.cols();
+    Eigen::MatrixXd wider = Eigen::MatrixXd::Zero(columns_.rows(), old + extra);
+    wider.leftCols(at) = columns_.leftCols(at);
+    wider.rightCols(old - at - 1) = columns_.rightCols(old - at - 1);
+    for (Eigen::Index row = 0; row < columns_.rows(); ++row) {
+      wider(row, at + recording_of_[static_cast<std::size_t>(row)]) = columns_(row, at);
+    }
+    columns_ = std::move(wider);
+    const Term term = *found;
+    terms_.insert(terms_.begin() + at, static_cast<std::size_t>(extra), term);
+    names_.insert(names_.begin() + at, static_cast<std::size_t>(extra), name);
+    for (std::size_t i = 0; i < recordings; ++i) {
+      names_[static_cast<std::size_t>(at) + i] = name + "[" + std::to_string(i) + "]";
+    }
+    if (gain_index_ > at) gain_index_ += extra;
+    for (auto& shaped : shaped_) {
+      if (shaped.coefficient > at) shaped.coefficient += extra;
+    }
+  }
+}
+
+const FrictionNodes& Penalty::nodes(model::Direction direction) const {
+  return nodes_[static_cast<std::size_t>(direction)];
+}
+
+void Penalty::accumulate(Eigen::Ref<Eigen::VectorXd> values) const {
+  for (Eigen::Index row = 1; row < values.size(); ++row) {
+    const auto r = static_cast<std::size_t>(row);
+    if (recording_of_[r] == recording_of_[r - 1]) values[row] += values[row - 1];
+  }
+}
+
+void Penalty::shaped_column(const Shaped& shaped, const double* shapes, int which,
+                            const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) const {
+  std::array<double, 4> own{};
+  for (std::size_t i = 0; i < shaped.shapes.size(); ++i) own[i] = shapes[shaped.shapes[i]];
+  integrate_friction(shaped.term, nodes(shaped.term.direction), own.data(), which, cancel, column);
+  if (cumulative_) accumulate(column);
 }
 
 void Penalty::check(const Eigen::VectorXd& theta) const {
@@ -104,7 +180,7 @@ void Penalty::columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
                       const base::Cancel* cancel) const {
   result = columns_;
   for (const auto& s : shaped_) {
-    integrate_friction(s.basis, nodes_, shapes[s.shape], cancel, result.col(s.coefficient));
+    shaped_column(s, shapes.data(), kValue, cancel, result.col(s.coefficient));
   }
 }
 
@@ -125,14 +201,16 @@ void Penalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
   residual = target_;
   residual.noalias() -= columns_ * theta.head(p);
   Eigen::VectorXd column(shaped_.empty() ? 0 : window_count());
-  Eigen::VectorXd slope(jacobian == nullptr ? 0 : column.size());
+  const double* shapes = theta.data() + p;
   for (const auto& s : shaped_) {
-    integrate_friction(s.basis, nodes_, theta[p + s.shape], cancel, column,
-                       jacobian == nullptr ? nullptr : &slope);
-    residual.noalias() -= theta[s.coefficient] * column;
-    if (jacobian != nullptr) {
-      jacobian->col(s.coefficient) -= column;
-      jacobian->col(p + s.shape) -= theta[s.coefficient] * slope;
+    const double coefficient = theta[s.coefficient];
+    shaped_column(s, shapes, kValue, cancel, column);
+    residual.noalias() -= coefficient * column;
+    if (jacobian == nullptr) continue;
+    jacobian->col(s.coefficient) -= column;
+    for (std::size_t i = 0; i < s.shapes.size(); ++i) {
+      shaped_column(s, shapes, static_cast<int>(i), cancel, column);
+      jacobian->col(p + s.shapes[i]) -= coefficient * column;
     }
   }
   if (residual_ == Residual::torque) return;

@@ -3,6 +3,7 @@
 // the samples. All coefficients are linear; only shape parameters cost a pass over the samples.
 
 #include <Eigen/Core>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -21,13 +22,17 @@ enum class Residual {
 ///
 /// P(theta) = sum over windows of r^2;  torque: r = integral(tau) - sum_j c_j phi_j(shape); sensor:
 /// that over sensor_gain. Parameters are ordered as `names()`: coefficients in the order given,
-/// then shapes.
+/// then shapes. A coefficient of `per_recording` is one a recording, "name[0]", "name[1]", ...
+/// With cumulative windows r is the running sum of the windows' residuals, within each recording.
 class Penalty {
  public:
   Penalty(std::vector<Recording> recordings, const std::vector<std::string>& terms,
-          const WindowOptions& windows, Residual residual, bool mask_standstill);
+          const WindowOptions& windows, Residual residual, bool mask_standstill,
+          double gear_ratio = 1.0, const std::vector<std::string>& per_recording = {});
 
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  /// The term of each coefficient.
+  [[nodiscard]] const std::vector<Term>& terms() const { return terms_; }
   [[nodiscard]] Eigen::Index coefficients() const { return columns_.cols(); }
   [[nodiscard]] Eigen::Index parameters() const { return static_cast<Eigen::Index>(names_.size()); }
   [[nodiscard]] Eigen::Index window_count() const { return target_.size(); }
@@ -57,6 +62,7 @@ class Penalty {
   [[nodiscard]] const Eigen::VectorXd& usable_duration() const {
     return usable_duration_;
   }  ///< [s] a window
+  [[nodiscard]] bool cumulative() const { return cumulative_; }
   [[nodiscard]] const WindowChoice& window_choice() const { return choice_; }
   [[nodiscard]] std::int64_t standing_samples() const { return standing_; }
   [[nodiscard]] std::int64_t unusable_intervals() const { return unusable_; }
@@ -65,18 +71,27 @@ class Penalty {
  private:
   struct Shaped {
     Eigen::Index coefficient;
-    Eigen::Index shape;  ///< among the shapes
-    model::SpeedBasis basis;
+    std::vector<Eigen::Index> shapes;  ///< among the shapes
+    Term term;
   };
   void check(const Eigen::VectorXd& theta) const;
+  void add_term(const std::string& key);
+  void own_columns(const std::vector<std::string>& per_recording, std::size_t recordings);
+  /// A shaped term's column, or its derivative by the term's shape number `which`.
+  void shaped_column(const Shaped& shaped, const double* shapes, int which,
+                     const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) const;
+  void accumulate(Eigen::Ref<Eigen::VectorXd> values) const;
+  [[nodiscard]] const FrictionNodes& nodes(model::Direction direction) const;
 
-  std::vector<std::string> names_;
+  std::vector<std::string> names_;  ///< coefficients, then shapes
+  std::vector<Term> terms_;
   std::vector<Shaped> shaped_;
+  bool cumulative_ = false;
   Residual residual_;
   Eigen::Index gain_index_ = -1;
   Eigen::MatrixXd columns_;  ///< windows x coefficients; shaped ones stay zero here
   Eigen::VectorXd target_;
-  FrictionNodes nodes_;
+  std::array<FrictionNodes, 3> nodes_;  ///< by model::Direction, as far as needed
   std::vector<Window> windows_;
   std::vector<int> recording_of_;
   Eigen::VectorXd usable_duration_;

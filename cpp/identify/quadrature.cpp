@@ -36,11 +36,25 @@ double sign(double v) {
   return v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : 0.0);
 }
 
+/// Signs of the velocity at an interval's ends, each times the share of the interval on its side of
+/// a reversal (1 without one): half the interval times these are the ends' weights.
+struct Shares {
+  double before;
+  double after;
+};
+Shares shares(double v0, double v1) {
+  if (!(v0 * v1 < 0.0)) return {sign(v0), sign(v1)};
+  const double before = std::fabs(v0) / (std::fabs(v0) + std::fabs(v1));
+  return {sign(v0) * before, sign(v1) * (1.0 - before)};
+}
+
 }  // namespace
 
-void integrate(Integral integral, const Recording& r, const std::vector<std::uint8_t>& usable,
-               const std::vector<Window>& windows, Eigen::Ref<Eigen::VectorXd> result) {
-  switch (integral) {
+void integrate(const Term& term, double gear_ratio, const Recording& r,
+               const std::vector<std::uint8_t>& usable, const std::vector<Window>& windows,
+               Eigen::Ref<Eigen::VectorXd> result) {
+  const double frequency = term.order * (term.harmonic == Harmonic::motor ? gear_ratio : 1.0);
+  switch (term.integral) {
     case Integral::velocity_change:
       sum_intervals(usable, windows, result,
                     [&](Eigen::Index k) { return r.velocity[k + 1] - r.velocity[k]; });
@@ -55,21 +69,29 @@ void integrate(Integral integral, const Recording& r, const std::vector<std::uin
       return;
     case Integral::cosine:
       trapezoid(r, usable, windows, result,
-                [&](Eigen::Index k) { return base::cos(r.position[k]); });
+                [&](Eigen::Index k) { return base::cos(frequency * r.position[k]); });
       return;
     case Integral::sine:
       trapezoid(r, usable, windows, result,
-                [&](Eigen::Index k) { return base::sin(r.position[k]); });
+                [&](Eigen::Index k) { return base::sin(frequency * r.position[k]); });
       return;
     case Integral::sensor:
       trapezoid(r, usable, windows, result, [&](Eigen::Index k) { return r.sensor[k]; });
       return;
+    case Integral::load_friction:
+      sum_intervals(usable, windows, result, [&](Eigen::Index k) {
+        const auto [before, after] = shares(r.velocity[k], r.velocity[k + 1]);
+        return 0.5 * (r.time[k + 1] - r.time[k]) *
+               (before * std::fabs(r.torque[k]) + after * std::fabs(r.torque[k + 1]));
+      });
+      return;
     case Integral::friction:
       break;
   }
-  FrictionNodes nodes;
-  append_nodes(r, usable, windows, nodes);
-  integrate_friction(model::SpeedBasis::one, nodes, 0.0, nullptr, result);
+  FrictionNodes all;
+  append_nodes(r, usable, windows, all);
+  const FrictionNodes nodes = nodes_of(term.direction, all);
+  integrate_friction(term, nodes, nullptr, kValue, nullptr, result);
 }
 
 void integrate_torque(const Recording& r, const std::vector<std::uint8_t>& usable,
@@ -100,37 +122,34 @@ void append_nodes(const Recording& r, const std::vector<std::uint8_t>& usable,
         continue;
       }
       const double half = 0.5 * (r.time[k + 1] - r.time[k]);
-      double before =
-          1.0;  // share of the interval before the reversal belongs to sample k, the rest to k + 1
-      double after = 1.0;
-      if (v0 * v1 < 0.0) {
-        before = std::fabs(v0) / (std::fabs(v0) + std::fabs(v1));
-        after = 1.0 - before;
-        push(0.0, half * (sign(v0) * before + sign(v1) * after));
+      const auto [before, after] = shares(v0, v1);
+      if (v0 * v1 < 0.0) {  // a node either side of rest, so that each direction keeps its own
+        push(0.0, half * before);
+        push(0.0, half * after);
       }
-      push(std::fabs(v0), carried + half * sign(v0) * before);
-      carried = half * sign(v1) * after;
+      push(std::fabs(v0), carried + half * before);
+      carried = half * after;
     }
     push(std::fabs(r.velocity[window.end]), carried);
     nodes.first.push_back(nodes.speed.size());
   }
 }
 
-void integrate_friction(model::SpeedBasis basis, const FrictionNodes& nodes, double shape,
-                        const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column,
-                        Eigen::VectorXd* slope) {
+namespace {
+
+/// One loop for value and derivatives; the direction and the basis are settled outside it.
+template <class Basis>
+void sum_nodes(const FrictionNodes& nodes, const base::Cancel* cancel,
+               Eigen::Ref<Eigen::VectorXd> column, Basis basis) {
   std::array<double, kBlock> value;
-  std::array<double, kBlock> change;
   const std::size_t windows = nodes.first.size() - 1;
   const std::size_t total = nodes.speed.size();
   std::size_t w = 0;
   double sum = 0.0;
-  double slope_sum = 0.0;
   const auto finish = [&](std::size_t reached) {
     while (w < windows && nodes.first[w + 1] <= reached) {
       column[static_cast<Eigen::Index>(w)] = sum;
-      if (slope != nullptr) (*slope)[static_cast<Eigen::Index>(w)] = slope_sum;
-      sum = slope_sum = 0.0;
+      sum = 0.0;
       ++w;
     }
   };
@@ -140,23 +159,48 @@ void integrate_friction(model::SpeedBasis basis, const FrictionNodes& nodes, dou
     const std::size_t count = std::min(kBlock, total - begin);
     const double* speed = nodes.speed.data() + begin;
     const double* weight = nodes.weight.data() + begin;
-    for (std::size_t i = 0; i < count; ++i)
-      value[i] = weight[i] * model::basis_value(basis, speed[i], shape);
-    if (slope != nullptr) {
-      for (std::size_t i = 0; i < count; ++i)
-        change[i] = weight[i] * model::basis_slope(basis, speed[i], shape);
-    }
+    for (std::size_t i = 0; i < count; ++i) value[i] = weight[i] * basis(speed[i]);
     std::size_t i = 0;
     while (i < count) {
       const std::size_t stop = std::min(count, nodes.first[w + 1] - begin);
       for (std::size_t j = i; j < stop; ++j) sum += value[j];
-      if (slope != nullptr) {
-        for (std::size_t j = i; j < stop; ++j) slope_sum += change[j];
-      }
       i = stop;
       finish(begin + i);
     }
   }
+}
+
+}  // namespace
+
+void integrate_friction(const Term& term, const FrictionNodes& nodes, const double* shapes,
+                        int which, const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) {
+  using model::SpeedBasis;
+  if (which != kValue) {
+    sum_nodes(nodes, cancel, column,
+              [&](double v) { return model::basis_slope(term.basis, v, shapes, which); });
+  } else if (term.basis == SpeedBasis::stribeck) {  // spelt out: this loop must vectorise
+    const double shape = shapes[0];
+    sum_nodes(nodes, cancel, column,
+              [shape](double v) { return model::basis_value(SpeedBasis::stribeck, v, &shape); });
+  } else {
+    sum_nodes(nodes, cancel, column,
+              [&](double v) { return model::basis_value(term.basis, v, shapes); });
+  }
+}
+
+FrictionNodes nodes_of(model::Direction direction, const FrictionNodes& nodes) {
+  if (direction == model::Direction::both) return nodes;
+  const double wanted = direction == model::Direction::positive ? 1.0 : -1.0;
+  FrictionNodes result;
+  for (std::size_t w = 0; w + 1 < nodes.first.size(); ++w) {
+    for (std::size_t i = nodes.first[w]; i < nodes.first[w + 1]; ++i) {
+      if (nodes.weight[i] * wanted <= 0.0) continue;
+      result.speed.push_back(nodes.speed[i]);
+      result.weight.push_back(nodes.weight[i]);
+    }
+    result.first.push_back(result.speed.size());
+  }
+  return result;
 }
 
 }  // namespace jointid::identify

@@ -27,17 +27,23 @@ struct FrictionNodes {
 void append_nodes(const Recording& recording, const std::vector<std::uint8_t>& usable,
                   const std::vector<Window>& windows, FrictionNodes& nodes);
 
-/// One integral a window, for every term without a shape and for the torque.
-void integrate(Integral integral, const Recording& recording,
+/// The nodes at which the joint moves in one direction.
+FrictionNodes nodes_of(model::Direction direction, const FrictionNodes& nodes);
+
+/// One integral a window, for every term without a shape and for the torque. A harmonic of the
+/// motor counts turns in front of the gear.
+void integrate(const Term& term, double gear_ratio, const Recording& recording,
                const std::vector<std::uint8_t>& usable, const std::vector<Window>& windows,
                Eigen::Ref<Eigen::VectorXd> result);
 void integrate_torque(const Recording& recording, const std::vector<std::uint8_t>& usable,
                       const std::vector<Window>& windows, Eigen::Ref<Eigen::VectorXd> result);
 
-/// The friction column of a basis for one value of its shape, and on request its derivative.
-/// `cancel` is read once a block of nodes; it may be null.
-void integrate_friction(model::SpeedBasis basis, const FrictionNodes& nodes, double shape,
-                        const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column,
-                        Eigen::VectorXd* slope = nullptr);
+/// What integrate_friction fills: the column of a friction term, or its derivative by a shape.
+constexpr int kValue = -1;
+
+/// The friction column of a term for given shapes (`which` = kValue), or its derivative by shape
+/// number `which`. `cancel` is read once a block of nodes; it may be null.
+void integrate_friction(const Term& term, const FrictionNodes& nodes, const double* shapes,
+                        int which, const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column);
 
 }  // namespace jointid::identify

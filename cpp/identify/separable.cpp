@@ -2,184 +2,111 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
-#include "search/least_squares.hpp"
+#include "search/polish.hpp"
 
 namespace jointid::identify {
 
 namespace {
 
-constexpr int kScan = 64;  // points over the shape's domain
+constexpr int kScan = 64;             // intervals over the domain of a single free shape
+constexpr int kGrid = 16;             // over each of several
+constexpr std::size_t kPolished = 3;  // best points of the grid that are polished
 constexpr double kGolden = 0.6180339887498949;
 
-/// Coefficients split into fixed (moved to the target) and free.
-struct Reduced {
-  Eigen::MatrixXd columns;
-  Eigen::VectorXd target;
-  std::vector<Eigen::Index>
-      free;  ///< coefficients, without the gain when that is eliminated with the rest
-};
-
-Reduced reduce(const Penalty& penalty, const Eigen::MatrixXd& columns, const search::Domain& domain,
-               bool keep_gain) {
-  Reduced result;
-  result.target = penalty.target();
-  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
-    if (!keep_gain && j == penalty.gain_index()) continue;
-    if (domain.lower[j] == domain.upper[j]) {
-      result.target.noalias() -= domain.lower[j] * columns.col(j);
-    } else {
-      result.free.push_back(j);
+/// The penalty as a function of the free shapes alone.
+class Eliminated {
+ public:
+  Eliminated(const Penalty& penalty, const search::Domain& domain, base::Pool& pool)
+      : penalty_(penalty), domain_(domain), pool_(pool) {
+    for (Eigen::Index i = penalty.coefficients(); i < penalty.parameters(); ++i) {
+      if (domain.lower[i] < domain.upper[i]) free_.push_back(i);
     }
   }
-  result.columns.resize(columns.rows(), static_cast<Eigen::Index>(result.free.size()));
-  for (std::size_t i = 0; i < result.free.size(); ++i) {
-    result.columns.col(static_cast<Eigen::Index>(i)) = columns.col(result.free[i]);
-  }
-  return result;
-}
 
-Eigen::VectorXd solve_box(const Reduced& r, const search::Domain& domain,
-                          Eigen::VectorXd coefficients) {
-  const auto n = static_cast<Eigen::Index>(r.free.size());
-  if (n == 0) return coefficients;
-  Eigen::MatrixXd g(2 * n, n);
-  g << Eigen::MatrixXd::Identity(n, n), -Eigen::MatrixXd::Identity(n, n);
-  Eigen::VectorXd h(2 * n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    h[i] = domain.lower[r.free[static_cast<std::size_t>(i)]];
-    h[n + i] = -domain.upper[r.free[static_cast<std::size_t>(i)]];
-  }
-  const auto solution = search::constrained_least_squares(r.columns, r.target, g, h);
-  for (Eigen::Index i = 0; i < n; ++i)
-    coefficients[r.free[static_cast<std::size_t>(i)]] = solution.x[i];
-  return coefficients;
-}
+  [[nodiscard]] const std::vector<Eigen::Index>& free() const { return free_; }
 
-/// Free gain, residual in the sensor's terms: min |target u - columns g - sensor|, u = 1/gain, g =
-/// c u.
-Eigen::VectorXd solve_ratio(const Penalty& penalty, const Reduced& r, const Eigen::VectorXd& sensor,
-                            const search::Domain& domain, Eigen::VectorXd coefficients) {
-  const Eigen::Index gain = penalty.gain_index();
-  const auto n = static_cast<Eigen::Index>(r.free.size());
-  const double low = domain.lower[gain];
-  const double high = domain.upper[gain];
-  if (low <= 0.0 && high >= 0.0) {
-    throw std::invalid_argument(
-        "sensor_gain: its bounds must not contain 0 with residual 'sensor', got " +
-        std::to_string(low) + " to " + std::to_string(high));
-  }
-  const double sign = low > 0.0 ? 1.0 : -1.0;
-  Eigen::MatrixXd a(r.target.size(), n + 1);
-  a.leftCols(n) = -r.columns;
-  a.col(n) = r.target;
-  Eigen::MatrixXd g = Eigen::MatrixXd::Zero(2 * n + 2, n + 1);
-  Eigen::VectorXd h = Eigen::VectorXd::Zero(2 * n + 2);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto c = r.free[static_cast<std::size_t>(i)];
-    g(i, i) = sign;
-    g(i, n) = -sign * domain.lower[c];
-    g(n + i, i) = -sign;
-    g(n + i, n) = sign * domain.upper[c];
-  }
-  g(2 * n, n) = 1.0;  // 1/high <= u <= 1/low, also for negative gains
-  h[2 * n] = 1.0 / high;
-  g(2 * n + 1, n) = -1.0;
-  h[2 * n + 1] = -1.0 / low;
-  const auto solution = search::constrained_least_squares(a, sensor, g, h);
-  const double u = solution.x[n];
-  coefficients[gain] = 1.0 / u;
-  for (Eigen::Index i = 0; i < n; ++i)
-    coefficients[r.free[static_cast<std::size_t>(i)]] = solution.x[i] / u;
-  return coefficients;
-}
-
-}  // namespace
-
-Eigen::VectorXd best_coefficients(const Penalty& penalty, const Eigen::VectorXd& shapes,
-                                  const search::Domain& domain, const base::Cancel* cancel) {
-  Eigen::MatrixXd columns;
-  penalty.columns(shapes, columns, cancel);
-  const Eigen::Index p = penalty.coefficients();
-  const Eigen::Index gain = penalty.gain_index();
-  Eigen::VectorXd start = domain.lower.head(p);
-  const bool ratio =
-      penalty.residual() == Residual::sensor && domain.lower[gain] < domain.upper[gain];
-  Eigen::VectorXd best;
-  if (ratio) {
-    best = solve_ratio(penalty, reduce(penalty, columns, domain, false), columns.col(gain), domain,
-                       start);
-  } else {
-    best = solve_box(reduce(penalty, columns, domain, true), domain, start);
-  }
-  // Rounding may leave a bound by an ulp.
-  return best.cwiseMax(domain.lower.head(p)).cwiseMin(domain.upper.head(p));
-}
-
-SeparableResult minimise_separable(const Penalty& penalty, const search::Domain& domain,
-                                   base::Pool& pool) {
-  domain.validate();
-  if (domain.size() != penalty.parameters()) {
-    throw std::invalid_argument("domain must have " + std::to_string(penalty.parameters()) +
-                                " parameters, got " + std::to_string(domain.size()));
-  }
-  const Eigen::Index p = penalty.coefficients();
-  const Eigen::Index shape_count = penalty.parameters() - p;
-  std::vector<Eigen::Index> free_shapes;
-  for (Eigen::Index i = 0; i < shape_count; ++i) {
-    if (domain.lower[p + i] < domain.upper[p + i]) free_shapes.push_back(i);
-  }
-  if (free_shapes.size() > 1)
-    throw std::invalid_argument("the separable search takes one free shape parameter");
-
-  SeparableResult result;
-  const auto full = [&](double shape) {
-    Eigen::VectorXd theta(penalty.parameters());
-    theta.tail(shape_count) = domain.lower.tail(shape_count);
-    if (!free_shapes.empty()) theta[p + free_shapes[0]] = shape;
-    theta.head(p) = best_coefficients(penalty, theta.tail(shape_count), domain, &pool.cancel());
+  /// All parameters for given values of the free shapes.
+  [[nodiscard]] Eigen::VectorXd full(const std::vector<double>& shapes) const {
+    Eigen::VectorXd theta = domain_.lower;
+    for (std::size_t i = 0; i < free_.size(); ++i) theta[free_[i]] = shapes[i];
+    const Eigen::Index p = penalty_.coefficients();
+    theta.head(p) =
+        best_coefficients(penalty_, theta.tail(theta.size() - p), domain_, &pool_.cancel());
     return theta;
-  };
-  if (free_shapes.empty()) {
-    result.best = full(0.0);
-    result.penalty = penalty(result.best);
-    result.evaluations = 1;
+  }
+
+  /// Takes the point if it is no worse.
+  void offer(const Eigen::VectorXd& theta, SeparableResult& result) const {
+    const double value = penalty_(theta, &pool_.cancel());
+    ++result.evaluations;
+    if (result.best.size() > 0 && value > result.penalty) return;
+    result.best = theta;
+    result.penalty = value;
+  }
+
+  /// Penalties at many points, over the threads.
+  [[nodiscard]] std::vector<double> values(const std::vector<std::vector<double>>& points) const {
+    std::vector<double> result(points.size());
+    pool_.for_each(points.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        result[i] = penalty_(full(points[i]), &pool_.cancel());
+      }
+    });
     return result;
   }
 
-  // A square-root scale: the decay is felt through s v^2, so equal steps in 1/v_s at small s matter
-  // most.
-  const double low = std::sqrt(std::max(0.0, domain.lower[p + free_shapes[0]]));
-  const double high = std::sqrt(std::max(0.0, domain.upper[p + free_shapes[0]]));
-  const auto at = [&](double root) {
-    return std::clamp(root * root, domain.lower[p + free_shapes[0]],
-                      domain.upper[p + free_shapes[0]]);
-  };
-  std::vector<double> values(kScan + 1);
-  pool.for_each(values.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::VectorXd theta = full(at(low + (high - low) * static_cast<double>(i) / kScan));
-      values[i] = penalty(theta, &pool.cancel());
-    }
-  });
-  result.evaluations = kScan + 1;
+ private:
+  const Penalty& penalty_;
+  const search::Domain& domain_;
+  base::Pool& pool_;
+  std::vector<Eigen::Index> free_;
+};
+
+/// Steps over a shape's domain that matter equally: the Gaussian decay is felt through s v^2, so
+/// its shape takes a square-root scale; speeds and exponents are felt as they are.
+class Scale {
+ public:
+  Scale(double lower, double upper, bool root)
+      : lower_(lower), upper_(upper), root_(root && lower >= 0.0) {}
+  [[nodiscard]] double at(double share) const {
+    if (share <= 0.0) return lower_;  // the bounds to the last bit
+    if (share >= 1.0) return upper_;
+    if (!root_) return lower_ + share * (upper_ - lower_);
+    const double value = std::sqrt(lower_) + share * (std::sqrt(upper_) - std::sqrt(lower_));
+    return std::clamp(value * value, lower_, upper_);
+  }
+
+ private:
+  double lower_;
+  double upper_;
+  bool root_;
+};
+
+/// A scan, then golden sections around its best, then the ends, which golden sections never touch.
+void search_line(const Eliminated& reduced, const Scale& scale, base::Pool& pool,
+                 SeparableResult& result) {
+  std::vector<std::vector<double>> points;
+  for (int i = 0; i <= kScan; ++i) points.push_back({scale.at(static_cast<double>(i) / kScan)});
+  const auto values = reduced.values(points);
+  result.evaluations += kScan + 1;
   const auto best =
       static_cast<double>(std::min_element(values.begin(), values.end()) - values.begin());
-  double left = low + (high - low) * std::max(0.0, best - 1.0) / kScan;
-  double right = low + (high - low) * std::min<double>(kScan, best + 1.0) / kScan;
-  const auto value = [&](double root) {
+  double left = std::max(0.0, best - 1.0) / kScan;
+  double right = std::min<double>(kScan, best + 1.0) / kScan;
+  const auto value = [&](double share) {
     pool.poll();
     ++result.evaluations;
-    return penalty(full(at(root)));
+    return reduced.values({{scale.at(share)}})[0];
   };
   double a = right - kGolden * (right - left);
   double b = left + kGolden * (right - left);
   double at_a = value(a);
   double at_b = value(b);
-  while (right - left > 1e-9 * (high - low)) {
+  while (right - left > 1e-9) {
     if (at_a <= at_b) {
       right = b;
       b = a;
@@ -194,18 +121,65 @@ SeparableResult minimise_separable(const Penalty& penalty, const search::Domain&
       at_b = value(b);
     }
   }
-  result.best = full(at(at_a <= at_b ? a : b));
-  result.penalty = penalty(result.best);
-  // Golden sections never touch an end of the domain, and a root squared may miss it by an ulp.
-  const double lowest = domain.lower[p + free_shapes[0]];
-  const double highest = domain.upper[p + free_shapes[0]];
-  for (const double edge : {std::clamp(0.0, lowest, highest), highest}) {
-    const Eigen::VectorXd theta = full(edge);
-    const double p_edge = penalty(theta);
-    if (p_edge <= result.penalty) {
-      result.best = theta;
-      result.penalty = p_edge;
+  for (const double share : {at_a <= at_b ? a : b, 0.0, 1.0}) {
+    reduced.offer(reduced.full({scale.at(share)}), result);
+  }
+}
+
+void search_grid(const Eliminated& reduced, const std::vector<Scale>& scales,
+                 const Penalty& penalty, const search::Domain& domain, base::Pool& pool,
+                 SeparableResult& result) {
+  std::vector<std::vector<double>> points{{}};
+  for (const auto& scale : scales) {
+    std::vector<std::vector<double>> wider;
+    for (const auto& point : points) {
+      for (int i = 0; i <= kGrid; ++i) {
+        wider.push_back(point);
+        wider.back().push_back(scale.at(static_cast<double>(i) / kGrid));
+      }
     }
+    points = std::move(wider);
+  }
+  const auto values = reduced.values(points);
+  result.evaluations += static_cast<int>(points.size());
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return values[a] != values[b] ? values[a] < values[b] : a < b;
+  });
+  const auto residuals = [&](const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                             Eigen::MatrixXd* jacobian) {
+    penalty.residuals(theta, residual, jacobian, &pool.cancel());
+  };
+  for (std::size_t i = 0; i < std::min(kPolished, order.size()); ++i) {
+    const Eigen::VectorXd start = reduced.full(points[order[i]]);
+    reduced.offer(start, result);
+    reduced.offer(search::polish(residuals, domain, start, pool).best, result);
+  }
+}
+
+}  // namespace
+
+SeparableResult minimise_separable(const Penalty& penalty, const search::Domain& domain,
+                                   base::Pool& pool) {
+  domain.validate();
+  if (domain.size() != penalty.parameters()) {
+    throw std::invalid_argument("domain must have " + std::to_string(penalty.parameters()) +
+                                " parameters, got " + std::to_string(domain.size()));
+  }
+  const Eliminated reduced(penalty, domain, pool);
+  std::vector<Scale> scales;
+  for (const auto i : reduced.free()) {
+    const bool root = penalty.names()[static_cast<std::size_t>(i)] == "stribeck";
+    scales.emplace_back(domain.lower[i], domain.upper[i], root);
+  }
+  SeparableResult result;
+  if (scales.empty()) {
+    reduced.offer(reduced.full({}), result);
+  } else if (scales.size() == 1) {
+    search_line(reduced, scales[0], pool, result);
+  } else {
+    search_grid(reduced, scales, penalty, domain, pool, result);
   }
   return result;
 }

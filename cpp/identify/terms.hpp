@@ -16,38 +16,47 @@ namespace jointid::identify {
 /// What a term's basis integrates to over a window.
 enum class Integral {
   velocity_change,  ///< [v]: no acceleration needed
-  friction,         ///< integral of sgn v h(|v|), h a SpeedBasis
+  friction,         ///< integral of sgn v h(|v|), h a SpeedBasis, in one Direction or both
+  load_friction,    ///< integral of sgn v |torque|
   displacement,     ///< [q] = integral of v
   duration,         ///< T
-  cosine,           ///< integral of cos q
-  sine,             ///< integral of sin q
+  cosine,           ///< integral of cos(frequency q)
+  sine,             ///< integral of sin(frequency q)
   sensor,           ///< integral of the raw sensor reading
 };
 
-/// One row: a coefficient, or a shape parameter that bends another row's basis.
+/// What the order of a harmonic counts: turns of the joint, or of the motor in front of the gear.
+enum class Harmonic { none, joint, motor };
+
+/// One row: a coefficient and its basis. Rows with a Harmonic stand for a family, one term an
+/// order.
 struct Term {
-  std::string_view name;
+  std::string key;   ///< unique: what a model lists
+  std::string name;  ///< the parameter's name; two bases of the same quantity share it
   Integral integral;
-  model::SpeedBasis basis;  ///< for Integral::friction
-  std::string_view shape;   ///< name of the shape parameter, empty without
-  bool non_negative;        ///< a negative value has no physical meaning
-  std::string_view unit;    ///< revolute
-  std::string_view unit_prismatic;
-  std::string_view meaning;  ///< one line for reports
+  model::SpeedBasis basis = model::SpeedBasis::one;     ///< for Integral::friction
+  model::Direction direction = model::Direction::both;  ///< for Integral::friction
+  std::vector<std::string> shapes{};                    ///< names of the basis's shape parameters
+  Harmonic harmonic = Harmonic::none;
+  double order = 1.0;         ///< of the harmonic
+  bool non_negative = false;  ///< a negative value has no physical meaning
+  std::string unit;           ///< revolute
+  std::string unit_prismatic;
+  std::string meaning;  ///< one line for reports
 };
 
 struct Shape {
-  std::string_view name;
-  std::string_view unit;
-  std::string_view unit_prismatic;
-  std::string_view meaning;
+  std::string name;
+  std::string unit;
+  std::string unit_prismatic;
+  std::string meaning;
 };
 
-/// A friction model by name, as the terms it consists of.
+/// A friction model by name, as the keys of the terms it consists of.
 struct Model {
-  std::string_view name;
-  std::string_view equation;  ///< of the thesis
-  std::vector<std::string_view> terms;
+  std::string name;
+  std::string equation;  ///< of the thesis
+  std::vector<std::string> terms;
 };
 
 const std::vector<Term>& term_table();
@@ -57,12 +66,17 @@ const std::vector<Model>& model_table();
 /// True for the terms that make up the friction map f(v).
 bool is_friction(const Term& term);
 
-/// The friction term's basis at each velocity, odd in it: what its coefficient multiplies. 0 at
-/// rest.
-Eigen::VectorXd friction_basis(const Term& term, const Eigen::VectorXd& velocity, double shape);
+/// The friction term's basis at each velocity: what its coefficient multiplies. 0 at rest.
+Eigen::VectorXd friction_basis(const Term& term, const Eigen::VectorXd& velocity,
+                               const Eigen::VectorXd& shapes);
 
-/// Row of that name; throws std::invalid_argument that lists the known names.
-const Term& find_term(std::string_view name);
+/// The term of that key; "ripple_sin_2" is order 2 of the family "ripple_sin". Throws
+/// std::invalid_argument that lists the known keys.
+Term find_term(std::string_view key);
 const Model& find_model(std::string_view name);
+
+/// Whether a parameter can have this name: a coefficient, a shape, or a coefficient that each
+/// recording has for itself, as in "torque_offset[1]".
+bool is_parameter(std::string_view name);
 
 }  // namespace jointid::identify

@@ -11,8 +11,9 @@ namespace jointid::identify {
 
 /// How to cut. At most one of the two; neither: a duration chosen from the velocity's noise.
 struct WindowOptions {
-  std::int64_t count = 0;  ///< number of windows over the recording; 0: not given
-  double duration = 0.0;   ///< length of a window [s]; 0: not given
+  std::int64_t count = 0;   ///< number of windows over the recording; 0: not given
+  double duration = 0.0;    ///< length of a window [s]; 0: not given
+  bool cumulative = false;  ///< compare running integrals at the windows' ends, not each window's
   void validate() const;
 };
 

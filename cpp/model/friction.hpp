@@ -1,26 +1,55 @@
 #pragma once
-// Static friction maps as sums of linear coefficients times basis functions of the speed: f(v) =
-// sgn v * sum c_i h_i(|v|). (2-1) Coulomb + viscous and (4-1) Coulomb + static excess with Gaussian
-// decay + viscous are such sums; only the decay has a shape parameter. A new map is a new basis
-// here and a new row in identify/terms.cpp.
+// Static friction maps as sums of linear coefficients times basis functions of the speed:
+// f(v) = sgn v * sum c_i h_i(|v|). (2-1) Coulomb + viscous, (2-3) Stribeck with exponent and (4-1)
+// Coulomb + static excess with Gaussian decay + viscous are such sums; only the decay has shape
+// parameters. A new map is a new basis here and a new row in identify/terms.cpp.
 
 #include "base/elementary.hpp"
 
 namespace jointid::model {
 
 enum class SpeedBasis {
-  one,       ///< 1: Coulomb friction
-  stribeck,  ///< exp(-s v^2), s the shape coefficient [s^2/rad^2]: the static excess of (4-1)
+  one,               ///< 1: Coulomb friction
+  speed,             ///< |v|: viscous friction of one direction
+  stribeck,          ///< exp(-s v^2), s [s^2/rad^2]: the static excess of (4-1)
+  stribeck_general,  ///< exp(-|v/v_s|^d), v_s [rad/s] and d [1]: the static excess of (2-3)
 };
 
-/// h(|v|) for one speed.
-inline double basis_value(SpeedBasis basis, double speed, double shape) {
-  return basis == SpeedBasis::one ? 1.0 : base::exp(-shape * speed * speed);
+/// The direction of motion in which a term acts.
+enum class Direction { both, positive, negative };
+
+/// h(|v|) for one speed; `shapes` holds as many values as the basis has.
+inline double basis_value(SpeedBasis basis, double speed, const double* shapes) {
+  switch (basis) {
+    case SpeedBasis::one:
+      return 1.0;
+    case SpeedBasis::speed:
+      return speed;
+    case SpeedBasis::stribeck:
+      return base::exp(-shapes[0] * speed * speed);
+    case SpeedBasis::stribeck_general:
+      return base::exp(-base::pow(speed / shapes[0], shapes[1]));
+  }
+  return 0.0;
 }
 
-/// d h / d shape.
-inline double basis_slope(SpeedBasis basis, double speed, double shape) {
-  return basis == SpeedBasis::one ? 0.0 : -speed * speed * base::exp(-shape * speed * speed);
+/// Derivative of h by its shape number `which`.
+inline double basis_slope(SpeedBasis basis, double speed, const double* shapes, int which) {
+  switch (basis) {
+    case SpeedBasis::one:
+    case SpeedBasis::speed:
+      return 0.0;
+    case SpeedBasis::stribeck:
+      return -speed * speed * base::exp(-shapes[0] * speed * speed);
+    case SpeedBasis::stribeck_general: {
+      if (speed == 0.0) return 0.0;
+      const double ratio = speed / shapes[0];
+      const double power = base::pow(ratio, shapes[1]);
+      const double value = base::exp(-power);
+      return which == 0 ? value * power * shapes[1] / shapes[0] : -value * power * base::log(ratio);
+    }
+  }
+  return 0.0;
 }
 
 }  // namespace jointid::model

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "base/random.hpp"
@@ -17,7 +18,6 @@ using identify::FrictionNodes;
 using identify::Integral;
 using identify::Recording;
 using identify::Window;
-using model::SpeedBasis;
 
 /// Velocity start + slope t, position its integral.
 Recording ramp(int samples, double duration, double start, double slope) {
@@ -36,20 +36,42 @@ struct Whole {
   std::vector<Window> windows;
 };
 
-double integral_of(Integral integral, const Recording& r) {
+identify::Term term_of(Integral integral) {
+  for (const auto& term : identify::term_table()) {
+    if (term.integral == integral && term.harmonic == identify::Harmonic::none) return term;
+  }
+  throw std::logic_error("no such term");
+}
+
+double integral_of(const identify::Term& term, const Recording& r, double gear_ratio = 1.0) {
   const Whole whole(r);
   Eigen::VectorXd result(1);
-  identify::integrate(integral, r, whole.usable, whole.windows, result);
+  identify::integrate(term, gear_ratio, r, whole.usable, whole.windows, result);
   return result[0];
 }
 
-double friction_of(SpeedBasis basis, const Recording& r, double shape, double* slope = nullptr) {
+double integral_of(Integral integral, const Recording& r) {
+  return integral_of(term_of(integral), r);
+}
+
+const identify::Term kStatic = identify::find_term("static");
+
+/// A column and its derivative by the only shape.
+void decayed_column(const FrictionNodes& nodes, double shape, const base::Cancel* cancel,
+                    Eigen::VectorXd& column, Eigen::VectorXd* change) {
+  identify::integrate_friction(kStatic, nodes, &shape, identify::kValue, cancel, column);
+  if (change != nullptr) {
+    identify::integrate_friction(kStatic, nodes, &shape, 0, cancel, *change);
+  }
+}
+
+double friction_of(const Recording& r, double shape, double* slope = nullptr) {
   const Whole whole(r);
   FrictionNodes nodes;
   identify::append_nodes(r, whole.usable, whole.windows, nodes);
   Eigen::VectorXd column(1);
   Eigen::VectorXd change(1);
-  identify::integrate_friction(basis, nodes, shape, nullptr, column, &change);
+  decayed_column(nodes, shape, nullptr, column, &change);
   if (slope != nullptr) *slope = change[0];
   return column[0];
 }
@@ -66,8 +88,7 @@ CHECK_CASE("quadrature: constant velocity") {
     CHECK_CLOSE(integral_of(Integral::displacement, r), 2.0 * v, 1e-14);
     CHECK_CLOSE(integral_of(Integral::velocity_change, r), 0.0, 1e-15);
     CHECK_CLOSE(integral_of(Integral::duration, r), 2.0, 1e-14);
-    CHECK_CLOSE(friction_of(SpeedBasis::stribeck, r, 3.0),
-                std::copysign(2.0 * std::exp(-3.0 * v * v), v), 1e-14);
+    CHECK_CLOSE(friction_of(r, 3.0), std::copysign(2.0 * std::exp(-3.0 * v * v), v), 1e-14);
     // Integral of cos(v t): sin(v T) / v, second order in the step.
     CHECK_CLOSE(integral_of(Integral::cosine, r), std::sin(2.0 * v) / v, 1e-4);
     CHECK_CLOSE(integral_of(Integral::sine, r), (1.0 - std::cos(2.0 * v)) / v, 1e-4);
@@ -83,7 +104,7 @@ CHECK_CASE("quadrature: a reversal anywhere in an interval counts exactly") {
     const double exact = std::copysign(1.0 - 2.0 * turn, slope);
     CHECK_CLOSE(integral_of(Integral::friction, r), slope > 0 ? 1.0 - 2.0 * turn : 2.0 * turn - 1.0,
                 1e-12);
-    CHECK_CLOSE(std::fabs(exact), std::fabs(friction_of(SpeedBasis::one, r, 9.0)), 1e-12);
+    CHECK_CLOSE(std::fabs(exact), std::fabs(integral_of(Integral::friction, r)), 1e-12);
     CHECK_CLOSE(integral_of(Integral::velocity_change, r), slope, 1e-13);
     CHECK_CLOSE(integral_of(Integral::displacement, r), slope * (0.5 - turn), 1e-12);
   }
@@ -103,8 +124,7 @@ CHECK_CASE("quadrature: static friction over a ramp is second order to the error
     // Odd in v: from -|start| back to 0 it counts negative.
     const double exact = (decayed(shape, end) - decayed(shape, std::fabs(start))) / slope;
     for (const int samples : {51, 101, 201, 401, 1601}) {
-      const double found =
-          friction_of(SpeedBasis::stribeck, ramp(samples, 1.0, start, slope), shape);
+      const double found = friction_of(ramp(samples, 1.0, start, slope), shape);
       const double step = 1.0 / (samples - 1);
       // The trapezoid's bound: step^2 / 12 times the largest second derivative over time.
       CHECK_CLOSE(found, exact, step * step / 12.0 * 2.0 * shape * slope * slope);
@@ -117,12 +137,10 @@ CHECK_CASE("quadrature: the shape's slope matches finite differences") {
   for (const double shape : {0.0, 0.5, 7.0, 60.0, 200.0}) {
     const double step = 1e-5 * (1.0 + shape);
     double slope = 0.0;
-    friction_of(SpeedBasis::stribeck, r, shape, &slope);
-    const double above = friction_of(SpeedBasis::stribeck, r, shape + step);
-    const double below = friction_of(SpeedBasis::stribeck, r, shape - step);
+    friction_of(r, shape, &slope);
+    const double above = friction_of(r, shape + step);
+    const double below = friction_of(r, shape - step);
     CHECK_CLOSE(slope, (above - below) / (2.0 * step), 1e-6 * std::fabs(slope) + 1e-8);
-    friction_of(SpeedBasis::one, r, shape, &slope);
-    CHECK(slope == 0.0);
   }
 }
 
@@ -159,8 +177,8 @@ CHECK_CASE("quadrature: windows and unusable intervals, against one interval at 
   Eigen::VectorXd column(count);
   Eigen::VectorXd change(count);
   Eigen::VectorXd moved(count);
-  identify::integrate_friction(SpeedBasis::stribeck, nodes, 30.0, nullptr, column, &change);
-  identify::integrate(Integral::displacement, r, usable, windows, moved);
+  decayed_column(nodes, 30.0, nullptr, column, &change);
+  identify::integrate(term_of(Integral::displacement), 1.0, r, usable, windows, moved);
   const auto decay = [](long double v) { return std::exp(-30.0L * v * v); };
   const auto slope = [](long double v) { return -v * v * std::exp(-30.0L * v * v); };
   for (Eigen::Index w = 0; w < count; ++w) {
@@ -189,9 +207,9 @@ CHECK_CASE("quadrature: windows without a usable interval integrate to zero") {
   identify::append_nodes(r, none, windows, nodes);
   Eigen::VectorXd column = Eigen::VectorXd::Constant(2, 99.0);
   Eigen::VectorXd change = column;
-  identify::integrate_friction(SpeedBasis::stribeck, nodes, 1.0, nullptr, column, &change);
+  decayed_column(nodes, 1.0, nullptr, column, &change);
   CHECK(column.isZero(0.0) && change.isZero(0.0));
-  identify::integrate(Integral::duration, r, none, windows, column);
+  identify::integrate(term_of(Integral::duration), 1.0, r, none, windows, column);
   CHECK(column.isZero(0.0));
 }
 
@@ -202,15 +220,57 @@ CHECK_CASE("quadrature: reads the cancel flag") {
   identify::append_nodes(r, whole.usable, whole.windows, nodes);
   base::Cancel cancel;
   Eigen::VectorXd column(1);
-  identify::integrate_friction(SpeedBasis::stribeck, nodes, 1.0, &cancel, column);
+  decayed_column(nodes, 1.0, &cancel, column, nullptr);
   cancel.request();
   bool cancelled = false;
   try {
-    identify::integrate_friction(SpeedBasis::stribeck, nodes, 1.0, &cancel, column);
+    decayed_column(nodes, 1.0, &cancel, column, nullptr);
   } catch (const base::Cancelled&) {
     cancelled = true;
   }
   CHECK(cancelled);
+}
+
+CHECK_CASE("quadrature: directions apart add up to both") {
+  const auto r = ramp(1001, 2.0, -0.7, 1.0);  // reverses inside an interval
+  for (const std::string name : {"coulomb", "static"}) {
+    const Whole whole(r);
+    FrictionNodes nodes;
+    identify::append_nodes(r, whole.usable, whole.windows, nodes);
+    const double shape = 40.0;
+    const auto column = [&](const std::string& key) {
+      const auto term = identify::find_term(key);
+      Eigen::VectorXd result(1);
+      identify::integrate_friction(term, identify::nodes_of(term.direction, nodes), &shape,
+                                   identify::kValue, nullptr, result);
+      return result[0];
+    };
+    CHECK(column(name + "_positive") > 0.0);
+    CHECK(column(name + "_negative") < 0.0);
+    CHECK_CLOSE(column(name + "_positive") + column(name + "_negative"), column(name), 1e-14);
+  }
+  // Viscous friction of one direction is the travel in that direction: 0.5 (1.3^2) and 0.5 (0.7^2).
+  CHECK_CLOSE(integral_of(identify::find_term("viscous_positive"), r), 0.845, 1e-5);
+  CHECK_CLOSE(integral_of(identify::find_term("viscous_negative"), r), -0.245, 1e-5);
+}
+
+CHECK_CASE("quadrature: harmonics count turns of the joint or of the motor") {
+  const auto r = ramp(20001, 2.0, 0.7, 0.0);
+  const auto integral = [](double frequency) {
+    return (1.0 - std::cos(1.4 * frequency)) / (0.7 * frequency);
+  };
+  CHECK_CLOSE(integral_of(identify::find_term("position_sin_3"), r, 101.0), integral(3.0), 1e-7);
+  CHECK_CLOSE(integral_of(identify::find_term("ripple_sin_2"), r, 101.0), integral(202.0), 1e-5);
+  CHECK_CLOSE(integral_of(identify::find_term("ripple_cos_0.5"), r, 10.0),
+              std::sin(5.0 * 1.4) / (0.7 * 5.0), 1e-7);
+}
+
+CHECK_CASE("quadrature: load friction follows the torque's magnitude and the velocity's sign") {
+  auto r = ramp(1001, 2.0, -1.0, 1.0);
+  r.torque = Eigen::VectorXd::Constant(1001, -3.0);
+  CHECK_CLOSE(integral_of(identify::find_term("load_friction"), r), 0.0, 1e-12);
+  r.torque.tail(500).setConstant(5.0);  // after the reversal at 1 s
+  CHECK_CLOSE(integral_of(identify::find_term("load_friction"), r), 2.0, 1e-2);
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ __all__: list[str] = [
     "Term",
     "WindowOptions",
     "friction_basis",
+    "is_parameter",
     "minimise_genetic",
     "minimise_separable",
     "model_names",
@@ -33,6 +34,7 @@ __all__: list[str] = [
     "parameter_names",
     "polish",
     "shapes",
+    "term",
     "terms",
     "usable_intervals",
 ]
@@ -42,20 +44,33 @@ class Term:
     One term of the torque balance: a coefficient times a basis.
     """
     @property
+    def family(self) -> bool:
+        """
+        True if the row stands for a term an order, as in ripple_sin_2.
+        """
+    @property
     def friction(self) -> bool:
         """
         True if the term belongs to the friction map.
         """
     @property
+    def key(self) -> str:
+        """
+        What a model lists; unique.
+        """
+    @property
     def meaning(self) -> str: ...
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """
+        The parameter's name.
+        """
     @property
     def non_negative(self) -> bool: ...
     @property
-    def shape(self) -> str:
+    def shapes(self) -> list[str]:
         """
-        Name of the shape parameter; empty without one.
+        Names of the shape parameters that bend the basis.
         """
     @property
     def unit(self) -> str: ...
@@ -77,7 +92,7 @@ class Shape:
 
 class Model:
     """
-    A friction model by name, as the terms it consists of.
+    A friction model by name, as the keys of its terms.
     """
     @property
     def equation(self) -> str: ...
@@ -122,18 +137,24 @@ class WindowOptions:
         Number of windows; 0: not given.
     duration : default 0.0
         Length of a window [s]; 0: not given.
+    cumulative : default False
+        Compare running integrals at the windows' ends (thesis's MATLAB), not each window's.
     """
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> dict[str, typing.Any]: ...
     def __hash__(self) -> int: ...
-    def __init__(self, *, count: int = 0, duration: float = 0.0) -> None: ...
+    def __init__(
+        self, *, count: int = 0, duration: float = 0.0, cumulative: bool = False
+    ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
     def asdict(self) -> dict[str, typing.Any]:
         """
         The fields as a dictionary.
         """
-    def replace(self, *, count: int = ..., duration: float = ...) -> WindowOptions:
+    def replace(
+        self, *, count: int = ..., duration: float = ..., cumulative: bool = ...
+    ) -> WindowOptions:
         """
         A copy with the given fields changed.
         """
@@ -141,6 +162,11 @@ class WindowOptions:
     def count(self) -> int:
         """
         Number of windows; 0: not given.
+        """
+    @property
+    def cumulative(self) -> bool:
+        """
+        Compare running integrals at the windows' ends (thesis's MATLAB), not each window's.
         """
     @property
     def duration(self) -> float:
@@ -174,6 +200,8 @@ class Penalty:
         windows: WindowOptions,
         residual: Residual,
         mask_standstill: bool = True,
+        gear_ratio: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+        per_recording: collections.abc.Sequence[str] = [],
     ) -> None: ...
     def columns(
         self, shapes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
@@ -196,6 +224,8 @@ class Penalty:
     @property
     def coefficients(self) -> int: ...
     @property
+    def cumulative(self) -> bool: ...
+    @property
     def names(self) -> list[str]: ...
     @property
     def noise_limited(self) -> bool: ...
@@ -214,6 +244,11 @@ class Penalty:
     def target(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
         Window integrals of the torque [N m s].
+        """
+    @property
+    def terms(self) -> list[Term]:
+        """
+        The term of each coefficient.
         """
     @property
     def total_samples(self) -> int: ...
@@ -420,12 +455,17 @@ class PolishResult:
     def penalty(self) -> float: ...
 
 def friction_basis(
-    term: str,
+    key: str,
     velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-    shape: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+    shapes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
     """
     The friction term's basis at each velocity [rad/s or m/s]: what its coefficient multiplies.
+    """
+
+def is_parameter(name: str) -> bool:
+    """
+    Whether a parameter can have this name.
     """
 
 def minimise_genetic(
@@ -454,7 +494,7 @@ def models() -> list[Model]:
 
 def parameter_names() -> tuple[typing.Any, ...]:
     """
-    All parameters, a shape parameter behind the term it bends.
+    All parameters but the harmonics, a shape parameter behind the term it bends.
     """
 
 def polish(
@@ -468,6 +508,11 @@ def polish(
 def shapes() -> list[Shape]:
     """
     All shape parameters.
+    """
+
+def term(key: str) -> Term:
+    """
+    The term of that key; "ripple_sin_2" is order 2 of its family.
     """
 
 def terms() -> list[Term]:

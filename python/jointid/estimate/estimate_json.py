@@ -99,9 +99,8 @@ def _parameter(entry: Mapping[str, Any]) -> ParameterEstimate:
 
 
 def _matrix(rows: Sequence[Sequence[Any]]) -> NDArray[np.float64]:
-    return np.array([[float(x) for x in row] for row in rows], dtype=np.float64).reshape(
-        len(rows), -1
-    )
+    matrix = np.array([[float(x) for x in row] for row in rows], dtype=np.float64)
+    return matrix.reshape(len(rows), len(rows))
 
 
 def _arrays(columns: Mapping[str, Any], *, integers: Sequence[str]) -> dict[str, Any]:

@@ -1,5 +1,7 @@
 """The identified friction map with its band."""
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,25 +15,27 @@ Array = NDArray[np.float64]
 _STEP = 1e-6  # relative, for the derivative by a shape parameter
 
 
-def friction_torque(values: dict[str, float], velocity: Array) -> Array:
-    """Friction of the given parameters (all of one model's) at each velocity [N·m or N]."""
+def friction_torque(terms: Sequence[str], values: Mapping[str, float], velocity: Array) -> Array:
+    """Friction at each velocity [N·m or N], of those among the terms that belong to the friction map."""
     total = np.zeros_like(velocity)
-    for term in _core.terms():
-        if term.friction and term.name in values:
-            shape = values.get(term.shape, 0.0)
-            total += values[term.name] * _core.friction_basis(term.name, velocity, shape)
+    for key in terms:
+        term = _core.term(key)
+        if term.friction:
+            shapes = np.array([values[shape] for shape in term.shapes])
+            total += values[term.name] * _core.friction_basis(key, velocity, shapes)
     return total
 
 
 def friction_curve(estimate: Estimate, velocity: Array) -> FrictionCurve:
     """Friction at each velocity, and its pointwise 95 % band by linear propagation of the covariance."""
     values = {name: parameter.value for name, parameter in estimate.parameters.items()}
-    torque = friction_torque(values, velocity)
+    terms = estimate.settings["terms"]
+    torque = friction_torque(terms, values, velocity)
     sensitivity = np.zeros((len(velocity), len(estimate.free)))
     for column, name in enumerate(estimate.free):
         step = _STEP * max(abs(values[name]), 1e-3)
-        above = friction_torque({**values, name: values[name] + step}, velocity)
-        below = friction_torque({**values, name: values[name] - step}, velocity)
+        above = friction_torque(terms, {**values, name: values[name] + step}, velocity)
+        below = friction_torque(terms, {**values, name: values[name] - step}, velocity)
         sensitivity[:, column] = (above - below) / (2.0 * step)
     # An infinite variance must not meet a sensitivity of exactly zero.
     finite = np.where(np.isfinite(estimate.covariance), estimate.covariance, 0.0)

@@ -43,7 +43,7 @@ def quality(estimate: Estimate) -> list[tuple[str, str]]:
         else "N·m"
     )
     return [
-        ("model", f"{settings['model']}, residual of the {settings['residual']}"),
+        ("model", _model(estimate)),
         (
             "fit",
             f"R² {r.r_squared:.5f}, relative residual {100.0 * r.relative:.2f} %, rms {r.rms:.3g} {unit}",
@@ -61,6 +61,17 @@ def quality(estimate: Estimate) -> list[tuple[str, str]]:
         ("correlation", strongest_correlation(estimate)),
         ("search", f"{estimate.message}; {estimate.status} in {estimate.seconds:.2f} s"),
     ]
+
+
+def _model(estimate: Estimate) -> str:
+    settings = estimate.settings
+    options = ["asymmetric"] if settings["asymmetric"] else []
+    options += ["load friction"] if settings["load_friction"] else []
+    for name in ("ripple", "harmonics"):
+        if settings[name]:
+            options.append(f"{name} of order {', '.join(f'{order:g}' for order in settings[name])}")
+    text = ", ".join([settings["model"], *options, f"residual of the {settings['residual']}"])
+    return f"{text} (without {settings['dropped']})" if settings["dropped"] else text
 
 
 def strongest_correlation(estimate: Estimate) -> str:

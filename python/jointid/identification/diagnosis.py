@@ -1,5 +1,6 @@
 """What to mind about an estimate, in plain language. One function a warning; each may stay silent."""
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
@@ -22,6 +23,9 @@ _ADVICE = {
     "viscous": "move faster, at several speeds",
     "inertia": "accelerate harder, or give the inertia in the joint file",
     "torque_offset": "move as much in one direction as in the other",
+    "stribeck_velocity": "let the joint pass slowly through speeds near zero, in both directions",
+    "stribeck_exponent": "let the joint pass slowly through speeds near zero, in both directions",
+    "load_friction": "move with different loads",
     "gravity_cos": "move through a wider range of angles",
     "gravity_sin": "move through a wider range of angles",
 }
@@ -72,10 +76,10 @@ def _noisy_velocity(facts: Facts) -> Iterator[Warned]:
 
 def _richness(facts: Facts) -> str | None:
     """Why the data do not carry a static excess, or None when they do."""
-    static, coulomb = facts.parameters.get("static"), facts.parameters["coulomb"]
-    if static is None:
+    static, coulomb = facts.parameters.get("static"), facts.parameters.get("coulomb")
+    if static is None or coulomb is None:
         return None
-    shape = facts.parameters["stribeck"]
+    shape = facts.parameters.get("stribeck") or facts.parameters["stribeck_velocity"]
     if static.at_bound == "min" or coulomb.at_bound == "min":
         which = "static" if static.at_bound == "min" else "Coulomb"
         return f"{which} friction ended at its lower bound"
@@ -117,9 +121,25 @@ def _at_bound(facts: Facts) -> Iterator[Warned]:
         )
 
 
-def _scale(p: ParameterEstimate, torque_level: float) -> float:
-    """What 5 % refers to: an offset may rightly be zero, so it is held against the torque."""
-    return max(abs(p.value), torque_level) if p.name.endswith("offset") else abs(p.value)
+def _kind(name: str) -> str:
+    """The quantity behind a parameter's name, whatever its direction or recording."""
+    return name.split("[")[0].removesuffix("_positive").removesuffix("_negative")
+
+
+def _scale(p: ParameterEstimate, facts: Facts) -> float:
+    """What 5 % refers to: an offset may rightly be zero, and so may one phase of a harmonic."""
+    if "offset" in p.name:
+        return max(abs(p.value), facts.torque_level)
+    family, _, rest = p.name.partition("_")
+    if family in ("gravity", "ripple", "position"):
+        order = rest.partition("_")[2]
+        pair = [
+            other.value
+            for phase in ("cos", "sin")
+            if (other := facts.parameters.get(f"{family}_{phase}{'_' if order else ''}{order}"))
+        ]
+        return math.hypot(*pair)
+    return abs(p.value)
 
 
 def _undetermined(facts: Facts) -> Iterator[Warned]:
@@ -128,18 +148,19 @@ def _undetermined(facts: Facts) -> Iterator[Warned]:
     for p in facts.parameters.values():
         if p.stderr is None:
             continue
-        scale = _scale(p, facts.torque_level)
+        scale = _scale(p, facts)
+        shift = max(abs(p.shift_halved or 0.0), abs(p.shift_doubled or 0.0))
+        moves = shift > _LARGE_SHIFT * p.stderr and shift > _NOTICEABLE_SHIFT * scale
+        if p.stderr <= _LARGE_ERROR * scale and not moves:
+            continue
+        found.append(p.name)
         if p.stderr > _LARGE_ERROR * scale:
-            found.append(p.name)
             reasons.append(
                 f"{p.name} has a standard error of {percent(p.stderr / scale)}"
                 if p.stderr < 10.0 * scale
                 else f"{p.name} is not excited"
             )
-            continue
-        shift = max(abs(p.shift_halved or 0.0), abs(p.shift_doubled or 0.0))
-        if shift > _LARGE_SHIFT * p.stderr and shift > _NOTICEABLE_SHIFT * scale:
-            found.append(p.name)
+        if moves:
             reasons.append(
                 f"{p.name} moves by {percent(shift / scale)} ({shift / p.stderr:.1f} standard errors) when the "
                 "windows are halved or doubled"
@@ -152,11 +173,11 @@ def _undetermined(facts: Facts) -> Iterator[Warned]:
             message += (
                 f"; {first} and {second} can hardly be told apart (correlation {correlation:.3f})"
             )
-    advice = dict.fromkeys(_ADVICE[name] for name in found if name in _ADVICE)
+    advice = dict.fromkeys(_ADVICE[key] for key in map(_kind, found) if key in _ADVICE)
     yield Warned(
         code="undetermined",
         parameters=tuple(found),
-        message=message + " — " + "; ".join(advice),
+        message=message + (" — " + "; ".join(advice) if advice else ""),
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,16 +14,15 @@ from jointid import _core
 from jointid.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Convergence, Prediction
-from jointid.identification.inference import infer, r_squared
-from jointid.identification.model_terms import TermChoice, choose_terms
-from jointid.identification.problem import Problem, listed
+from jointid.identification.inference import infer, r_squared, relative_residual
+from jointid.identification.model_terms import Request, TermChoice, choose_terms
+from jointid.identification.problem import Problem, Windows, listed, whole_number
 from jointid.identification.search_domain import SearchDomain, domain_for
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
-Windows = int | float | _core.WindowOptions | None
 Callback = Callable[[_core.Generation], bool | None]
 
 _METHODS = ("ga", "separable")
@@ -42,6 +41,11 @@ def identify(
     joint: Joint | None = None,
     *,
     model: str | None = None,
+    asymmetric: bool | None = None,
+    ripple: Collection[float] | None = None,
+    harmonics: Collection[float] | None = None,
+    load_friction: bool | None = None,
+    per_recording: Collection[str] = (),
     parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
     method: str = "ga",
     ga: _core.GaOptions | None = None,
@@ -61,12 +65,24 @@ def identify(
     Parameters
     ----------
     recordings : Recording or sequence of Recording
-        One run, or several that share all parameters.
+        One run, or several that share all parameters but those of `per_recording`.
     joint : Joint, optional
         Known facts, bounds and the model. Without one, inertia, Coulomb and viscous friction and an
         offset are identified with bounds from the data, and the sensor if the recording has one.
     model : str, optional
-        "coulomb_viscous" (2-1) or "stribeck" (4-1). Default: the joint's, else "coulomb_viscous".
+        "coulomb_viscous" (2-1), "stribeck" (4-1) or "stribeck_general" (2-3, with exponent). Default:
+        the joint's, else "coulomb_viscous".
+    asymmetric : bool, optional
+        Friction coefficients for each direction apart; takes the place of a torque offset.
+    ripple : collection of float, optional
+        Orders of torque or sensor ripple over the motor's angle, e.g. (2,) for a strain-wave gear;
+        each is a sine and a cosine [N·m]. Needs the joint's gear ratio.
+    harmonics : collection of float, optional
+        Orders of a torque over the joint's own angle.
+    load_friction : bool, optional
+        Friction in proportion to the magnitude of the drive's torque.
+    per_recording : collection of str
+        Coefficients that each recording has for itself, e.g. ("torque_offset",).
     parameters : mapping, optional
         Changes by name: a number fixes; {"value", "min", "max", "vary"} or a `Parameter` change those
         fields. Values in SI.
@@ -77,9 +93,10 @@ def identify(
         Settings of the genetic algorithm.
     residual : str, optional
         "sensor" (default with a sensor) or "torque".
-    windows : int, float or WindowOptions, optional
-        An int is their number, a float their duration [s]. Default: the shortest that the noise of
-        the velocity allows.
+    windows : int, float, "cumulative" or WindowOptions, optional
+        An int is about how many (gaps and several recordings round it), a float their duration [s];
+        "cumulative" compares the running integral at each sample, as the thesis's MATLAB does.
+        Default: the shortest that the noise of the velocity allows.
     torque_hold : str, optional
         "zoh" when the torque is a command held between samples, "linear" when it is measured.
         Default: the recording's, else the joint's, else "linear".
@@ -107,8 +124,25 @@ def identify(
     started = time.perf_counter()
     runs = listed(recordings)
     if method not in _METHODS:
-        raise InputError(f"method '{method}' is not known; known are {', '.join(_METHODS)}")
-    choice = choose_terms(runs, joint, model, residual)
+        raise InputError(f"method {method!r} is not known; known are {', '.join(_METHODS)}")
+    if joint is not None and not isinstance(joint, Joint):
+        raise InputError(
+            f"joint must be a Joint, got {joint!r}; read a file with jointid.Joint.load"
+        )
+    if not isinstance(mask_standstill, bool):
+        raise InputError(f"mask_standstill must be True or False, got {mask_standstill!r}")
+    seed = whole_number("seed", seed, 0, 2**64 - 1)
+    threads = whole_number("threads", threads, 0, 1024)
+    request = Request(
+        model=model,
+        residual=residual,
+        asymmetric=asymmetric,
+        ripple=ripple,
+        harmonics=harmonics,
+        load_friction=load_friction,
+        per_recording=per_recording,
+    )
+    choice = choose_terms(runs, joint, request)
     problem = Problem(
         recordings=runs,
         joint=joint,
@@ -119,6 +153,12 @@ def identify(
     penalty = problem.penalty(windows)
     domain = domain_for(penalty, joint, parameters, problem.peak_speed)
     options = ga if ga is not None else _core.GaOptions()
+    if not isinstance(options, _core.GaOptions):
+        raise InputError(
+            f"ga must be GaOptions, got {options!r}; use jointid.GaOptions(population=...)"
+        )
+    if callback is not None and not callable(callback):
+        raise InputError(f"callback must be callable, got {callback!r}")
     outcome = _search(penalty, domain, method, options, seed, threads, callback)
     settings: dict[str, Any] = {
         "version": _core.__version__,
@@ -126,8 +166,15 @@ def identify(
         "method": method,
         "model": choice.model,
         "terms": list(choice.terms),
+        "asymmetric": choice.asymmetric,
+        "ripple": list(choice.ripple),
+        "harmonics": list(choice.harmonics),
+        "load_friction": choice.load_friction,
+        "per_recording": list(choice.per_recording),
+        "dropped": choice.dropped,
         "residual": choice.residual,
         "windows": penalty.window_duration,
+        "cumulative": penalty.cumulative,
         "torque_hold": torque_hold,
         "mask_standstill": mask_standstill,
         "seed": seed,
@@ -157,7 +204,12 @@ def predict(estimate: Estimate, recording: Recording) -> Prediction:
         model=settings["model"],
         residual=settings["residual"],
         sensor="sensor_gain" in settings["terms"],
+        gear_ratio=estimate.joint.gear_ratio,
     )
+    if recording.kind != settings["kind"]:
+        raise InputError(
+            f"the estimate is of a {settings['kind']} joint, the recording is {recording.kind}"
+        )
     if choice.sensor and recording.sensor is None:
         raise InputError(
             "the estimate has a torque sensor, but the recording has no signal 'sensor'"
@@ -170,13 +222,21 @@ def predict(estimate: Estimate, recording: Recording) -> Prediction:
         mask_standstill=settings["mask_standstill"],
     )
     penalty = problem.penalty(settings["windows"])
-    theta = np.array([estimate.parameters[name].value for name in penalty.names])
+    theta = np.array([_predicting(estimate, name) for name in penalty.names])
     table = problem.table(penalty, theta)
     return Prediction(
         windows=table,
-        relative=float(np.linalg.norm(table.residual) / np.linalg.norm(table.measured)),
-        r_squared=r_squared(table.measured, table.residual),
+        relative=relative_residual(table),
+        r_squared=r_squared(table),
     )
+
+
+def _predicting(estimate: Estimate, name: str) -> float:
+    """A parameter's value; of one that each recording had for itself, the mean."""
+    if name in estimate.parameters:
+        return estimate.parameters[name].value
+    own = [p.value for key, p in estimate.parameters.items() if key.startswith(f"{name}[")]
+    return float(np.mean(own))
 
 
 def _search(
@@ -209,7 +269,9 @@ def _search(
     )
     told = f"{convergence.generation[-1]} generations, {result.evaluations} penalties"
     best, status = result.best, "converged"
-    if result.stop == _core.Stop.observer:
+    if result.stop == _core.Stop.generations and not options.polish:
+        status, told = "stopped", f"used up its {told} without a polish"
+    elif result.stop == _core.Stop.observer:
         status, told = "stopped", f"stopped by the callback after {told}"
     elif options.polish:
         polished = _core.polish(penalty, domain.lower, domain.upper, best)
@@ -227,7 +289,11 @@ def _window_shifts(
     shifts: list[Array | None] = []
     for factor in (0.5, 2.0):
         try:
-            other = problem.penalty(penalty.window_duration * factor)
+            other = problem.penalty(
+                _core.WindowOptions(
+                    duration=penalty.window_duration * factor, cumulative=penalty.cumulative
+                )
+            )
         except InputError:  # fewer windows than parameters, or longer than the recording
             shifts.append(None)
             continue

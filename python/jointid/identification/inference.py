@@ -58,14 +58,18 @@ def infer(
     shifts : tuple of ndarray or None
         How each parameter moves when the windows are halved and doubled.
     """
-    freedom = _freedom(domain, best)
-    free = list(freedom.indices)
     residual = penalty.residuals(best)
+    jacobian = penalty.jacobian(best)
+    sizes = np.linalg.norm(jacobian, axis=0)
+    noise = np.linalg.norm(residual) / np.sqrt(max(1, len(residual) - len(best)))
+    alone = noise / np.where(
+        sizes > 0.0, sizes, 1.0
+    )  # each parameter's error if it were the only one
+    freedom = _freedom(domain, best, jacobian.T @ residual, alone)
+    free = list(freedom.indices)
     table = problem.table(penalty, best)
-    spread = parameter_covariance(
-        penalty.jacobian(best)[:, free], residual, _centre(penalty, best, free)
-    )
-    parameters = _parameters(problem, domain, best, freedom, spread, len(residual), shifts)
+    spread = parameter_covariance(jacobian[:, free], residual, _centre(penalty, best, free))
+    parameters = _parameters(problem, penalty, domain, best, freedom, spread, len(residual), shifts)
     statistics = _statistics(problem, penalty, table)
     named = sorted(zip(free, np.abs(spread.weakest), strict=True), key=lambda pair: -pair[1])
     weakest = tuple(domain.names[i] for i, share in named if share > _NAMED)
@@ -108,26 +112,43 @@ def infer(
     )
 
 
-def r_squared(measured: Array, residual: Array) -> float:
-    """Share of the measured variance that the model explains."""
-    spread = measured - measured.mean()
-    total = float(spread @ spread)
-    return 1.0 - float(residual @ residual) / total if total > 0.0 else 0.0
+def r_squared(table: WindowTable) -> float:
+    """Share of the variance of the measured window means that the model explains, weighted by duration.
+
+    Means, because integrals of a constant signal vary with the windows' unequal durations.
+    """
+    mean = table.measured / table.duration
+    level = float(np.average(mean, weights=table.duration))
+    total = float(np.sum(table.duration * (mean - level) ** 2))
+    left = float(np.sum(table.residual**2 / table.duration))
+    return 1.0 - left / total if total > 1e-18 * level**2 * float(table.duration.sum()) else 0.0
 
 
-def _freedom(domain: SearchDomain, best: Array) -> _Freedom:
+def relative_residual(table: WindowTable) -> float:
+    """Norm of the residuals over the norm of the measured integrals; infinite when nothing was measured."""
+    size = float(np.linalg.norm(table.measured))
+    return float(np.linalg.norm(table.residual)) / size if size > 0.0 else float("inf")
+
+
+def _freedom(domain: SearchDomain, best: Array, gradient: Array, alone: Array) -> _Freedom:
+    """Which parameters a bound holds: they lie on it, and the penalty would fall beyond it.
+
+    On it means nearer than a thousandth of what the parameter could move by noise alone, not a share
+    of the domain: under very wide bounds a small right value is no bound.
+    """
     at_bound: list[str | None] = []
     free = []
     for index in range(len(domain.names)):
-        room = 1e-6 * (domain.upper[index] - domain.lower[index])
+        low, high = domain.lower[index], domain.upper[index]
+        near = min(max(1e-3 * alone[index], 1e-14 * (high - low)), 1e-6 * (high - low))
         bound = None
-        if room > 0.0 and best[index] <= domain.lower[index] + room:
+        if high > low and best[index] - low <= near and gradient[index] >= 0.0:
             bound = "min"
-        elif room > 0.0 and best[index] >= domain.upper[index] - room:
+        elif high > low and high - best[index] <= near and gradient[index] <= 0.0:
             bound = "max"
         at_bound.append(bound)
         # On its bound a parameter is not free to vary: an error would not be a standard error.
-        if room > 0.0 and bound is None:
+        if high > low and bound is None:
             free.append(index)
     return _Freedom(indices=tuple(free), at_bound=tuple(at_bound))
 
@@ -150,8 +171,8 @@ def _statistics(problem: Problem, penalty: _core.Penalty, table: WindowTable) ->
         window_duration=penalty.window_duration,
         noise_share=penalty.noise_share,
         rms=float(np.sqrt(np.mean((residual / table.duration) ** 2))),
-        relative=float(np.linalg.norm(residual) / np.linalg.norm(table.measured)),
-        r_squared=r_squared(table.measured, residual),
+        relative=relative_residual(table),
+        r_squared=r_squared(table),
         autocorrelation=float(residual[1:] @ residual[:-1])
         / max(float(residual @ residual), 1e-300),
         samples=penalty.total_samples,
@@ -160,8 +181,19 @@ def _statistics(problem: Problem, penalty: _core.Penalty, table: WindowTable) ->
     )
 
 
+def _facts(penalty: _core.Penalty) -> dict[str, _core.Term | _core.Shape]:
+    """Name to term or shape, a shape behind the first term that it bends."""
+    shapes = {shape.name: shape for shape in _core.shapes()}
+    facts: dict[str, _core.Term | _core.Shape] = {}
+    for name, term in zip(penalty.names, penalty.terms, strict=False):
+        facts[name] = term
+        facts.update({shape: shapes[shape] for shape in term.shapes if shape not in facts})
+    return facts
+
+
 def _parameters(
     problem: Problem,
+    penalty: _core.Penalty,
     domain: SearchDomain,
     best: Array,
     freedom: _Freedom,
@@ -169,22 +201,18 @@ def _parameters(
     windows: int,
     shifts: tuple[Array | None, Array | None],
 ) -> dict[str, ParameterEstimate]:
-    facts: dict[str, _core.Term | _core.Shape] = {term.name: term for term in _core.terms()}
-    facts |= {shape.name: shape for shape in _core.shapes()}
     factor = quantile(0.975, max(1, windows - len(freedom.indices)))
     errors = dict(zip(freedom.indices, spread.stderr.tolist(), strict=True))
     prismatic = problem.recordings[0].kind == "prismatic"
     result = {}
-    for name in _core.parameter_names():
-        if name not in domain.names:
-            continue
+    for name, fact in _facts(penalty).items():
         i = domain.names.index(name)
         value, error, vary = float(best[i]), errors.get(i), not domain.fixed(name)
         halved, doubled = (None if s is None or not vary else float(s[i]) for s in shifts)
         result[name] = ParameterEstimate(
             name=name,
-            meaning=facts[name].meaning,
-            unit=facts[name].unit_prismatic if prismatic else facts[name].unit,
+            meaning=fact.meaning,
+            unit=fact.unit_prismatic if prismatic else fact.unit,
             value=value,
             stderr=error,
             interval=None if error is None else (value - factor * error, value + factor * error),
@@ -207,7 +235,7 @@ def _joint(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Joint:
             name=recording.name,
             kind=recording.kind,
             sensor=choice.sensor,
-            torque_offset="torque_offset" in choice.terms,
+            torque_offset=None if choice.asymmetric else "torque_offset" in choice.terms,
         )
     table = dict(base.parameters)
     for name, found in parameters.items():
@@ -218,4 +246,11 @@ def _joint(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Joint:
         high = None if known is None or known.max is None else max(known.max, found.value)
         vary = found.vary if known is None else known.vary
         table[name] = Parameter(name=name, value=found.value, min=low, max=high, vary=vary)
-    return base.replace(parameters=table, friction=choice.model)
+    return base.replace(
+        parameters=table,
+        friction=choice.model,
+        asymmetric=choice.asymmetric,
+        ripple=choice.ripple,
+        harmonics=choice.harmonics,
+        load_friction=choice.load_friction,
+    )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import numbers
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,8 @@ from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
+
+Windows = int | float | str | _core.WindowOptions | None
 
 _HOLDS = {"zoh": _core.Hold.zero_order, "linear": _core.Hold.linear}
 
@@ -40,7 +43,7 @@ class Problem:
     torque_hold: str | None
     mask_standstill: bool
 
-    def penalty(self, windows: int | float | _core.WindowOptions | None) -> _core.Penalty:
+    def penalty(self, windows: Windows) -> _core.Penalty:
         """The penalty over these windows: an int is their number, a float their duration [s].
 
         Raises
@@ -48,7 +51,7 @@ class Problem:
         InputError
             Windows that cannot be cut.
         """
-        options = window_options(windows)
+        options = self._window_options(windows)
         try:
             return _core.Penalty(
                 recordings=[self._in_core(recording) for recording in self.recordings],
@@ -56,6 +59,8 @@ class Problem:
                 windows=options,
                 residual=_core.Residual[self.choice.residual],
                 mask_standstill=self.mask_standstill,
+                gear_ratio=self.choice.gear_ratio,
+                per_recording=list(self.choice.per_recording),
             )
         except ValueError as error:
             raise InputError(str(error)) from error
@@ -65,8 +70,21 @@ class Problem:
         """Largest speed in the recordings [rad/s or m/s]."""
         return max(float(np.abs(recording.velocity).max()) for recording in self.recordings)
 
+    def _window_options(self, windows: Windows) -> _core.WindowOptions:
+        if isinstance(windows, str):
+            if windows != "cumulative":
+                raise InputError(
+                    f"windows '{windows}' is not known; use a number, a duration or 'cumulative'"
+                )
+            period = min(recording.sample_period for recording in self.recordings)
+            return _core.WindowOptions(duration=period, cumulative=True)
+        return window_options(windows)
+
     def table(self, penalty: _core.Penalty, theta: Array) -> WindowTable:
-        """The penalty's windows at a parameter vector."""
+        """The penalty's windows at a parameter vector; each for itself even if the penalty accumulates."""
+        if penalty.cumulative:
+            apart = _core.WindowOptions(duration=penalty.window_duration)
+            penalty = self.penalty(apart)
         residual = penalty.residuals(theta)
         columns = penalty.columns(theta[penalty.coefficients :])
         names = penalty.names[: penalty.coefficients]
@@ -88,10 +106,9 @@ class Problem:
             measured = np.asarray(penalty.target)
             fitted = measured - residual
             torque_residual = residual
-        friction_terms = {term.name for term in _core.terms() if term.friction}
         friction = torque_residual.copy()
-        for index, name in enumerate(names):
-            if name in friction_terms:
+        for index, term in enumerate(penalty.terms):
+            if term.friction:
                 friction += theta[index] * columns[:, index]
         return WindowTable(
             recording=run,
@@ -149,15 +166,32 @@ def window_options(windows: int | float | _core.WindowOptions | None) -> _core.W
         return _core.WindowOptions()
     if isinstance(windows, _core.WindowOptions):
         return windows
-    if isinstance(windows, bool) or not isinstance(windows, int | float | np.integer | np.floating):
+    if isinstance(windows, bool | str) or not isinstance(windows, numbers.Real):
         raise InputError(
-            f"windows must be a number (int), a duration in seconds (float) or WindowOptions, got {windows!r}"
+            "windows must be a number (int), a duration in seconds (float), 'cumulative' or WindowOptions, got "
+            f"{windows!r}"
         )
-    if not np.isfinite(windows) or windows <= 0:
-        raise InputError(f"windows must be positive, got {windows!r}")
-    if isinstance(windows, int | np.integer):
+    if not 0 < windows < 1e15:
+        raise InputError(f"windows must be positive and finite, got {windows!r}")
+    if isinstance(windows, numbers.Integral):
         return _core.WindowOptions(count=int(windows))
     return _core.WindowOptions(duration=float(windows))
+
+
+def whole_number(name: str, value: object, lowest: int, highest: int) -> int:
+    """A whole number within limits.
+
+    Raises
+    ------
+    InputError
+        Not a whole number, or outside.
+    """
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral):
+        raise InputError(f"{name} must be a whole number, got {value!r}")
+    number = int(value)
+    if not lowest <= number <= highest:
+        raise InputError(f"{name} must be {lowest} to {highest}, got {number}")
+    return number
 
 
 def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]:
@@ -168,7 +202,13 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
     InputError
         None, something else, or revolute and prismatic mixed.
     """
-    runs = (recordings,) if isinstance(recordings, Recording) else tuple(recordings)
+    if isinstance(recordings, Recording):
+        return (recordings,)
+    if not isinstance(recordings, Iterable) or isinstance(recordings, str):
+        raise InputError(
+            f"recordings is a {type(recordings).__name__}, not a Recording; read a file with jointid.load"
+        )
+    runs = tuple(recordings)
     if not runs:
         raise InputError("identify needs at least one recording, got none")
     for number, run in enumerate(runs):

@@ -16,6 +16,10 @@ _GENEROUS = 10.0
 # The Stribeck velocity lies between these shares of the peak speed: outside, nobody could see it.
 _SLOWEST_STRIBECK = 0.02
 _FASTEST_STRIBECK = 0.5
+# Exponents of the Stribeck decay that have been seen in the literature (Armstrong-Helouvry 1991).
+_EXPONENTS = (0.5, 4.0)
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,31 +45,76 @@ class SearchDomain:
         return bool(self.lower[index] == self.upper[index])
 
 
-def _shape_bounds(peak_speed: float) -> tuple[float, float]:
-    return (_FASTEST_STRIBECK * peak_speed) ** -2, (_SLOWEST_STRIBECK * peak_speed) ** -2
+def _shape_bounds(name: str, peak_speed: float) -> tuple[float, float]:
+    if name == "stribeck":
+        return (_FASTEST_STRIBECK * peak_speed) ** -2, (_SLOWEST_STRIBECK * peak_speed) ** -2
+    if name == "stribeck_velocity":
+        return _SLOWEST_STRIBECK * peak_speed, _FASTEST_STRIBECK * peak_speed
+    return _EXPONENTS
 
 
 def _coefficient_bounds(
     penalty: _core.Penalty, index: int, peak_speed: float
 ) -> tuple[float, float]:
-    term = {entry.name: entry for entry in _core.terms()}[penalty.names[index]]
-    shapes = np.full(len(penalty.names) - penalty.coefficients, _shape_bounds(peak_speed)[0])
-    column = penalty.columns(shapes)[:, index]
+    term, name = penalty.terms[index], penalty.names[index]
+    shapes = [
+        _shape_bounds(shape, peak_speed)[0] for shape in penalty.names[penalty.coefficients :]
+    ]
+    columns = penalty.columns(np.array(shapes))
+    column = columns[:, index]
     size = float(np.linalg.norm(column))
     if size == 0.0:
         raise InputError(
-            f"the recording does not excite '{term.name}' at all: fix it with parameters={{'{term.name}': value}}"
+            f"the recording does not excite '{name}' at all: fix it with parameters={{'{name}': value}}"
         )
-    scale = float(np.linalg.norm(penalty.target)) / size
-    if term.name == "sensor_gain":
-        spread = float(np.std(column)) or size / np.sqrt(len(column))
-        reach = float(np.std(penalty.target)) / spread
-        sign = 1.0 if float(column @ penalty.target) >= 0.0 else -1.0
-        bounds = sorted((sign * reach / 100.0, sign * reach * _GENEROUS))
-        return bounds[0], bounds[1]
-    if scale == 0.0:
+    level = float(np.linalg.norm(penalty.target))
+    if level == 0.0:
         raise InputError("the torque is zero throughout: there is nothing to identify")
+    if term.name == "sensor_gain":
+        return _gain_bounds(penalty, columns, index)
+    scale = level / size
+    if term.name == "sensor_offset":
+        return _offset_bounds(penalty, columns, scale)
     return (0.0 if term.non_negative else -_GENEROUS * scale), _GENEROUS * scale
+
+
+def _reading(penalty: _core.Penalty, columns: Array) -> tuple[Array, float]:
+    """Mean sensor reading of each window, and over all."""
+    gain = penalty.names.index("sensor_gain")
+    reading = columns[:, gain] / penalty.usable_duration
+    mean = float(columns[:, gain].sum() / penalty.usable_duration.sum())
+    return reading, mean
+
+
+def _gain_bounds(penalty: _core.Penalty, columns: Array, index: int) -> tuple[float, float]:
+    """Gain by its size in the torque's balance, its sign by regressing the torque on all terms.
+
+    A sensor's zero and polarity are arbitrary, so neither the raw product of reading and torque nor
+    the size of the reading says anything.
+    """
+    reading, mean = _reading(penalty, columns)
+    spread = float(np.std(reading))
+    if spread <= 1e-9 * max(abs(mean), 1e-300):
+        raise InputError(
+            "the sensor's reading does not vary: its gain cannot be identified; check the column, or drop the sensor"
+        )
+    sizes = np.linalg.norm(columns, axis=0)
+    solution, *_ = np.linalg.lstsq(columns / np.where(sizes > 0.0, sizes, 1.0), penalty.target)
+    sign = 1.0 if solution[index] >= 0.0 else -1.0
+    torque = penalty.target / penalty.usable_duration
+    reach = float(np.std(torque)) / spread
+    low, high = sorted((sign * reach / 100.0, sign * reach * _GENEROUS))
+    return low, high
+
+
+def _offset_bounds(penalty: _core.Penalty, columns: Array, scale: float) -> tuple[float, float]:
+    """Room for the torque's level and for the reading's mean times any gain."""
+    reading, mean = _reading(penalty, columns)
+    spread = float(np.std(reading))
+    torque = penalty.target / penalty.usable_duration
+    gain = _GENEROUS * float(np.std(torque)) / spread if spread > 0.0 else 0.0
+    reach = _GENEROUS * scale + abs(mean) * gain
+    return -reach, reach
 
 
 def _known_values(joint: Joint | None) -> dict[str, Parameter]:
@@ -109,7 +158,7 @@ def domain_for(
     table = merge(table, changes or {})
     names = tuple(penalty.names)
     for name in changes or {}:
-        if name not in names:
+        if name not in names and not any(other.startswith(f"{name}[") for other in names):
             raise InputError(
                 f"parameters: '{name}' is not part of this identification; its parameters are {', '.join(names)}"
             )
@@ -117,7 +166,7 @@ def domain_for(
     upper = np.empty(len(names))
     from_data = []
     for index, name in enumerate(names):
-        parameter = table.get(name, Parameter(name=name))
+        parameter = table.get(name) or table.get(name.split("[")[0]) or Parameter(name=name)
         if not parameter.vary:
             assert parameter.value is not None  # Parameter refuses a fixed one without
             lower[index] = upper[index] = parameter.value
@@ -126,7 +175,7 @@ def domain_for(
         if low is None or high is None:
             from_data.append(name)
             if index >= penalty.coefficients:
-                bounds = _shape_bounds(peak_speed)
+                bounds = _shape_bounds(name, peak_speed)
             else:
                 bounds = _coefficient_bounds(penalty, index, peak_speed)
             low = bounds[0] if low is None else low
@@ -137,6 +186,30 @@ def domain_for(
                 "fix it with a number, or widen the bounds"
             )
         lower[index], upper[index] = low, high
+    _refuse_zero_gain(penalty, names, lower, upper)
+    _refuse_collinear(names, lower, upper)
     if bool(np.all(lower == upper)):
         raise InputError("parameters: every parameter is fixed; leave at least one to identify")
     return SearchDomain(names=names, lower=lower, upper=upper, from_data=tuple(from_data))
+
+
+def _refuse_zero_gain(
+    penalty: _core.Penalty, names: tuple[str, ...], lower: Array, upper: Array
+) -> None:
+    if "sensor_gain" not in names or penalty.residual != _core.Residual.sensor:
+        return
+    index = names.index("sensor_gain")
+    if lower[index] <= 0.0 <= upper[index]:
+        raise InputError(
+            "parameters: 'sensor_gain' must keep clear of 0 with residual 'sensor', its bounds are "
+            f"{lower[index]:g} to {upper[index]:g}; give it a min above 0 (or a max below), or use residual='torque'"
+        )
+
+
+def _refuse_collinear(names: tuple[str, ...], lower: Array, upper: Array) -> None:
+    free = {name for name, low, high in zip(names, lower, upper, strict=True) if low < high}
+    if {"coulomb_positive", "coulomb_negative", "sensor_offset"} <= free:
+        raise InputError(
+            "asymmetric Coulomb friction and sensor_offset are the same where the joint moves; fix the offset with "
+            "parameters={'sensor_offset': value}, or use asymmetric=False"
+        )

@@ -21,6 +21,7 @@ from jointid.joint.parameters import (
     check_flag,
     finite_number,
     merge,
+    order_list,
     parameter_table,
     positive_number,
     set_numbers,
@@ -71,6 +72,14 @@ class Joint:
         or to be identified. Default ``"none"``.
     torque_offset : bool, optional
         Whether the torque has a constant offset. Default: only without a sensor.
+    asymmetric : bool
+        Whether friction differs between the two directions. Default False.
+    load_friction : bool
+        Whether friction grows with the transmitted torque. Default False.
+    ripple : tuple of float
+        Orders of torque ripple over the motor's angle, e.g. (2,). Default none.
+    harmonics : tuple of float
+        Orders of a torque over the joint's angle. Default none.
     link : Link, optional
     parameters : mapping of str to Parameter
         What is known of each parameter: values, bounds of the search. Default: nothing.
@@ -93,6 +102,10 @@ class Joint:
     friction: str = "coulomb_viscous"
     gravity: Gravity = "none"
     torque_offset: bool | None = None
+    asymmetric: bool = False
+    load_friction: bool = False
+    ripple: tuple[float, ...] = ()
+    harmonics: tuple[float, ...] = ()
     link: Link | None = None
     parameters: Mapping[str, Parameter] = field(default_factory=dict, hash=False)
     limits: Limits = field(default_factory=Limits)
@@ -115,6 +128,10 @@ class Joint:
         check_flag(owner, "sensor", self.sensor)
         if self.torque_offset is not None:
             check_flag(owner, "torque_offset", self.torque_offset)
+        check_flag(owner, "asymmetric", self.asymmetric)
+        check_flag(owner, "load_friction", self.load_friction)
+        for orders in ("ripple", "harmonics"):
+            object.__setattr__(self, orders, order_list(owner, orders, getattr(self, orders)))
         if not isinstance(self.link, Link | None):
             raise FieldError(owner, "link", f"is {self.link!r}; a Link is expected")
         if not isinstance(self.limits, Limits):

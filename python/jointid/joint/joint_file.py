@@ -28,7 +28,10 @@ SCHEMA = 1
 
 _TOP = ("schema", "name", "kind")
 _DRIVE = ("inertia", "rotor_inertia", "gear_ratio", "torque_constant", "torque_hold")
-_MODEL = ("friction", "gravity", "torque_offset")
+_MODEL = (
+    *("friction", "gravity", "torque_offset"),
+    *("asymmetric", "load_friction", "ripple", "harmonics"),
+)
 _KEYS: dict[str, tuple[str, ...]] = {
     "drive": _DRIVE,
     "model": _MODEL,

@@ -125,7 +125,9 @@ def merge(
         check_parameter_name(name)
         known = {} if name not in table else _fields(table[name])
         table[name] = Parameter(**{"name": name, **known, **_stated(name, entry)})
-    return {name: table[name] for name in _core.parameter_names() if name in table}
+    # Harmonics stand behind the others, as they came.
+    order = {name: place for place, name in enumerate(_core.parameter_names())}
+    return {name: table[name] for name in sorted(table, key=lambda n: order.get(n, len(order)))}
 
 
 def _fields(parameter: Parameter) -> dict[str, Any]:
@@ -158,7 +160,7 @@ def _stated(name: str, entry: object) -> dict[str, Any]:
 def check_parameter_name(name: object) -> None:
     """Refuse what is no parameter's name, with a suggestion."""
     known = _core.parameter_names()
-    if name not in known:
+    if not isinstance(name, str) or not _core.is_parameter(name):
         raise FieldError("parameters", repr(name), f"is no parameter; {suggestion(name, known)}")
 
 
@@ -185,6 +187,17 @@ def finite_number(owner: str, field: str, value: Any) -> float:
         # NOTE: no repr here: an integer too large for a float is too long to show.
         raise FieldError(owner, field, f"is {number}; a finite number is expected")
     return number
+
+
+def order_list(owner: str, field: str, value: Any) -> tuple[float, ...]:
+    """Return the orders of harmonics as a tuple of different positive numbers, or refuse them."""
+    if isinstance(value, str | bytes) or not isinstance(value, Collection):
+        raise FieldError(owner, field, f"is {value!r}; a list of orders like [2] is expected")
+    orders = tuple(finite_number(owner, field, order) for order in value)
+    if any(order <= 0.0 for order in orders) or len(set(orders)) < len(orders):
+        sentence = f"is {list(value)!r}; different orders above 0 are expected, like [2]"
+        raise FieldError(owner, field, sentence)
+    return orders
 
 
 def check_flag(owner: str, field: str, value: object) -> None:

@@ -1,0 +1,247 @@
+"""Richer terms: directions apart, ripple, harmonics, load, exponent; several recordings; collinear terms refused."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import jointid as jid
+from jointid.demo import data_folder
+
+TRUTH = {
+    "coulomb": 25.0,
+    "static": 20.0,
+    "stribeck": 100.0,
+    "viscous": 20.0,
+    "sensor_gain": 2.4,
+    "sensor_offset": 15.0,
+}
+THESIS_INERTIA = 2.472e-4 * 101**2
+
+
+@pytest.fixture(scope="module")
+def well_excited() -> jid.Recording:
+    return jid.load(data_folder() / "well_excited.csv.gz")
+
+
+def smooth(torque: dict[str, float], gear_ratio: float = 1.0, seed: int = 1) -> jid.Recording:
+    """A recording whose torque is the sum of terms with these coefficients, plus little noise."""
+    rng = np.random.default_rng(seed)
+    time = np.arange(0.0, 12.0, 1e-3)
+    rate, size = np.array([1.1, 2.7, 4.3]), np.array([0.7, 0.4, 0.2])
+    phase = np.outer(time, rate) + rng.uniform(0, 6, 3)
+    q = np.sin(phase) @ size
+    v = np.cos(phase) @ (size * rate)
+    a = -np.sin(phase) @ (size * rate**2)
+    basis = {
+        "inertia": a,
+        "coulomb": np.sign(v),
+        "coulomb_positive": (v > 0) * 1.0,
+        "coulomb_negative": (v < 0) * -1.0,
+        "viscous": v,
+        "viscous_positive": np.maximum(v, 0.0),
+        "viscous_negative": np.minimum(v, 0.0),
+        "torque_offset": np.ones_like(v),
+        "position_cos_3": np.cos(3 * q),
+        "position_sin_3": np.sin(3 * q),
+        "ripple_cos_2": np.cos(2 * gear_ratio * q),
+        "ripple_sin_2": np.sin(2 * gear_ratio * q),
+    }
+    tau = np.sum([value * basis[name] for name, value in torque.items()], axis=0)
+    return jid.Recording(
+        time=time, position=q, velocity=v, torque=tau + rng.normal(0, 0.02, time.size)
+    )
+
+
+def check(estimate: jid.Estimate, truth: dict[str, float], tolerance: float = 0.01) -> None:
+    size = max(abs(value) for value in truth.values())
+    for name, value in truth.items():
+        assert estimate.parameters[name].value == pytest.approx(value, abs=tolerance * size), name
+
+
+def test_directions_apart() -> None:
+    truth = {
+        "inertia": 0.8,
+        "coulomb_positive": 2.0,
+        "coulomb_negative": 3.0,
+        "viscous_positive": 4.0,
+        "viscous_negative": 5.0,
+    }
+    estimate = jid.identify(smooth(truth), asymmetric=True)
+    check(estimate, truth)
+    assert "torque_offset" not in estimate.parameters
+    assert "torque_offset" in estimate.report()  # with a word
+    curve = estimate.friction([-1.0, 1.0])
+    np.testing.assert_allclose(curve.torque, [-8.0, 6.0], rtol=0.01)
+    again = jid.identify(smooth(truth), estimate.joint, method="separable")
+    check(again, truth)
+
+
+def test_published_asymmetric_fit(shared_data: Path) -> None:
+    published = {
+        "inertia": 95.1540,
+        "viscous_positive": 166.7061,
+        "coulomb_positive": 20.1440,
+        "viscous_negative": 240.4236,
+        "coulomb_negative": 20.6277,
+    }
+    recording = jid.load(shared_data / "emps" / "emps_train.csv.gz")
+    estimate = jid.identify(recording, asymmetric=True)
+    for name, value in published.items():
+        assert estimate.parameters[name].value == pytest.approx(value, rel=0.02), name
+
+
+def test_harmonics_and_ripple() -> None:
+    truth = {
+        "inertia": 0.8,
+        "coulomb": 2.0,
+        "viscous": 4.0,
+        "position_cos_3": 0.5,
+        "position_sin_3": -0.7,
+        "ripple_cos_2": 0.3,
+        "ripple_sin_2": 0.4,
+    }
+    joint = jid.Joint(gear_ratio=7.0)
+    estimate = jid.identify(smooth(truth, 7.0), joint, harmonics=(3,), ripple=(2,))
+    check(estimate, truth)
+    assert estimate.joint.ripple == (2.0,)
+    assert estimate.joint.harmonics == (3.0,)
+
+
+def test_ripple_of_a_strain_wave_sensor(shared_data: Path) -> None:
+    recording = jid.load(shared_data / "simulated" / "rippled.csv.gz")
+    estimate = jid.identify(recording, jid.thesis_joint(), ripple=(2,))
+    value = {name: p.value for name, p in estimate.parameters.items()}
+    assert value["sensor_gain"] == pytest.approx(2.4, rel=0.003)
+    assert value["static"] == pytest.approx(20.0, rel=0.01)
+    assert value["stribeck"] == pytest.approx(100.0, rel=0.02)
+    amplitude = np.hypot(value["ripple_cos_2"], value["ripple_sin_2"])
+    assert amplitude == pytest.approx(2.6, rel=0.01)
+    assert estimate.warnings == ()
+
+
+def test_cost_of_ignoring_the_ripple(shared_data: Path) -> None:
+    recording = jid.load(shared_data / "simulated" / "rippled.csv.gz")
+    estimate = jid.identify(recording, jid.thesis_joint(), method="separable")
+    assert 0.01 < 1 - estimate.parameters["sensor_gain"].value / 2.4 < 0.04
+    assert 0.03 < estimate.parameters["static"].value / 20.0 - 1 < 0.09
+
+
+def test_realistic_sensing(shared_data: Path) -> None:
+    raw = jid.load(shared_data / "simulated" / "realistic.csv.gz", columns={"velocity": None})
+    estimate = jid.identify(raw, jid.thesis_joint(), ripple=(2,))
+    for name, truth in TRUTH.items():
+        tolerance = 0.05 if name == "stribeck" else 0.02
+        assert estimate.parameters[name].value == pytest.approx(truth, rel=tolerance), name
+
+
+@pytest.mark.parametrize("method", ["ga", "separable"])
+def test_general_exponent_finds_the_gaussian(well_excited: jid.Recording, method: str) -> None:
+    estimate = jid.identify(
+        well_excited,
+        jid.thesis_joint(),
+        model="stribeck_general",
+        method=method,
+        ga=jid.GaOptions(population=40, generations=60),
+    )
+    check(
+        estimate,
+        {"stribeck_velocity": 0.1, "stribeck_exponent": 2.0, "static": 20.0, "coulomb": 25.0},
+        0.005,
+    )
+
+
+def test_load_friction_is_found_where_it_is() -> None:
+    base = smooth({"inertia": 0.8, "coulomb": 2.0, "viscous": 4.0})
+    assert base.torque is not None
+    # tau = tau_0 + f |tau| sgn v, solved for tau where |tau| takes its sign from tau_0.
+    factor = 0.1 * np.sign(base.velocity) * np.sign(base.torque)
+    loaded = jid.Recording(
+        time=base.time,
+        position=base.position,
+        velocity=base.velocity,
+        torque=base.torque / (1 - factor),
+    )
+    estimate = jid.identify(loaded, load_friction=True, method="separable")
+    assert estimate.parameters["load_friction"].value == pytest.approx(0.1, rel=0.06)
+    assert estimate.parameters["coulomb"].value == pytest.approx(2.0, rel=0.03)
+
+
+def test_offset_of_each_recording() -> None:
+    base = {"inertia": 0.8, "coulomb": 2.0, "viscous": 4.0}
+    runs = [
+        smooth({**base, "torque_offset": offset}, seed=seed)
+        for seed, offset in enumerate((0.5, -0.9))
+    ]
+    estimate = jid.identify(runs, per_recording=("torque_offset",))
+    check(estimate, {**base, "torque_offset[0]": 0.5, "torque_offset[1]": -0.9})
+    shared = jid.identify(runs)
+    assert shared.penalty > 10 * estimate.penalty
+    assert jid.Estimate.from_json(estimate.to_json()).parameters == estimate.parameters
+
+
+def test_cumulative_windows_are_the_running_integral(well_excited: jid.Recording) -> None:
+    estimate = jid.identify(
+        well_excited, jid.thesis_joint(), windows="cumulative", method="separable"
+    )
+    assert estimate.residuals.windows > 11000
+    for name, truth in TRUTH.items():
+        assert estimate.parameters[name].value == pytest.approx(truth, rel=0.05), name
+
+
+@pytest.mark.parametrize("zero", [-2048.0, 0.0, 2048.0])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_sensors_zero_and_polarity_are_arbitrary(
+    well_excited: jid.Recording, zero: float, sign: float
+) -> None:
+    assert well_excited.sensor is not None
+    recording = jid.Recording(
+        time=well_excited.time,
+        position=well_excited.position,
+        velocity=well_excited.velocity,
+        torque=well_excited.torque,
+        sensor=sign * well_excited.sensor + zero,
+        torque_hold="zoh",
+    )
+    estimate = jid.identify(
+        recording, model="stribeck", parameters={"inertia": THESIS_INERTIA}, method="separable"
+    )
+    assert estimate.parameters["sensor_gain"].value == pytest.approx(sign * 2.4, rel=0.01)
+    assert estimate.parameters["coulomb"].value == pytest.approx(25.0, rel=0.01)
+    assert estimate.warnings == ()
+
+
+REFUSED = {
+    "asymmetric with an offset": (
+        {"asymmetric": True},
+        jid.Joint(torque_offset=True),
+        "asymmetric",
+    ),
+    "ripple without a gear": ({"ripple": (2,)}, None, "gear_ratio"),
+    "ripple twice": ({"ripple": (2, 2)}, jid.Joint(gear_ratio=9.0), "different orders"),
+    "ripple that is none": ({"ripple": 2}, jid.Joint(gear_ratio=9.0), "orders"),
+    "first harmonic is gravity": ({"harmonics": (1,)}, jid.Joint(gravity="free"), "gravity"),
+    "shape per recording": ({"per_recording": ("viscosity",)}, None, "viscosity"),
+}
+
+
+@pytest.mark.parametrize(("options", "joint", "told"), REFUSED.values(), ids=REFUSED.keys())
+def test_what_cannot_be_told_apart_is_refused(
+    options: dict[str, object], joint: jid.Joint | None, told: str
+) -> None:
+    recording = smooth({"inertia": 0.8, "coulomb": 2.0, "viscous": 4.0})
+    with pytest.raises(jid.InputError, match=told):
+        jid.identify([recording, recording], joint, **options)  # type: ignore[arg-type]
+
+
+def test_asymmetric_with_a_free_sensor_offset_is_refused(well_excited: jid.Recording) -> None:
+    with pytest.raises(jid.InputError, match="sensor_offset"):
+        jid.identify(well_excited, jid.thesis_joint(), asymmetric=True)
+    fixed = jid.identify(
+        well_excited,
+        jid.thesis_joint(),
+        asymmetric=True,
+        parameters={"sensor_offset": 15.0},
+        method="separable",
+    )
+    check(fixed, {"coulomb_positive": 25.0, "coulomb_negative": 25.0, "sensor_gain": 2.4})
