@@ -45,12 +45,12 @@ def test_simulated_joint_is_recovered(
 
 
 def test_truth_lies_in_the_intervals(separable: jid.Estimate) -> None:
-    inside = [
-        abs(separable.parameters[name].value - truth)
-        < 4 * (separable.parameters[name].stderr or 0.0)
-        for name, truth in TRUTH.items()
-    ]
-    assert all(inside)
+    inside = 0
+    for name, truth in TRUTH.items():
+        interval = separable.parameters[name].interval
+        assert interval is not None
+        inside += interval[0] <= truth <= interval[1]
+    assert inside >= len(TRUTH) - 1  # one of six outside 95 % is chance, two are not
 
 
 def test_same_bits_for_any_number_of_threads(well_excited: jid.Recording) -> None:
@@ -106,8 +106,9 @@ def test_demo_reproduces_the_authors_values_and_an_independent_fit() -> None:
         bounds,
     )
     for index, name in enumerate(("inertia", "coulomb", "viscous", "torque_offset")):
-        difference = abs(estimate.parameters[name].value - reference.values[index])
-        assert difference < 2 * reference.stderr[index], name
+        found = estimate.parameters[name].value
+        assert found == pytest.approx(reference.values[index], rel=1e-6), name
+        assert abs(found - reference.values[index]) < 2 * reference.stderr[index], name
 
 
 def test_emps_without_any_option(shared_data: Path) -> None:
@@ -126,7 +127,7 @@ def test_emps_without_any_option(shared_data: Path) -> None:
 def test_stribeck_on_emps_is_told_to_be_too_rich(shared_data: Path) -> None:
     recording = jid.load(shared_data / "emps" / "emps_train.csv.gz")
     estimate = jid.identify(recording, model="stribeck", method="separable")
-    assert {"model_too_rich", "undetermined"} & {warning.code for warning in estimate.warnings}
+    assert "model_too_rich" in {warning.code for warning in estimate.warnings}
 
 
 def test_noisy_velocity_is_told(shared_data: Path) -> None:

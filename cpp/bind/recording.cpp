@@ -41,6 +41,7 @@ void bind_recording(py::module_& m) {
       "noise).",
       Field{"count", &WindowOptions::count, "Number of windows; 0: not given."},
       Field{"duration", &WindowOptions::duration, "Length of a window [s]; 0: not given."},
+      Field{"factor", &WindowOptions::factor, "Multiplies the duration, however chosen."},
       Field{
           "cumulative", &WindowOptions::cumulative,
           "Compare running integrals at the windows' ends (thesis's MATLAB), not each window's."});

@@ -55,24 +55,32 @@ Penalty::Penalty(std::vector<Recording> recordings, const std::vector<std::strin
     unusable_ +=
         std::count(usable.back().usable.begin(), usable.back().usable.end(), std::uint8_t{0});
   }
-  // One duration for all recordings: the longest that any of them asks for.
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    auto choice = choose_window(recordings[i], usable[i].usable, parameters());
-    if (options.count > 0) choice.duration = duration_for(recordings[i], options.count);
-    if (options.duration > 0.0) choice.duration = options.duration;
-    if (choice.duration >= choice_.duration) choice_ = choice;
-  }
+  WindowOptions wanted = options;
+  if (options.count > 0) wanted.duration = duration_for(recordings, options.count);
   std::vector<std::vector<Window>> cut;
+  std::vector<double> lengths;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
-    const double length = recordings[i].time[recordings[i].samples() - 1] - recordings[i].time[0];
-    if (choice_.duration > length) {
-      throw std::invalid_argument("windows: duration " + std::to_string(choice_.duration) +
+    const auto& time = recordings[i].time;
+    // Each recording by its own noise and rate: a coarse one must not lengthen the windows of a
+    // fine one.
+    const auto choice = choose_window(recordings[i], usable[i].usable, parameters(), wanted);
+    const double length = time[time.size() - 1] - time[0];
+    if (choice.duration > length) {
+      throw std::invalid_argument("windows: duration " + std::to_string(choice.duration) +
                                   " s is longer than the recording, " + std::to_string(length) +
                                   " s");
     }
-    cut.push_back(cut_windows(recordings[i], usable[i].usable, choice_.duration));
+    choice_.noise_share = std::max(choice_.noise_share, choice.noise_share);
+    choice_.noise_limited = choice_.noise_limited || choice.noise_limited;
+    cut.push_back(cut_windows(recordings[i], usable[i].usable, choice.duration));
     windows_.insert(windows_.end(), cut.back().begin(), cut.back().end());
     recording_of_.insert(recording_of_.end(), cut.back().size(), static_cast<int>(i));
+    for (const auto& window : cut.back()) lengths.push_back(time[window.end] - time[window.begin]);
+  }
+  if (!lengths.empty()) {
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    choice_.duration = *middle;
   }
   const auto rows = static_cast<Eigen::Index>(windows_.size());
   if (rows == 0) {

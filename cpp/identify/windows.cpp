@@ -10,6 +10,7 @@ namespace jointid::identify {
 namespace {
 
 constexpr double kNoiseShare = 1e-3;
+constexpr double kNoiseLimit = 1e-2;  // attenuates the inertia by about as much
 constexpr Eigen::Index kShortest =
     10;  // samples: below, windows beside a stop weigh its model error too much
 constexpr Eigen::Index kFewest =
@@ -72,35 +73,45 @@ void WindowOptions::validate() const {
     throw std::invalid_argument("windows: duration must be positive, got " +
                                 std::to_string(duration) + " s");
   }
+  if (!(factor > 0.0) || !std::isfinite(factor)) {
+    throw std::invalid_argument("windows: factor must be positive, got " + std::to_string(factor));
+  }
   if (count > 0 && duration > 0.0)
     throw std::invalid_argument("windows: give count or duration, not both");
 }
 
 WindowChoice choose_window(const Recording& r, const std::vector<std::uint8_t>& usable,
-                           std::int64_t parameters) {
+                           std::int64_t parameters, const WindowOptions& options) {
   std::vector<std::int64_t> broken(static_cast<std::size_t>(r.samples()), 0);
   for (std::size_t k = 0; k < usable.size(); ++k)
     broken[k + 1] = broken[k] + (usable[k] == 0 ? 1 : 0);
   const auto usable_count = static_cast<std::int64_t>(usable.size()) - broken.back();
   const double period = median_period(r);
-  const Eigen::Index longest = std::max<Eigen::Index>(
-      kFewest, usable_count / std::max<std::int64_t>(1, kWindowsEach * parameters));
   double noise = 0.0;
   for (const Eigen::Index lag : {1, 2}) {
     const double once = structure_function(r, broken, lag);
     const double twice = structure_function(r, broken, 2 * lag);
     noise = std::max(noise, (4.0 * once - twice) / 3.0);
   }
-  WindowChoice choice;
-  for (Eigen::Index lag = std::min(kShortest, longest);;
-       lag = std::min(longest, lag + 1 + lag / 8)) {
+  const auto share = [&](Eigen::Index lag) {
     const double change = structure_function(r, broken, lag);
+    return change > 0.0 ? noise / change : 1.0;
+  };
+  WindowChoice choice;
+  choice.duration = options.duration;
+  if (choice.duration == 0.0) {
+    const Eigen::Index longest = std::max<Eigen::Index>(
+        kFewest, usable_count / std::max<std::int64_t>(1, kWindowsEach * parameters));
+    Eigen::Index lag = std::min(kShortest, longest);
+    while (share(lag) > kNoiseShare && lag < longest) lag = std::min(longest, lag + 1 + lag / 8);
     choice.duration = static_cast<double>(lag) * period;
-    choice.noise_share = change > 0.0 ? noise / change : 1.0;
-    if (choice.noise_share <= kNoiseShare) return choice;
-    if (lag >= longest) break;
   }
-  choice.noise_limited = true;
+  choice.duration *= options.factor;
+  // What the windows used leave of the noise, whoever chose them.
+  const double lag = std::round(choice.duration / period);
+  choice.noise_share =
+      share(static_cast<Eigen::Index>(std::clamp(lag, 1.0, static_cast<double>(r.samples() - 1))));
+  choice.noise_limited = choice.noise_share > kNoiseLimit;
   return choice;
 }
 
@@ -125,13 +136,19 @@ std::vector<Window> cut_windows(const Recording& r, const std::vector<std::uint8
   return windows;
 }
 
-double duration_for(const Recording& r, std::int64_t count) {
-  if (count > r.samples() - 1) {
+double duration_for(const std::vector<Recording>& recordings, std::int64_t count) {
+  std::int64_t intervals = 0;
+  double time = 0.0;
+  for (const auto& recording : recordings) {
+    intervals += recording.samples() - 1;
+    time += covered(recording);
+  }
+  if (count > intervals) {
     throw std::invalid_argument("windows: " + std::to_string(count) +
                                 " windows need more than the recording's " +
-                                std::to_string(r.samples() - 1) + " sample intervals");
+                                std::to_string(intervals) + " sample intervals");
   }
-  return covered(r) / static_cast<double>(count);
+  return time / static_cast<double>(count);
 }
 
 }  // namespace jointid::identify

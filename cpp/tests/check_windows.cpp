@@ -144,7 +144,7 @@ CHECK_CASE("windows: as many as asked for, as long as asked for") {
   const auto r = swinging(3001);  // 3 s
   const auto usable = usable_intervals(r, true).usable;
   for (const std::int64_t count : {1, 7, 50, 333, 1500, 3000}) {
-    const auto windows = identify::cut_windows(r, usable, identify::duration_for(r, count));
+    const auto windows = identify::cut_windows(r, usable, identify::duration_for({r}, count));
     CHECK_CLOSE(windows.size(), count, 0.0);
   }
   for (const double duration : {0.01, 0.025, 0.1}) {
@@ -153,7 +153,7 @@ CHECK_CASE("windows: as many as asked for, as long as asked for") {
       CHECK_CLOSE(r.time[window.end] - r.time[window.begin], duration, 1.001 * kPeriod);
     }
   }
-  CHECK_REFUSED(identify::duration_for(r, 3001), "3001 windows");
+  CHECK_REFUSED(identify::duration_for({r}, 3001), "3001 windows");
   CHECK_REFUSED(identify::cut_windows(r, usable, 0.0), "duration must be positive");
 }
 
@@ -176,6 +176,7 @@ CHECK_CASE("windows: the duration follows the noise of the velocity") {
   const auto shortest = identify::choose_window(clean, usable, 4);
   CHECK_CLOSE(shortest.duration, 10 * kPeriod, 1e-12);
   CHECK(!shortest.noise_limited);
+  CHECK_CLOSE(identify::choose_window(clean, usable, 4, {0, 0.25, 0.5}).duration, 0.125, 1e-12);
   double previous = 0.0;
   for (const double amplitude : {0.001, 0.01, 0.03}) {
     auto noisy = clean;

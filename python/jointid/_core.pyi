@@ -137,6 +137,8 @@ class WindowOptions:
         Number of windows; 0: not given.
     duration : default 0.0
         Length of a window [s]; 0: not given.
+    factor : default 1.0
+        Multiplies the duration, however chosen.
     cumulative : default False
         Compare running integrals at the windows' ends (thesis's MATLAB), not each window's.
     """
@@ -144,7 +146,12 @@ class WindowOptions:
     def __getstate__(self) -> dict[str, typing.Any]: ...
     def __hash__(self) -> int: ...
     def __init__(
-        self, *, count: int = 0, duration: float = 0.0, cumulative: bool = False
+        self,
+        *,
+        count: int = 0,
+        duration: float = 0.0,
+        factor: float = 1.0,
+        cumulative: bool = False,
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
@@ -153,7 +160,12 @@ class WindowOptions:
         The fields as a dictionary.
         """
     def replace(
-        self, *, count: int = ..., duration: float = ..., cumulative: bool = ...
+        self,
+        *,
+        count: int = ...,
+        duration: float = ...,
+        factor: float = ...,
+        cumulative: bool = ...,
     ) -> WindowOptions:
         """
         A copy with the given fields changed.
@@ -172,6 +184,11 @@ class WindowOptions:
     def duration(self) -> float:
         """
         Length of a window [s]; 0: not given.
+        """
+    @property
+    def factor(self) -> float:
+        """
+        Multiplies the duration, however chosen.
         """
 
 class Residual(enum.Enum):

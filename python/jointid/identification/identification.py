@@ -187,7 +187,7 @@ def identify(
         penalty=penalty,
         domain=domain,
         best=outcome.best,
-        shifts=_window_shifts(problem, penalty, domain, outcome.best),
+        shifts=_window_shifts(problem, windows, penalty, domain, outcome.best),
         convergence=outcome.convergence,
         status=outcome.status,
         message=outcome.message,
@@ -283,17 +283,18 @@ def _search(
 
 
 def _window_shifts(
-    problem: Problem, penalty: _core.Penalty, domain: SearchDomain, best: Array
+    problem: Problem,
+    windows: Windows,
+    penalty: _core.Penalty,
+    domain: SearchDomain,
+    best: Array,
 ) -> tuple[Array | None, Array | None]:
     """How the answer moves when windows are halved and doubled; None where such windows cannot be cut."""
+    options = problem.window_options(windows)
     shifts: list[Array | None] = []
     for factor in (0.5, 2.0):
         try:
-            other = problem.penalty(
-                _core.WindowOptions(
-                    duration=penalty.window_duration * factor, cumulative=penalty.cumulative
-                )
-            )
+            other = problem.penalty(options.replace(factor=options.factor * factor))
         except InputError:  # fewer windows than parameters, or longer than the recording
             shifts.append(None)
             continue

@@ -51,7 +51,7 @@ class Problem:
         InputError
             Windows that cannot be cut.
         """
-        options = self._window_options(windows)
+        options = self.window_options(windows)
         try:
             return _core.Penalty(
                 recordings=[self._in_core(recording) for recording in self.recordings],
@@ -70,7 +70,14 @@ class Problem:
         """Largest speed in the recordings [rad/s or m/s]."""
         return max(float(np.abs(recording.velocity).max()) for recording in self.recordings)
 
-    def _window_options(self, windows: Windows) -> _core.WindowOptions:
+    def window_options(self, windows: Windows) -> _core.WindowOptions:
+        """The call's `windows=` as options for these recordings.
+
+        Raises
+        ------
+        InputError
+            Not a positive number, nor "cumulative".
+        """
         if isinstance(windows, str):
             if windows != "cumulative":
                 raise InputError(
@@ -78,7 +85,7 @@ class Problem:
                 )
             period = min(recording.sample_period for recording in self.recordings)
             return _core.WindowOptions(duration=period, cumulative=True)
-        return window_options(windows)
+        return _options(windows)
 
     def table(self, penalty: _core.Penalty, theta: Array) -> WindowTable:
         """The penalty's windows at a parameter vector; each for itself even if the penalty accumulates."""
@@ -154,14 +161,7 @@ def _output_torque(recording: Recording, joint: Joint | None) -> Array:
     raise InputError("the recording has no signal 'torque'; map it with columns={'torque': ...}")
 
 
-def window_options(windows: int | float | _core.WindowOptions | None) -> _core.WindowOptions:
-    """The call's `windows=` as options.
-
-    Raises
-    ------
-    InputError
-        Not a positive number.
-    """
+def _options(windows: int | float | _core.WindowOptions | None) -> _core.WindowOptions:
     if windows is None:
         return _core.WindowOptions()
     if isinstance(windows, _core.WindowOptions):
