@@ -119,6 +119,7 @@ class SignalPoll {
 void bind_terms(py::module_& m);
 void bind_recording(py::module_& m);
 void bind_penalty(py::module_& m);
+void bind_genetic(py::module_& m);
 void bind_search(py::module_& m);
 
 }  // namespace jointid::bind

@@ -2,182 +2,229 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
-#include "base/random.hpp"
-#include "search/operators.hpp"
+#include "search/breeder.hpp"
 
 namespace jointid::search {
 
 namespace {
 
-void require(bool holds, const char* name, double value, const char* limit) {
-  if (holds) return;
-  std::ostringstream text;
-  text.precision(15);
-  text << "GaOptions." << name << " must be " << limit << ", got " << value;
-  throw std::invalid_argument(text.str());
-}
-
-bool probability(double p) {
-  return p >= 0.0 && p <= 1.0;
-}
-
-/// The generation's individuals: genes in [0, 1], one individual a column.
-class Breeder {
+class Run {
  public:
-  Breeder(const GaOptions& options, std::uint64_t seed, std::uint32_t trial)
-      : options_(options), seed_(seed), trial_(trial) {}
-
-  void first(Eigen::MatrixXd& genes) const {
-    for (Eigen::Index i = 0; i < genes.cols(); ++i) {
-      base::Random random(seed_, trial_, 0, static_cast<std::uint32_t>(i));
-      for (Eigen::Index j = 0; j < genes.rows(); ++j) genes(j, i) = random.uniform();
-    }
+  Run(const Objective& objective, const Domain& domain, const GaOptions& options,
+      std::uint64_t seed, std::uint32_t trial, base::Pool& pool)
+      : objective_(objective),
+        pool_(pool),
+        breeder_(options, seed, trial),
+        population_(domain, individuals(options)),
+        children_(population_.genes.rows(), population_.genes.cols()),
+        islands_(static_cast<std::size_t>(options.islands)) {
+    state_.options = options;
+    state_.seed = seed;
+    state_.trial = trial;
+    state_.domain = domain;
   }
 
-  /// order: individuals from best to worst.
-  void next(int generation, const Eigen::MatrixXd& parents, const std::vector<Eigen::Index>& order,
-            Eigen::MatrixXd& children) const {
-    const Eigen::Index count = parents.cols();
-    for (Eigen::Index i = 0; i < options_.elite; ++i) {
-      children.col(i) = parents.col(order[static_cast<std::size_t>(i)]);
-    }
-    const double progress = static_cast<double>(generation) / options_.generations;
-    Eigen::VectorXd spare(parents.rows());  // the second child of an odd last pair
-    for (Eigen::Index i = options_.elite; i < count; i += 2) {
-      base::Random random(seed_, trial_, static_cast<std::uint32_t>(generation),
-                          static_cast<std::uint32_t>(i));
-      const auto first = parents.col(select(random, order));
-      const auto second = parents.col(select(random, order));
-      auto one = children.col(i);
-      auto two = i + 1 < count ? children.col(i + 1) : Eigen::Ref<Eigen::VectorXd>(spare);
-      cross(random, first, second, one, two);
-      mutate(random, progress, one);
-      mutate(random, progress, two);
-    }
+  void start() {
+    breeder_.first(population_.genes);
+    evaluate();
+    record();
   }
+
+  void resume(const GaState& state) {
+    state_ = state;
+    population_.genes = state.genes;
+    population_.penalties = state.penalties;
+    require_same_penalty();
+    observe();
+  }
+
+  void advance() {
+    migrate();
+    ++state_.generation;
+    each_island([&](Eigen::Index island) {
+      const auto& now = islands_[static_cast<std::size_t>(island)];
+      const Eigen::Index offset = island * state_.options.population;
+      const Selector select(state_.options, of(population_.penalties, island));
+      breeder_.next(state_.generation, now.probabilities, select,
+                    population_.genes.middleCols(offset, state_.options.population), offset,
+                    children_.middleCols(offset, state_.options.population));
+    });
+    population_.genes.swap(children_);
+    evaluate();
+    record();
+  }
+
+  [[nodiscard]] bool converged() const {
+    const double best = population_.penalties.minCoeff();
+    const double spread = population_.penalties.maxCoeff() - best;
+    const double tolerance = state_.options.tolerance;
+    return tolerance > 0.0 && spread <= tolerance * std::fabs(best);
+  }
+
+  /// The run so far, with the population.
+  const GaState& state() {
+    state_.genes = population_.genes;
+    state_.penalties = population_.penalties;
+    return state_;
+  }
+  [[nodiscard]] int generation() const { return state_.generation; }
+  [[nodiscard]] const Generation& latest() const { return state_.history.back(); }
 
  private:
-  using Genes = Eigen::Ref<Eigen::VectorXd>;
+  struct Island {
+    double diversity;
+    Probabilities probabilities;
+  };
 
-  /// Tournament on ranks: the lowest of `tournament` draws wins.
-  [[nodiscard]] Eigen::Index select(base::Random& random,
-                                    const std::vector<Eigen::Index>& order) const {
-    auto rank = static_cast<std::uint32_t>(order.size());
-    for (int i = 0; i < options_.tournament; ++i) {
-      rank = std::min(rank, random.below(static_cast<std::uint32_t>(order.size())));
-    }
-    return order[rank];
+  static Eigen::Index individuals(const GaOptions& options) {
+    return static_cast<Eigen::Index>(options.population) * options.islands;
   }
 
-  void cross(base::Random& random, const Eigen::Ref<const Eigen::VectorXd>& first,
-             const Eigen::Ref<const Eigen::VectorXd>& second, Genes one, Genes two) const {
-    one = first;
-    two = second;
-    if (random.uniform() >= options_.crossover_probability) return;
-    for (Eigen::Index j = 0; j < one.size(); ++j) {
-      if (random.uniform() >= 0.5)
-        continue;  // a gene crosses with probability one half, as in Deb's SBX
-      const auto [a, b] =
-          simulated_binary_crossover(first[j], second[j], random.uniform(), options_.crossover_eta);
-      one[j] = a;
-      two[j] = b;
+  [[nodiscard]] Penalties of(const Eigen::VectorXd& penalties, Eigen::Index island) const {
+    return penalties.segment(island * state_.options.population, state_.options.population);
+  }
+
+  /// On the calling thread when there is but one; no bit depends on that.
+  template <class Work>
+  void each_island(const Work& work) {
+    if (islands_.size() == 1) {
+      work(0);
+      return;
+    }
+    pool_.for_each(islands_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t island = begin; island < end; ++island) {
+        work(static_cast<Eigen::Index>(island));
+      }
+    });
+  }
+
+  void evaluate() {
+    population_.evaluate(objective_, pool_);
+    state_.evaluations += population_.penalties.size();
+    observe();
+  }
+
+  /// Diversity, and the probabilities it asks for.
+  void observe() {
+    for (std::size_t i = 0; i < islands_.size(); ++i) {
+      auto& island = islands_[i];
+      island.diversity =
+          diversity_of(state_.options, of(population_.penalties, static_cast<Eigen::Index>(i)));
+      island.probabilities = adapted(state_.options, island.diversity);
     }
   }
 
-  void mutate(base::Random& random, double progress, Genes genes) const {
-    for (Eigen::Index j = 0; j < genes.size(); ++j) {
-      if (random.uniform() >= options_.mutation_probability) continue;
-      const bool upper = random.uniform() < 0.5;
-      genes[j] = non_uniform_mutation(genes[j], random.uniform(), upper, progress,
-                                      options_.mutation_exponent);
+  void record() {
+    Eigen::Index place = 0;
+    const double best = population_.penalties.minCoeff(&place);
+    if (state_.history.empty() || best < state_.penalty) {
+      state_.penalty = best;
+      state_.best = population_.candidate(place);
+    }
+    Generation now{state_.generation, state_.penalty, population_.penalties.mean(), 0.0, 0.0, 0.0,
+                   state_.evaluations};
+    for (const auto& island : islands_) {
+      now.diversity += island.diversity;
+      now.crossover_probability += island.probabilities.crossover;
+      now.mutation_probability += island.probabilities.mutation;
+    }
+    const auto count = static_cast<double>(islands_.size());
+    now.diversity /= count;
+    now.crossover_probability /= count;
+    now.mutation_probability /= count;
+    state_.history.push_back(now);
+  }
+
+  /// Each island's best, as it was before, takes the place of the next island's worst.
+  void migrate() {
+    const Eigen::Index count = state_.options.population;
+    if (islands_.size() == 1 || state_.generation == 0 ||
+        state_.generation % state_.options.migration_interval != 0) {
+      return;
+    }
+    std::vector<Eigen::Index> best;
+    std::vector<Eigen::Index> worst;
+    for (std::size_t i = 0; i < islands_.size(); ++i) {
+      const auto island = static_cast<Eigen::Index>(i);
+      const auto order = ranked(of(population_.penalties, island));
+      best.push_back(island * count + order.front());
+      worst.push_back(island * count + order.back());
+    }
+    // No place is both: at least four individuals, and the order breaks ties.
+    for (std::size_t i = 0; i < islands_.size(); ++i) {
+      const auto to = worst[(i + 1) % islands_.size()];
+      population_.genes.col(to) = population_.genes.col(best[i]);
+      population_.penalties[to] = population_.penalties[best[i]];
     }
   }
 
-  const GaOptions& options_;
-  std::uint64_t seed_;
-  std::uint32_t trial_;
+  void require_same_penalty() {
+    Eigen::VectorXd again(1);
+    objective_(state_.best, again, pool_);
+    const bool finite = std::isfinite(state_.penalty);
+    if (finite ? std::fabs(again[0] - state_.penalty) <= 1e-9 * std::fabs(state_.penalty)
+               : !std::isfinite(again[0])) {
+      return;
+    }
+    std::ostringstream text;
+    text.precision(10);
+    text << "resume: the state's best has penalty " << state_.penalty << " there and " << again[0]
+         << " here; it belongs to another recording, model or windows";
+    throw std::invalid_argument(text.str());
+  }
+
+  const Objective& objective_;
+  base::Pool& pool_;
+  Breeder breeder_;
+  Population population_;
+  Eigen::MatrixXd children_;
+  std::vector<Island> islands_;
+  GaState state_;
 };
 
 }  // namespace
 
-void GaOptions::validate() const {
-  require(population >= 4 && population <= 1'000'000, "population", population, "4 to 1000000");
-  require(generations >= 1 && generations <= 10'000'000, "generations", generations,
-          "1 to 10000000");
-  require(tournament >= 1 && tournament <= population, "tournament", tournament, "1 to population");
-  require(elite >= 0 && elite < population, "elite", elite, "0 to population - 1");
-  require(probability(crossover_probability), "crossover_probability", crossover_probability,
-          "0 to 1");
-  require(crossover_eta >= 0.0 && std::isfinite(crossover_eta), "crossover_eta", crossover_eta,
-          "at least 0");
-  require(probability(mutation_probability), "mutation_probability", mutation_probability,
-          "0 to 1");
-  require(mutation_exponent > 0.0 && std::isfinite(mutation_exponent), "mutation_exponent",
-          mutation_exponent, "above 0");
-  require(tolerance >= 0.0 && std::isfinite(tolerance), "tolerance", tolerance, "at least 0");
-}
-
 GaResult minimise_genetic(const Objective& objective, const Domain& domain,
                           const GaOptions& options, std::uint64_t seed, std::uint32_t trial,
-                          base::Pool& pool, const Observer& observer) {
+                          base::Pool& pool, const Observer& observer,
+                          const Continuation& continuation) {
   options.validate();
   domain.validate();
-  const auto free = domain.free();
-  const auto genes_each = static_cast<Eigen::Index>(free.size());
-  const Eigen::Index count = options.population;
-  const Breeder breeder(options, seed, trial);
-
-  Eigen::MatrixXd genes(genes_each, count);
-  Eigen::MatrixXd children(genes_each, count);
-  Eigen::MatrixXd candidates = domain.lower.replicate(1, count);
-  Eigen::VectorXd penalties(count);
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(count));
+  if (continuation.interval < 1) {
+    throw std::invalid_argument("checkpoint_interval must be at least 1, got " +
+                                std::to_string(continuation.interval));
+  }
+  bool fresh = continuation.resume == nullptr;
+  if (!fresh) require_same_run(*continuation.resume, options, domain, seed, trial);
+  Run run(objective, domain, options, seed, trial, pool);
+  fresh ? run.start() : run.resume(*continuation.resume);
   GaResult result;
-  breeder.first(genes);
-  for (int generation = 0;; ++generation) {
-    for (Eigen::Index j = 0; j < genes_each; ++j) {
-      const auto parameter = free[static_cast<std::size_t>(j)];
-      const double low = domain.lower[parameter];
-      const double high = domain.upper[parameter];
-      // Convex form: stays inside the bounds to the last bit.
-      candidates.row(parameter) = ((1.0 - genes.row(j).array()) * low + genes.row(j).array() * high)
-                                      .cwiseMax(low)
-                                      .cwiseMin(high);
+  for (;; fresh = true) {
+    if (fresh) {  // what a resumed run begins with was reported before
+      pool.poll();
+      const bool due = run.generation() > 0 && run.generation() % continuation.interval == 0;
+      if (continuation.checkpoint && due) continuation.checkpoint(run.state());
+      if (observer && observer(run.latest())) {
+        result.stop = Stop::observer;
+        break;
+      }
     }
-    objective(candidates, penalties, pool);
-    result.evaluations += count;
-    // A penalty that is not a number must lose, and ties must not depend on the sort.
-    for (Eigen::Index i = 0; i < count; ++i) {
-      if (!(penalties[i] == penalties[i])) penalties[i] = std::numeric_limits<double>::infinity();
-    }
-    std::iota(order.begin(), order.end(), Eigen::Index{0});
-    std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
-      return penalties[a] != penalties[b] ? penalties[a] < penalties[b] : a < b;
-    });
-    const double best = penalties[order.front()];
-    const double worst = penalties[order.back()];
-    if (generation == 0 || best < result.penalty) {
-      result.penalty = best;
-      result.best = candidates.col(order.front());
-    }
-    result.history.push_back({generation, result.penalty, penalties.mean(), result.evaluations});
-    pool.poll();
-    if (observer && observer(result.history.back())) {
-      result.stop = Stop::observer;
-      break;
-    }
-    if (worst - best <= options.tolerance * std::fabs(best) && options.tolerance > 0.0) {
+    if (run.converged()) {
       result.stop = Stop::converged;
       break;
     }
-    if (generation == options.generations) break;
-    breeder.next(generation + 1, genes, order, children);
-    genes.swap(children);
+    if (run.generation() == options.generations) break;
+    run.advance();
   }
+  result.state = run.state();
+  result.best = result.state->best;
+  result.penalty = result.state->penalty;
+  result.history = result.state->history;
+  result.evaluations = result.state->evaluations;
   return result;
 }
 

@@ -1,51 +1,32 @@
 #pragma once
-// Real-coded genetic algorithm. Minimises anything that can be evaluated a population at a time.
+// The genetic algorithm. Minimises anything that can be evaluated a population at a time.
 //
-//   population <- uniform in the domain (and the starts given)
-//   repeat: the elite survives; the rest are children of parents chosen by tournament,
-//           crossed gene by gene (SBX), mutated (non-uniform);  evaluate;  report
+//   population <- uniform in the domain
+//   repeat: the elite survives; the rest are children of selected parents, crossed and mutated with
+//           probabilities that may follow the diversity;  evaluate;  report
 //   until the generations are used up, the population has collapsed, or the observer says stop
+//
+// Islands are such populations side by side. Every few generations each island's best replaces the
+// worst of the next one in a ring.
 
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "base/pool.hpp"
 #include "search/domain.hpp"
+#include "search/genetic_options.hpp"
+#include "search/genetic_state.hpp"
+#include "search/population.hpp"
 
 namespace jointid::search {
 
-struct GaOptions {
-  int population = 60;                 ///< individuals, even, at least 4
-  int generations = 120;               ///< at most
-  int tournament = 2;                  ///< individuals that compete for each parent place
-  int elite = 2;                       ///< best individuals that survive unchanged
-  double crossover_probability = 0.9;  ///< of a pair
-  double crossover_eta =
-      5.0;  ///< SBX distribution index: larger keeps children nearer their parents
-  double mutation_probability = 0.1;  ///< of a gene
-  double mutation_exponent = 2.0;     ///< how fast mutation steps shrink over the generations
-  double tolerance = 1e-10;  ///< stop when the spread (worst - best) / best falls below; 0: never
-  bool polish = true;        ///< end with a local least-squares search from the best individual
-  void validate() const;
-};
-
 enum class Stop { generations, converged, observer };
-
-/// What the observer sees after each generation.
-struct Generation {
-  int number;
-  double best;
-  double mean;
-  std::int64_t evaluations;
-};
 
 /// Called on the calling thread between generations; true stops.
 using Observer = std::function<bool(const Generation&)>;
-/// Penalties of candidates, one a column.
-using Objective = std::function<void(const Eigen::MatrixXd&, Eigen::VectorXd&, base::Pool&)>;
 
 struct GaResult {
   Eigen::VectorXd best;
@@ -53,12 +34,23 @@ struct GaResult {
   std::vector<Generation> history;
   std::int64_t evaluations = 0;
   Stop stop = Stop::generations;
+  std::optional<GaState> state;  ///< from which the run can go on; a random search has none
 };
 
-/// The same bits for a seed and trial, whatever the number of threads: every draw is a function of
-/// (seed, trial, generation, individual), and penalties do not depend on who computes them.
+/// A long run in parts.
+struct Continuation {
+  const GaState* resume = nullptr;  ///< go on from here instead of starting
+  /// Called on the calling thread after every `interval` generations, before the observer.
+  std::function<void(const GaState&)> checkpoint;
+  int interval = 50;
+};
+
+/// The same bits for a seed and trial, whatever the number of threads, and whether in one run or
+/// resumed: every draw is a function of (seed, trial, generation, individual), and penalties do not
+/// depend on who computes them.
 GaResult minimise_genetic(const Objective& objective, const Domain& domain,
                           const GaOptions& options, std::uint64_t seed, std::uint32_t trial,
-                          base::Pool& pool, const Observer& observer);
+                          base::Pool& pool, const Observer& observer,
+                          const Continuation& continuation = {});
 
 }  // namespace jointid::search

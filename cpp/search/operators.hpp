@@ -13,10 +13,26 @@ namespace jointid::search {
 std::pair<double, double> simulated_binary_crossover(double first, double second, double u,
                                                      double eta);
 
+/// Blend crossover of one gene, BLX-alpha (Eshelman and Schaffer 1993; thesis 3-1): a child is
+/// uniform over the parents' interval widened by alpha of its length at either end. Two draws, two
+/// children. Clamped to [0, 1].
+std::pair<double, double> blend_crossover(double first, double second, double u, double v,
+                                          double alpha);
+
 /// Non-uniform mutation of one gene (Michalewicz; thesis 3-4, 3-5): a step towards a bound, 1 -
 /// u^((1-progress)^exponent) of the way, so that steps shrink as progress goes from 0 to 1.
 /// `towards_upper` chooses the bound.
 double non_uniform_mutation(double gene, double u, bool towards_upper, double progress,
                             double exponent);
+
+/// The mutation of the thesis's listing: a step towards a bound, u (1-progress)^exponent of the
+/// way. Uniform up to a reach that shrinks, where 3-5 crowds the steps near zero.
+double shrinking_mutation(double gene, double u, bool towards_upper, double progress,
+                          double exponent);
+
+/// Polynomial mutation of one gene (Deb and Agrawal 1999): the step has the density (eta+1)/2
+/// (1-|d|)^eta over -1 < d < 1, in units of the way to the bound it goes towards (Deb and Deb
+/// 2014), so that it stays in the domain without clamping.
+double polynomial_mutation(double gene, double u, double eta);
 
 }  // namespace jointid::search

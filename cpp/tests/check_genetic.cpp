@@ -6,9 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "base/elementary.hpp"
 #include "check.hpp"
-#include "search/genetic.hpp"
+#include "landscapes.hpp"
 
 namespace jointid::tests {
 namespace {
@@ -19,48 +18,6 @@ using search::GaResult;
 using search::Generation;
 using search::minimise_genetic;
 using search::Stop;
-
-using Candidate = Eigen::Ref<const Eigen::VectorXd>;
-using Function = double (*)(const Candidate&);
-
-search::Objective each(Function function) {
-  return
-      [function](const Eigen::MatrixXd& candidates, Eigen::VectorXd& penalties, base::Pool& pool) {
-        penalties.resize(candidates.cols());
-        pool.for_each(static_cast<std::size_t>(candidates.cols()),
-                      [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t i = begin; i < end; ++i) {
-                          const auto column = static_cast<Eigen::Index>(i);
-                          penalties[column] = function(candidates.col(column));
-                        }
-                      });
-      };
-}
-
-double sphere(const Candidate& x) {
-  double sum = 0.0;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const double off = x[i] - 0.1 * static_cast<double>(i + 1);
-    sum += off * off;
-  }
-  return sum;
-}
-
-double rippled(const Candidate& x) {
-  double sum = 0.0;
-  for (const double value : x) sum += value * value + 3.0 - 3.0 * base::cos(6.0 * value);
-  return sum;
-}
-
-Domain cube(Eigen::Index n, double low, double high) {
-  return {Eigen::VectorXd::Constant(n, low), Eigen::VectorXd::Constant(n, high)};
-}
-
-GaResult search_for(Function function, const Domain& domain, const GaOptions& options,
-                    std::uint64_t seed, int threads = 1, std::uint32_t trial = 0) {
-  base::Pool pool(threads);
-  return minimise_genetic(each(function), domain, options, seed, trial, pool, {});
-}
 
 CHECK_CASE("genetic: the same bits for 1, 2 and 7 threads") {
   for (const int population : {60, 11}) {
@@ -79,6 +36,15 @@ CHECK_CASE("genetic: the same bits for 1, 2 and 7 threads") {
     CHECK(search_for(rippled, cube(5, -4.0, 5.0), options, 43).best != expected.best);
     CHECK(search_for(rippled, cube(5, -4.0, 5.0), options, 42, 1, 1).best != expected.best);
   }
+}
+
+CHECK_CASE("genetic: the default's bits are those of the first release") {
+  // Every operation is our own or exactly rounded, so these hold on any x86-64 host.
+  const auto result = search_for(rippled, cube(3, -4.0, 5.0), {}, 42);
+  CHECK(result.best == Eigen::Vector3d(-0x1.2b66f3667p-14, 0x1.0259a17458p-14, -0x1.298399be3p-15));
+  CHECK(result.penalty == 0x1.2ba1b36p-21);
+  CHECK(result.history.back().mean == 0x1.7d596cf497777p-18);
+  CHECK(result.evaluations == 7260);
 }
 
 CHECK_CASE("genetic: finds a sphere's minimum, and the deepest of many valleys") {
@@ -232,6 +198,22 @@ CHECK_CASE("genetic: options are refused by name, value and limit") {
   refused([](GaOptions& o) { o.mutation_probability = std::nan(""); }, "mutation_probability",
           "nan", "0 to 1");
   refused([](GaOptions& o) { o.mutation_exponent = 0.0; }, "mutation_exponent", "0", "above 0");
+  refused([](GaOptions& o) { o.bits = 31; }, "bits", "31", "1 to 30");
+  refused([](GaOptions& o) { o.rank_pressure = 2.5; }, "rank_pressure", "2.5", "1 to 2");
+  refused([](GaOptions& o) { o.crossover_gene_probability = -0.1; }, "crossover_gene_probability",
+          "-0.1", "0 to 1");
+  refused([](GaOptions& o) { o.blx_alpha = -0.5; }, "blx_alpha", "-0.5", "at least 0");
+  refused([](GaOptions& o) { o.mutation_eta = -1.0; }, "mutation_eta", "-1", "at least 0");
+  refused([](GaOptions& o) { o.diversity_low = 1.5; }, "diversity_low", "1.5", "0 to 1");
+  refused([](GaOptions& o) { o.diversity_high = 0.5; }, "diversity_high", "0.5",
+          "above diversity_low");
+  refused([](GaOptions& o) { o.crossover_probability_alike = 2.0; }, "crossover_probability_alike",
+          "2", "0 to 1");
+  refused([](GaOptions& o) { o.mutation_probability_alike = -2.0; }, "mutation_probability_alike",
+          "-2", "0 to 1");
+  refused([](GaOptions& o) { o.islands = 0; }, "islands", "0", "1 to 1000000 / population");
+  refused([](GaOptions& o) { o.islands = 20000; }, "islands", "20000", "1 to 1000000 / population");
+  refused([](GaOptions& o) { o.migration_interval = 0; }, "migration_interval", "0", "at least 1");
   refused([](GaOptions& o) { o.tolerance = 1.0 / 0.0; }, "tolerance", "inf", "at least 0");
   // A tiny value must not be told as 0.
   refused([](GaOptions& o) { o.tolerance = -1e-10; }, "tolerance", "-1e-10", "at least 0");

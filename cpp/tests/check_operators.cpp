@@ -12,7 +12,10 @@
 namespace jointid::tests {
 namespace {
 
+using search::blend_crossover;
 using search::non_uniform_mutation;
+using search::polynomial_mutation;
+using search::shrinking_mutation;
 using search::simulated_binary_crossover;
 
 constexpr int kDraws = 100'000;
@@ -150,6 +153,83 @@ CHECK_CASE("operators: non-uniform mutation shrinks, and stays in the domain") {
   for (const double edge : {0.0, 1.0}) {
     CHECK(non_uniform_mutation(edge, 1e-300, edge == 1.0, 0.0, 2.0) == edge);
     CHECK_CLOSE(non_uniform_mutation(edge, 1e-300, edge == 0.0, 0.0, 2.0), 1.0 - edge, 1e-15);
+  }
+}
+
+CHECK_CASE("operators: BLX children are uniform over the widened interval, each by its own draw") {
+  for (const double alpha : {0.0, 0.5, 1.0}) {
+    base::Random random(6, 0, 0, 0);
+    std::vector<double> first;
+    std::vector<double> second;
+    double product = 0.0;
+    for (int i = 0; i < kDraws; ++i) {
+      const bool swapped = random.uniform() < 0.5;
+      const double u = random.uniform();
+      const auto [one, two] =
+          blend_crossover(swapped ? 0.55 : 0.45, swapped ? 0.45 : 0.55, u, random.uniform(), alpha);
+      first.push_back(one);
+      second.push_back(two);
+      product += (one - 0.5) * (two - 0.5);
+    }
+    const double reach = 0.05 + 0.1 * alpha;  // either side of the middle
+    const auto uniform = [&](double x) { return (x - 0.5 + reach) / (2.0 * reach); };
+    CHECK(distance(first, uniform) < kFar);
+    CHECK(distance(second, uniform) < kFar);
+    CHECK_CLOSE(product / kDraws, 0.0, reach * reach / std::sqrt(kDraws));  // 3 standard deviations
+  }
+}
+
+CHECK_CASE("operators: BLX stays in the domain and keeps equal parents") {
+  base::Random random(7, 0, 0, 0);
+  for (int i = 0; i < 10'000; ++i) {
+    const double first = random.uniform();
+    const double u = random.uniform();
+    const auto [one, two] = blend_crossover(first, random.uniform(), u, random.uniform(), 3.0);
+    CHECK(one >= 0.0 && one <= 1.0 && two >= 0.0 && two <= 1.0);
+    const auto [same, again] = blend_crossover(first, first, u, u, 0.5);
+    CHECK(same == first && again == first);
+  }
+}
+
+CHECK_CASE("operators: shrinking mutation is uniform up to its reach") {
+  for (const double progress : {0.0, 0.3, 0.8}) {
+    for (const bool upper : {false, true}) {
+      base::Random random(8, 0, 0, 0);
+      const double gene = 0.3;
+      const double reach = std::pow(1.0 - progress, 2.0) * (upper ? 1.0 - gene : gene);
+      std::vector<double> steps;
+      for (int i = 0; i < kDraws; ++i) {
+        const double moved = shrinking_mutation(gene, random.uniform(), upper, progress, 2.0);
+        steps.push_back(upper ? moved - gene : gene - moved);
+      }
+      const double far = distance(steps, [&](double x) { return x / reach; });
+      CHECK_WITH(far < kFar, std::to_string(progress) + ": " + std::to_string(far));
+    }
+  }
+  CHECK(shrinking_mutation(0.3, 0.9, true, 1.0, 2.0) == 0.3);
+}
+
+CHECK_CASE("operators: polynomial mutation has the published density, and stays in the domain") {
+  // (eta+1)/2 (1-|d|)^eta has the distribution function (1+d)^(eta+1)/2 below 0, and its mirror
+  // above.
+  for (const double eta : {0.0, 1.0, 20.0, 100.0}) {
+    for (const double gene : {0.3, 0.9}) {
+      base::Random random(9, 0, 0, 0);
+      std::vector<double> steps;
+      for (int i = 0; i < kDraws; ++i) {
+        const double moved = polynomial_mutation(gene, random.uniform(), eta);
+        CHECK(moved >= 0.0 && moved <= 1.0);
+        steps.push_back(moved > gene ? (moved - gene) / (1.0 - gene) : (moved - gene) / gene);
+      }
+      const double far = distance(steps, [&](double d) {
+        return d <= 0.0 ? 0.5 * std::pow(1.0 + d, eta + 1.0)
+                        : 1.0 - 0.5 * std::pow(1.0 - d, eta + 1.0);
+      });
+      CHECK_WITH(far < kFar, "eta " + std::to_string(eta) + ": " + std::to_string(far));
+    }
+  }
+  for (const double edge : {0.0, 1.0}) {
+    CHECK(polynomial_mutation(edge, edge == 0.0 ? 0.1 : 0.9, 20.0) == edge);
   }
 }
 

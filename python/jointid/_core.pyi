@@ -13,6 +13,7 @@ import typing
 __all__: list[str] = [
     "GaOptions",
     "GaResult",
+    "GaState",
     "Generation",
     "Hold",
     "Model",
@@ -28,6 +29,7 @@ __all__: list[str] = [
     "friction_basis",
     "is_parameter",
     "minimise_genetic",
+    "minimise_random",
     "minimise_separable",
     "model_names",
     "models",
@@ -297,31 +299,95 @@ class Stop(enum.Enum):
 
 class GaOptions:
     """
-    Settings of the real-coded genetic algorithm (SBX, non-uniform mutation, tournament, elitism).
+    Settings of the genetic algorithm. Choices are given, and told, by their words.
 
     Parameters
     ----------
     population : default 60
-        Individuals, at least 4.
+        Individuals of an island, at least 4.
     generations : default 120
-        Generations, at most.
+        Generations at most, after the first population.
+    coding : default 'real'
+        "real", or "binary": the comparison, whose genes are codes of `bits` bits.
+    bits : default 16
+        Bits of a gene, 1 to 30 (binary coding).
+    selection : default 'tournament'
+        "tournament", "roulette" (by fitness) or "rank" (linear ranking).
     tournament : default 2
         Individuals that compete for each parent place.
+    rank_pressure : default 1.5
+        Expected copies of the best under rank selection, 1 to 2.
+    fitness : default 'inverse_square'
+        Of penalty P: "inverse_square" (1/P²), "inverse" (1/P) or "sum_minus" (the population's sum of P, minus P).
     elite : default 2
-        Best individuals that survive unchanged.
+        Best individuals that survive unchanged; the best ever is kept in any case.
+    crossover : default 'sbx'
+        "sbx" (3-2, 3-3), "sorted_sbx" (the first child is bred from the smaller genes of both parents, the second from the larger) or "blx" (3-1).
+    bit_crossover : default 'two_point'
+        "one_point" or "two_point" (binary coding).
     crossover_probability : default 0.9
         Probability that a pair crosses.
+    crossover_gene_probability : default 0.5
+        Probability that a gene takes part when its pair crosses.
     crossover_eta : default 5.0
         SBX distribution index; larger keeps children nearer.
+    blx_alpha : default 0.5
+        How far BLX reaches beyond the parents, in units of their distance.
+    uncrossed : default 'mates'
+        Who goes on when a pair does not cross: the selected "mates", or whoever had the same "places" in the last generation, selected or not.
+    mutation : default 'non_uniform'
+        "non_uniform" (3-4, 3-5), "shrinking" (a uniform share of the way to a bound, that shrinks), "uniform" or "polynomial"; binary coding flips bits instead.
     mutation_probability : default 0.1
-        Probability that a gene mutates.
+        Probability that a gene, or one gene of an individual, mutates. Binary coding: expected flips of a gene, or probability of one flip in an individual.
+    mutation_unit : default 'gene'
+        What that probability belongs to: "gene" or "individual".
     mutation_exponent : default 2.0
         How fast mutation steps shrink.
+    mutation_eta : default 20.0
+        Distribution index of polynomial mutation; larger keeps the child nearer.
+    adaptive : default False
+        Move both probabilities with the diversity measure (3.2.2).
+    diversity : default 'penalty'
+        The measure, 1 when all are alike: "penalty" (min/mean of the penalty) or "fitness" (mean/max of the fitness).
+    diversity_low : default 0.7
+        Measure at which adaptation begins (V_min).
+    diversity_high : default 0.95
+        Measure at which it is complete (V_max).
+    crossover_probability_alike : default 0.8
+        Crossover probability reached at `diversity_high`.
+    mutation_probability_alike : default 0.2
+        Mutation probability reached at `diversity_high`.
+    islands : default 1
+        Populations side by side, in a ring.
+    migration_interval : default 20
+        Generations between migrations: each island's best replaces the next one's worst.
     tolerance : default 1e-10
         Stop when (worst - best) / best falls below; 0: never.
     polish : default True
         End with a local least-squares search from the best individual.
     """
+    @staticmethod
+    def thesis() -> GaOptions:
+        """
+        The genetic algorithm that the thesis describes, for comparison.
+
+        Roulette on 1/P²; SBX of every gene, eta 4; non-uniform mutation, exponent 2, of one gene of an
+        individual drawn with the mutation probability (`mutation_unit="gene"` draws every gene instead);
+        crossover 0.95 to 0.80 and mutation 0.03 to 0.08 as mean/max of the fitness goes from 0.7 to 0.95; no
+        elite, no polish. Population 100, 1000 generations; its study also has 200 and 1500. Progress counts
+        from the random first population, so there is one population more than generations.
+        """
+    @staticmethod
+    def thesis_code() -> GaOptions:
+        """
+        The genetic algorithm of the thesis's MATLAB listing, for comparison.
+
+        It differs from `thesis()`: roulette on sum P - P, which hardly selects; parents sorted gene by gene,
+        which breaks the linkage between parameters; a pair that does not cross leaves its places to the
+        individuals that had them; mutation goes a uniform share of the way to a bound that shrinks with
+        exponent 2; crossover 0.9 to 0.8 and mutation 0.03 to 0.15 by min/mean of the penalty. Children are
+        clamped to the domain, where the listing takes absolute values and half the upper bound.
+        """
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> dict[str, typing.Any]: ...
     def __hash__(self) -> int: ...
@@ -330,12 +396,33 @@ class GaOptions:
         *,
         population: int = 60,
         generations: int = 120,
+        coding: str = "real",
+        bits: int = 16,
+        selection: str = "tournament",
         tournament: int = 2,
+        rank_pressure: float = 1.5,
+        fitness: str = "inverse_square",
         elite: int = 2,
+        crossover: str = "sbx",
+        bit_crossover: str = "two_point",
         crossover_probability: float = 0.9,
+        crossover_gene_probability: float = 0.5,
         crossover_eta: float = 5.0,
+        blx_alpha: float = 0.5,
+        uncrossed: str = "mates",
+        mutation: str = "non_uniform",
         mutation_probability: float = 0.1,
+        mutation_unit: str = "gene",
         mutation_exponent: float = 2.0,
+        mutation_eta: float = 20.0,
+        adaptive: bool = False,
+        diversity: str = "penalty",
+        diversity_low: float = 0.7,
+        diversity_high: float = 0.95,
+        crossover_probability_alike: float = 0.8,
+        mutation_probability_alike: float = 0.2,
+        islands: int = 1,
+        migration_interval: int = 20,
         tolerance: float = 1e-10,
         polish: bool = True,
     ) -> None: ...
@@ -350,12 +437,33 @@ class GaOptions:
         *,
         population: int = ...,
         generations: int = ...,
+        coding: str = ...,
+        bits: int = ...,
+        selection: str = ...,
         tournament: int = ...,
+        rank_pressure: float = ...,
+        fitness: str = ...,
         elite: int = ...,
+        crossover: str = ...,
+        bit_crossover: str = ...,
         crossover_probability: float = ...,
+        crossover_gene_probability: float = ...,
         crossover_eta: float = ...,
+        blx_alpha: float = ...,
+        uncrossed: str = ...,
+        mutation: str = ...,
         mutation_probability: float = ...,
+        mutation_unit: str = ...,
         mutation_exponent: float = ...,
+        mutation_eta: float = ...,
+        adaptive: bool = ...,
+        diversity: str = ...,
+        diversity_low: float = ...,
+        diversity_high: float = ...,
+        crossover_probability_alike: float = ...,
+        mutation_probability_alike: float = ...,
+        islands: int = ...,
+        migration_interval: int = ...,
         tolerance: float = ...,
         polish: bool = ...,
     ) -> GaOptions:
@@ -363,9 +471,44 @@ class GaOptions:
         A copy with the given fields changed.
         """
     @property
+    def adaptive(self) -> bool:
+        """
+        Move both probabilities with the diversity measure (3.2.2).
+        """
+    @property
+    def bit_crossover(self) -> str:
+        """
+        "one_point" or "two_point" (binary coding).
+        """
+    @property
+    def bits(self) -> int:
+        """
+        Bits of a gene, 1 to 30 (binary coding).
+        """
+    @property
+    def blx_alpha(self) -> float:
+        """
+        How far BLX reaches beyond the parents, in units of their distance.
+        """
+    @property
+    def coding(self) -> str:
+        """
+        "real", or "binary": the comparison, whose genes are codes of `bits` bits.
+        """
+    @property
+    def crossover(self) -> str:
+        """
+        "sbx" (3-2, 3-3), "sorted_sbx" (the first child is bred from the smaller genes of both parents, the second from the larger) or "blx" (3-1).
+        """
+    @property
     def crossover_eta(self) -> float:
         """
         SBX distribution index; larger keeps children nearer.
+        """
+    @property
+    def crossover_gene_probability(self) -> float:
+        """
+        Probability that a gene takes part when its pair crosses.
         """
     @property
     def crossover_probability(self) -> float:
@@ -373,14 +516,59 @@ class GaOptions:
         Probability that a pair crosses.
         """
     @property
+    def crossover_probability_alike(self) -> float:
+        """
+        Crossover probability reached at `diversity_high`.
+        """
+    @property
+    def diversity(self) -> str:
+        """
+        The measure, 1 when all are alike: "penalty" (min/mean of the penalty) or "fitness" (mean/max of the fitness).
+        """
+    @property
+    def diversity_high(self) -> float:
+        """
+        Measure at which it is complete (V_max).
+        """
+    @property
+    def diversity_low(self) -> float:
+        """
+        Measure at which adaptation begins (V_min).
+        """
+    @property
     def elite(self) -> int:
         """
-        Best individuals that survive unchanged.
+        Best individuals that survive unchanged; the best ever is kept in any case.
+        """
+    @property
+    def fitness(self) -> str:
+        """
+        Of penalty P: "inverse_square" (1/P²), "inverse" (1/P) or "sum_minus" (the population's sum of P, minus P).
         """
     @property
     def generations(self) -> int:
         """
-        Generations, at most.
+        Generations at most, after the first population.
+        """
+    @property
+    def islands(self) -> int:
+        """
+        Populations side by side, in a ring.
+        """
+    @property
+    def migration_interval(self) -> int:
+        """
+        Generations between migrations: each island's best replaces the next one's worst.
+        """
+    @property
+    def mutation(self) -> str:
+        """
+        "non_uniform" (3-4, 3-5), "shrinking" (a uniform share of the way to a bound, that shrinks), "uniform" or "polynomial"; binary coding flips bits instead.
+        """
+    @property
+    def mutation_eta(self) -> float:
+        """
+        Distribution index of polynomial mutation; larger keeps the child nearer.
         """
     @property
     def mutation_exponent(self) -> float:
@@ -390,7 +578,17 @@ class GaOptions:
     @property
     def mutation_probability(self) -> float:
         """
-        Probability that a gene mutates.
+        Probability that a gene, or one gene of an individual, mutates. Binary coding: expected flips of a gene, or probability of one flip in an individual.
+        """
+    @property
+    def mutation_probability_alike(self) -> float:
+        """
+        Mutation probability reached at `diversity_high`.
+        """
+    @property
+    def mutation_unit(self) -> str:
+        """
+        What that probability belongs to: "gene" or "individual".
         """
     @property
     def polish(self) -> bool:
@@ -400,7 +598,17 @@ class GaOptions:
     @property
     def population(self) -> int:
         """
-        Individuals, at least 4.
+        Individuals of an island, at least 4.
+        """
+    @property
+    def rank_pressure(self) -> float:
+        """
+        Expected copies of the best under rank selection, 1 to 2.
+        """
+    @property
+    def selection(self) -> str:
+        """
+        "tournament", "roulette" (by fitness) or "rank" (linear ranking).
         """
     @property
     def tolerance(self) -> float:
@@ -411,6 +619,11 @@ class GaOptions:
     def tournament(self) -> int:
         """
         Individuals that compete for each parent place.
+        """
+    @property
+    def uncrossed(self) -> str:
+        """
+        Who goes on when a pair does not cross: the selected "mates", or whoever had the same "places" in the last generation, selected or not.
         """
 
 class Generation:
@@ -423,6 +636,16 @@ class Generation:
         Best penalty so far.
         """
     @property
+    def crossover_probability(self) -> float:
+        """
+        That the next generation is bred with; mean of the islands.
+        """
+    @property
+    def diversity(self) -> float:
+        """
+        The options' measure, 1 when all are alike; mean of the islands.
+        """
+    @property
     def evaluations(self) -> int: ...
     @property
     def mean(self) -> float:
@@ -430,7 +653,65 @@ class Generation:
         Mean penalty of the population.
         """
     @property
+    def mutation_probability(self) -> float:
+        """
+        That the next generation is bred with; mean of the islands.
+        """
+    @property
     def number(self) -> int: ...
+
+class GaState:
+    """
+    A genetic search between two generations, from which it goes on to the same bits.
+    """
+    @staticmethod
+    def from_bytes(content: bytes) -> GaState:
+        """
+        What `to_bytes` gave; ValueError for anything else.
+        """
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> bytes: ...
+    def __hash__(self) -> int: ...
+    def __setstate__(self, arg0: bytes) -> None: ...
+    def to_bytes(self) -> bytes:
+        """
+        Exact, with a checksum: the content of a checkpoint file.
+        """
+    @property
+    def best(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Parameters of the best so far.
+        """
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def generation(self) -> int:
+        """
+        The last evaluated.
+        """
+    @property
+    def genes(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Free parameters scaled to [0, 1], shape (parameters, individuals).
+        """
+    @property
+    def history(self) -> list[Generation]: ...
+    @property
+    def options(self) -> GaOptions: ...
+    @property
+    def penalties(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Of the individuals.
+        """
+    @property
+    def penalty(self) -> float:
+        """
+        Its penalty.
+        """
+    @property
+    def seed(self) -> int: ...
+    @property
+    def trial(self) -> int: ...
 
 class GaResult:
     """
@@ -444,6 +725,11 @@ class GaResult:
     def history(self) -> list[Generation]: ...
     @property
     def penalty(self) -> float: ...
+    @property
+    def state(self) -> GaState | None:
+        """
+        From which the search can go on; None after a random search.
+        """
     @property
     def stop(self) -> Stop: ...
 
@@ -495,7 +781,29 @@ def minimise_genetic(
     trial: typing.SupportsInt | typing.SupportsIndex = 0,
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
     callback: collections.abc.Callable[..., typing.Any] | None = None,
-) -> GaResult: ...
+    resume: GaState | None = None,
+    checkpoint: collections.abc.Callable[..., typing.Any] | None = None,
+    checkpoint_interval: typing.SupportsInt | typing.SupportsIndex = 50,
+) -> GaResult:
+    """
+    Genetic search. `resume` goes on from a state made with the same options, seed, trial, bounds and penalty; `checkpoint` is called with the state every `checkpoint_interval` generations.
+    """
+
+def minimise_random(
+    penalty: Penalty,
+    lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    *,
+    options: GaOptions,
+    seed: typing.SupportsInt | typing.SupportsIndex = 0,
+    trial: typing.SupportsInt | typing.SupportsIndex = 0,
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+    callback: collections.abc.Callable[..., typing.Any] | None = None,
+) -> GaResult:
+    """
+    Random search with the budget of the genetic one: population, islands and generations of the options count, nothing else.
+    """
+
 def minimise_separable(
     penalty: Penalty,
     lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],

@@ -1,0 +1,237 @@
+#include "search/genetic.hpp"
+
+#include "bind/bind.hpp"
+#include "bind/choices.hpp"
+#include "identify/penalty.hpp"
+#include "search/random_search.hpp"
+
+namespace jointid::bind {
+
+using identify::Penalty;
+using search::Domain;
+using search::GaOptions;
+using search::GaResult;
+using search::GaState;
+using search::Generation;
+using search::Stop;
+
+namespace {
+
+using Function = std::optional<py::function>;
+
+search::Objective objective(const Penalty& penalty) {
+  return [&penalty](const Eigen::MatrixXd& candidates, Eigen::VectorXd& penalties,
+                    base::Pool& pool) { penalty.evaluate(candidates, penalties, pool); };
+}
+
+// A function outlives the call in its argument; only a pointer crosses, so no count changes without
+// the GIL.
+search::Observer observer(const Function& callback) {
+  if (!callback) return {};
+  return [function = &*callback](const Generation& generation) {
+    const py::gil_scoped_acquire gil;
+    const py::object stop = (*function)(generation);
+    return !stop.is_none() && stop.cast<bool>();
+  };
+}
+
+std::function<void(const GaState&)> checkpoint(const Function& callback) {
+  if (!callback) return {};
+  return [function = &*callback](const GaState& state) {
+    const py::gil_scoped_acquire gil;
+    (*function)(py::cast(state, py::return_value_policy::copy));
+  };
+}
+
+py::bytes bytes_of(const GaState& state) {
+  return search::to_bytes(state);
+}
+
+GaState state_of(const py::bytes& bytes) {
+  return search::state_from_bytes(static_cast<std::string_view>(bytes));
+}
+
+void bind_options(py::module_& m) {
+  value(
+      m, "GaOptions",
+      "Settings of the genetic algorithm. Choices are given, and told, by their words.",
+      Field{"population", &GaOptions::population, "Individuals of an island, at least 4."},
+      Field{"generations", &GaOptions::generations,
+            "Generations at most, after the first population."},
+      Field{"coding", &GaOptions::coding,
+            "\"real\", or \"binary\": the comparison, whose genes are codes of `bits` bits."},
+      Field{"bits", &GaOptions::bits, "Bits of a gene, 1 to 30 (binary coding)."},
+      Field{"selection", &GaOptions::selection,
+            "\"tournament\", \"roulette\" (by fitness) or \"rank\" (linear ranking)."},
+      Field{"tournament", &GaOptions::tournament,
+            "Individuals that compete for each parent place."},
+      Field{"rank_pressure", &GaOptions::rank_pressure,
+            "Expected copies of the best under rank selection, 1 to 2."},
+      Field{"fitness", &GaOptions::fitness,
+            "Of penalty P: \"inverse_square\" (1/P²), \"inverse\" (1/P) or \"sum_minus\" (the "
+            "population's sum of P, minus P)."},
+      Field{"elite", &GaOptions::elite,
+            "Best individuals that survive unchanged; the best ever is kept in any case."},
+      Field{"crossover", &GaOptions::crossover,
+            "\"sbx\" (3-2, 3-3), \"sorted_sbx\" (the first child is bred from the smaller genes "
+            "of both parents, the second from the larger) or \"blx\" (3-1)."},
+      Field{"bit_crossover", &GaOptions::bit_crossover,
+            "\"one_point\" or \"two_point\" (binary coding)."},
+      Field{"crossover_probability", &GaOptions::crossover_probability,
+            "Probability that a pair crosses."},
+      Field{"crossover_gene_probability", &GaOptions::crossover_gene_probability,
+            "Probability that a gene takes part when its pair crosses."},
+      Field{"crossover_eta", &GaOptions::crossover_eta,
+            "SBX distribution index; larger keeps children nearer."},
+      Field{"blx_alpha", &GaOptions::blx_alpha,
+            "How far BLX reaches beyond the parents, in units of their distance."},
+      Field{"uncrossed", &GaOptions::uncrossed,
+            "Who goes on when a pair does not cross: the selected \"mates\", or whoever had the "
+            "same \"places\" in the last generation, selected or not."},
+      Field{"mutation", &GaOptions::mutation,
+            "\"non_uniform\" (3-4, 3-5), \"shrinking\" (a uniform share of the way to a bound, "
+            "that shrinks), \"uniform\" or \"polynomial\"; binary coding flips bits instead."},
+      Field{"mutation_probability", &GaOptions::mutation_probability,
+            "Probability that a gene, or one gene of an individual, mutates. Binary coding: "
+            "expected flips of a gene, or probability of one flip in an individual."},
+      Field{"mutation_unit", &GaOptions::mutation_unit,
+            "What that probability belongs to: \"gene\" or \"individual\"."},
+      Field{"mutation_exponent", &GaOptions::mutation_exponent, "How fast mutation steps shrink."},
+      Field{"mutation_eta", &GaOptions::mutation_eta,
+            "Distribution index of polynomial mutation; larger keeps the child nearer."},
+      Field{"adaptive", &GaOptions::adaptive,
+            "Move both probabilities with the diversity measure (3.2.2)."},
+      Field{"diversity", &GaOptions::diversity,
+            "The measure, 1 when all are alike: \"penalty\" (min/mean of the penalty) or "
+            "\"fitness\" (mean/max of the fitness)."},
+      Field{"diversity_low", &GaOptions::diversity_low,
+            "Measure at which adaptation begins (V_min)."},
+      Field{"diversity_high", &GaOptions::diversity_high,
+            "Measure at which it is complete (V_max)."},
+      Field{"crossover_probability_alike", &GaOptions::crossover_probability_alike,
+            "Crossover probability reached at `diversity_high`."},
+      Field{"mutation_probability_alike", &GaOptions::mutation_probability_alike,
+            "Mutation probability reached at `diversity_high`."},
+      Field{"islands", &GaOptions::islands, "Populations side by side, in a ring."},
+      Field{"migration_interval", &GaOptions::migration_interval,
+            "Generations between migrations: each island's best replaces the next one's worst."},
+      Field{"tolerance", &GaOptions::tolerance,
+            "Stop when (worst - best) / best falls below; 0: never."},
+      Field{"polish", &GaOptions::polish,
+            "End with a local least-squares search from the best individual."})
+      .def_static("thesis", &GaOptions::thesis,
+                  R"(The genetic algorithm that the thesis describes, for comparison.
+
+Roulette on 1/P²; SBX of every gene, eta 4; non-uniform mutation, exponent 2, of one gene of an
+individual drawn with the mutation probability (`mutation_unit="gene"` draws every gene instead);
+crossover 0.95 to 0.80 and mutation 0.03 to 0.08 as mean/max of the fitness goes from 0.7 to 0.95; no
+elite, no polish. Population 100, 1000 generations; its study also has 200 and 1500. Progress counts
+from the random first population, so there is one population more than generations.)")
+      .def_static("thesis_code", &GaOptions::thesis_code,
+                  R"(The genetic algorithm of the thesis's MATLAB listing, for comparison.
+
+It differs from `thesis()`: roulette on sum P - P, which hardly selects; parents sorted gene by gene,
+which breaks the linkage between parameters; a pair that does not cross leaves its places to the
+individuals that had them; mutation goes a uniform share of the way to a bound that shrinks with
+exponent 2; crossover 0.9 to 0.8 and mutation 0.03 to 0.15 by min/mean of the penalty. Children are
+clamped to the domain, where the listing takes absolute values and half the upper bound.)");
+}
+
+void bind_state(py::module_& m) {
+  py::class_<GaState>(
+      m, "GaState",
+      "A genetic search between two generations, from which it goes on to the same bits.")
+      .def_readonly("options", &GaState::options)
+      .def_readonly("seed", &GaState::seed)
+      .def_readonly("trial", &GaState::trial)
+      .def_readonly("generation", &GaState::generation, "The last evaluated.")
+      .def_readonly("genes", &GaState::genes,
+                    "Free parameters scaled to [0, 1], shape (parameters, individuals).")
+      .def_readonly("penalties", &GaState::penalties, "Of the individuals.")
+      .def_readonly("best", &GaState::best, "Parameters of the best so far.")
+      .def_readonly("penalty", &GaState::penalty, "Its penalty.")
+      .def_readonly("evaluations", &GaState::evaluations)
+      .def_readonly("history", &GaState::history)
+      .def("to_bytes", &bytes_of, "Exact, with a checksum: the content of a checkpoint file.")
+      .def_static("from_bytes", &state_of, py::arg("content"),
+                  "What `to_bytes` gave; ValueError for anything else.")
+      .def("__eq__",
+           [](const GaState& self, const py::object& other) {
+             return py::isinstance<GaState>(other) &&
+                    search::to_bytes(self) == search::to_bytes(other.cast<const GaState&>());
+           })
+      .def("__hash__", [](const GaState& self) { return py::hash(bytes_of(self)); })
+      .def(py::pickle(&bytes_of, &state_of));
+}
+
+}  // namespace
+
+void bind_genetic(py::module_& m) {
+  py::native_enum<Stop>(m, "Stop", "enum.Enum", "Why a search ended.")
+      .value("generations", Stop::generations)
+      .value("converged", Stop::converged)
+      .value("observer", Stop::observer)
+      .finalize();
+  bind_options(m);
+  py::class_<Generation>(m, "Generation", "One generation, as the callback sees it.")
+      .def_readonly("number", &Generation::number)
+      .def_readonly("best", &Generation::best, "Best penalty so far.")
+      .def_readonly("mean", &Generation::mean, "Mean penalty of the population.")
+      .def_readonly("diversity", &Generation::diversity,
+                    "The options' measure, 1 when all are alike; mean of the islands.")
+      .def_readonly("crossover_probability", &Generation::crossover_probability,
+                    "That the next generation is bred with; mean of the islands.")
+      .def_readonly("mutation_probability", &Generation::mutation_probability,
+                    "That the next generation is bred with; mean of the islands.")
+      .def_readonly("evaluations", &Generation::evaluations);
+  bind_state(m);
+  py::class_<GaResult>(m, "GaResult", "Best individual, history and why the search ended.")
+      .def_readonly("best", &GaResult::best)
+      .def_readonly("penalty", &GaResult::penalty)
+      .def_readonly("history", &GaResult::history)
+      .def_readonly("evaluations", &GaResult::evaluations)
+      .def_readonly("stop", &GaResult::stop)
+      .def_readonly("state", &GaResult::state,
+                    "From which the search can go on; None after a random search.");
+
+  m.def(
+      "minimise_genetic",
+      [](const Penalty& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
+         const GaOptions& options, std::uint64_t seed, std::uint32_t trial, int threads,
+         const Function& callback, const std::optional<GaState>& resume,
+         const Function& on_checkpoint, int checkpoint_interval) {
+        const Domain domain{std::move(lower), std::move(upper)};
+        const search::Continuation parts{resume ? &*resume : nullptr, checkpoint(on_checkpoint),
+                                         checkpoint_interval};
+        const py::gil_scoped_release nogil;
+        base::Pool pool(threads, SignalPoll{});
+        return search::minimise_genetic(objective(penalty), domain, options, seed, trial, pool,
+                                        observer(callback), parts);
+      },
+      py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::kw_only(), py::arg("options"),
+      py::arg("seed") = 0, py::arg("trial") = 0, py::arg("threads") = 0,
+      py::arg("callback") = py::none(), py::arg("resume") = py::none(),
+      py::arg("checkpoint") = py::none(), py::arg("checkpoint_interval") = 50,
+      "Genetic search. `resume` goes on from a state made with the same options, seed, trial, "
+      "bounds "
+      "and penalty; `checkpoint` is called with the state every `checkpoint_interval` "
+      "generations.");
+  m.def(
+      "minimise_random",
+      [](const Penalty& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
+         const GaOptions& options, std::uint64_t seed, std::uint32_t trial, int threads,
+         const Function& callback) {
+        const Domain domain{std::move(lower), std::move(upper)};
+        const py::gil_scoped_release nogil;
+        base::Pool pool(threads, SignalPoll{});
+        return search::minimise_random(objective(penalty), domain, options, seed, trial, pool,
+                                       observer(callback));
+      },
+      py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::kw_only(), py::arg("options"),
+      py::arg("seed") = 0, py::arg("trial") = 0, py::arg("threads") = 0,
+      py::arg("callback") = py::none(),
+      "Random search with the budget of the genetic one: population, islands and generations of "
+      "the options count, nothing else.");
+}
+
+}  // namespace jointid::bind
