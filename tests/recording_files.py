@@ -1,7 +1,9 @@
 """Files for the tests of loading."""
 
 import gzip
+import io
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +26,7 @@ def lines(header: str, rows: list[list[float]] | None = None) -> list[str]:
 def written(path: Path, text: list[str] | str | bytes) -> Path:
     content = "\n".join(text) if isinstance(text, list) else text
     raw = content.encode() if isinstance(content, str) else content
+    path.parent.mkdir(exist_ok=True)
     path.write_bytes(gzip.compress(raw) if path.suffix == ".gz" else raw)
     return path
 
@@ -35,6 +38,14 @@ def column(number: int) -> list[float]:
 def npz(path: Path, **arrays: Any) -> Path:
     np.savez(path, **arrays)
     return path
+
+
+def mat(path: Path, variables: Mapping[str, Any], **options: Any) -> Path:
+    from scipy.io import savemat
+
+    stream = io.BytesIO()
+    savemat(stream, dict(variables), **options)  # type: ignore[arg-type]
+    return written(path, stream.getvalue())
 
 
 GOOD = lines("time_s,position_rad,velocity_rad_s,torque_Nm")

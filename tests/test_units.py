@@ -37,9 +37,18 @@ from jointid.recording.units import UNITS, find_unit, unit_named, unit_names
         ("Nm", 7.0, 7.0),
         ("mNm", 7000.0, 7.0),
         ("kNm", 0.007, 7.0),
+        ("Ncm", 700.0, 7.0),
+        ("Nmm", 7000.0, 7.0),
+        ("kgfm", 1.0, 9.80665),
+        ("kgfcm", 100.0, 9.80665),
+        ("ozfin", 1.0, 0.00706155181422604),
+        ("lbfin", 1.0, 0.1129848290276167),
+        ("lbfft", 1.0, 1.3558179483314004),
         ("N", 12.0, 12.0),
         ("mN", 12000.0, 12.0),
         ("kN", 0.012, 12.0),
+        ("kgf", 2.0, 19.6133),
+        ("lbf", 1.0, 4.4482216152605),
         ("A", 8.0, 8.0),
         ("mA", 8000.0, 8.0),
         ("degC", 28.0, 28.0),
@@ -81,13 +90,33 @@ def test_every_unit_is_tested_above() -> None:
         ("1/min", "rpm"),
         ("degrees", "deg"),
         ("rad_per_s", "rad_s"),
+        ("rad·s⁻¹", "rad_s"),
+        ("rad s^-1", "rad_s"),
+        ("m.s-1", "m_s"),
+        ("min⁻¹", "rpm"),
+        ("U/min", "rpm"),
+        ("º", "deg"),
+        ("turns", "rev"),
+        ("N-m", "Nm"),
+        ("N.mm", "Nmm"),
+        ("kgf·cm", "kgfcm"),
+        ("kg-cm", "kgfcm"),
+        ("kgf*m", "kgfm"),
+        ("oz-in", "ozfin"),
+        ("ozf·in", "ozfin"),
+        ("in-lb", "lbfin"),
+        ("ft·lbf", "lbfft"),
+        ("counts", "raw"),
+        ("ticks", "raw"),
     ],
 )
 def test_spellings(text: str, name: str) -> None:
     assert find_unit(text) is UNITS[name]
 
 
-@pytest.mark.parametrize("text", ["", "furlong", "rad_rad", "Nms", "__"])
+@pytest.mark.parametrize(
+    "text", ["", "furlong", "rad_rad", "Nms", "__", "m/s^2", "s⁻¹", "rad/s²", "-1", "min"]
+)
 def test_what_is_no_unit(text: str) -> None:
     assert find_unit(text) is None
 

@@ -1,10 +1,13 @@
-"""Which column of a table is which signal, and in what unit: headers, `columns=`, `units=`."""
+"""Which column is which signal, and in what unit: headers, `columns=`, `units=`, `scale=`."""
 
+import math
 import operator
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
+
+import numpy as np
 
 from jointid.errors import InputError
 from jointid.recording.signals import SIGNALS, FloatArray, check_signal_name, closest, dimensions
@@ -44,6 +47,10 @@ class Table(Protocol):
         """One for each column."""
 
     @property
+    def other_names(self) -> Mapping[str, int]:
+        """Names that `columns=` may use besides the headers → their columns."""
+
+    @property
     def header_place(self) -> str:
         """Where the headers stand, for messages."""
 
@@ -73,11 +80,21 @@ class Column:
         None: no unit is named anywhere, SI is assumed.
     unknown : str
         What stands where a unit should, but is none. Default: nothing.
+    scale : float, optional
+        SI value of the file's 1, whatever the unit. Default: the unit tells.
     """
 
     index: int
     unit: Unit | None
     unknown: str = ""
+    scale: float | None = None
+
+    def to_si(self, values: FloatArray) -> FloatArray:
+        """Return the column's values in SI units."""
+        if self.scale is None:
+            return self.unit.to_si(values) if self.unit else values
+        with np.errstate(over="ignore", under="ignore"):  # inf is refused by name later
+            return values * self.scale
 
 
 def match_columns(
@@ -85,6 +102,7 @@ def match_columns(
     *,
     columns: Mapping[str, str | int | None] | None,
     units: Mapping[str, str] | None,
+    scale: Mapping[str, float] | None,
     kind: str | None,
 ) -> tuple[dict[str, Column], str]:
     """Return the column of each signal present, and the kind of joint their units tell.
@@ -109,12 +127,35 @@ def match_columns(
             text, dimensions=dimensions(signal, kind), place=f"{table.source}, units[{signal!r}]"
         )
         candidates[signal] = [Column(index=c.index, unit=unit) for c in candidates[signal]]
+    for signal, factor in (scale or {}).items():
+        check_signal_name(signal, "scale")
+        _check_scale(table, signal, factor, units or {})
+        if not candidates.get(signal):
+            raise InputError(
+                f"{table.header_place}: scale names {signal!r}, but no column is recognised as it"
+            )
+        candidates[signal] = [
+            Column(index=c.index, unit=None, scale=float(factor)) for c in candidates[signal]
+        ]
     kind = kind or _kind(table, candidates)
     return {
         signal: _the_one(table, signal, candidates[signal], kind)
         for signal in SIGNALS
         if candidates.get(signal)
     }, kind
+
+
+def _check_scale(table: Table, signal: str, factor: object, units: Mapping[str, str]) -> None:
+    number = isinstance(factor, int | float | np.number) and not isinstance(factor, bool)
+    if not number or factor == 0 or not math.isfinite(factor):  # type: ignore[arg-type]
+        raise InputError(
+            f"{table.source}: scale[{signal!r}] is {factor!r}; a finite number other than 0 is "
+            "expected, the SI value of the file's 1"
+        )
+    if signal in units:
+        raise InputError(
+            f"{table.source}: {signal!r} is in units= and in scale=; one of them tells its size"
+        )
 
 
 def column_index(table: Table, column: object, argument: str) -> int:
@@ -147,6 +188,8 @@ def _by_header(table: Table, header: str, argument: str) -> int:
                 f"{table.header_place}: {argument} is {header!r}, which is the header of columns "
                 f"{' and '.join(map(str, found))}; give the number"
             )
+    if header in table.other_names:
+        return table.other_names[header]
     close = closest(header, table.headers)
     meant = f"did you mean {close!r}" if close else f"headers are {_listed(table.headers)}"
     raise InputError(f"{table.header_place}: {argument} is {header!r}, no such header; {meant}")
@@ -178,11 +221,13 @@ def _candidates(table: Table, columns: Mapping[str, str | int | None]) -> dict[s
 
 def _parsed(header: str) -> tuple[str, Unit | None, str]:
     """Return a header's plain name, its unit, and what stands for a unit but is none."""
+    if re.search(r"\((\d+,:|:,\d+)\)$", header):  # a part of a matrix: no unit in the brackets
+        return _plain(header), None, ""
     bracketed = re.fullmatch(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*", header)
     if bracketed and bracketed[2].strip():
         unit = find_unit(bracketed[2])
         return _plain(bracketed[1]), unit, "" if unit else bracketed[2].strip()
-    parts = re.split(r"[_\s]+", (bracketed[1] if bracketed else header).strip())
+    parts = re.split(r"[_\s,]+", (bracketed[1] if bracketed else header).strip())
     for first in range(1, len(parts)):  # the longest unit: rad_s before s
         suffix = "_".join(parts[first:])
         unit = find_unit(suffix) if suffix and not suffix[0].isdigit() else None
@@ -239,9 +284,14 @@ def _the_one(table: Table, signal: str, candidates: list[Column], kind: str) -> 
     else:
         what = f"is in {column.unit.name} ({column.unit.dimension})"
     wanted = " or ".join(dimensions(signal, kind))
+    way_out = "name it with units=, another column with columns="
+    if column.unit and column.unit.dimension in ("raw reading", "voltage"):
+        way_out = (
+            f"give the SI value of 1 with scale={{{signal!r}: ...}}, another column with columns="
+        )
     raise InputError(
         f"{table.header_place}: {signal} of a {kind} joint, column {header!r}, {what}; {wanted} "
-        f"is expected, in {known}: name it with units= or another column with columns="
+        f"is expected, in {known}: {way_out}"
     )
 
 

@@ -1,6 +1,7 @@
 """Reading a data frame: pandas, or anything with `columns` and `frame[column]`."""
 
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ class FrameTable:
     source = "data frame"
     header_place = "data frame"
     saved: Mapping[str, Any] | None = None
+    other_names: Mapping[str, int] = MappingProxyType({})
 
     def __init__(self, frame: Any) -> None:
         if not hasattr(frame, "columns") or not hasattr(frame, "__getitem__"):

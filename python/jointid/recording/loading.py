@@ -1,20 +1,21 @@
-"""Loading a recording from a file."""
+"""Loading recordings from files."""
 
 import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
 from jointid.errors import InputError
-from jointid.recording.columns import Column, Table, column_index, match_columns
+from jointid.recording.columns import Table, column_index
+from jointid.recording.contents import read_contents
 from jointid.recording.csv_reader import CsvTable
+from jointid.recording.mat_reader import MatTable
 from jointid.recording.npz_reader import NpzTable
-from jointid.recording.recording import Recording, check_kind, check_torque_hold
+from jointid.recording.parquet_reader import ParquetTable
+from jointid.recording.recording import Recording
 from jointid.recording.saving import ending_of
-from jointid.recording.signals import check_signals
+
+ENDINGS = (".csv", ".csv.gz", ".npz", ".mat", ".parquet")
 
 
 def load(
@@ -22,6 +23,7 @@ def load(
     *,
     columns: Mapping[str, str | int | None] | None = None,
     units: Mapping[str, str] | None = None,
+    scale: Mapping[str, float] | None = None,
     where: Mapping[str, float | str] | None = None,
     kind: str | None = None,
     torque_hold: str | None = None,
@@ -39,13 +41,20 @@ def load(
     Parameters
     ----------
     path : path-like
-        A ``.csv``, ``.csv.gz`` or ``.npz`` file, foreign or written by `Recording.save`.
+        A ``.csv``, ``.csv.gz`` or ``.npz`` file, foreign or written by `Recording.save`; a
+        MATLAB ``.mat`` file up to version 7 (vectors, also in a struct, by their names); a
+        ``.parquet`` file (needs pyarrow). Commas, semicolons or tabs separate a text's cells;
+        with the latter two, decimal commas are read as well.
     columns : mapping of str to str, int or None, optional
         Signal → header or 0-based number of its column; None leaves the signal out (a velocity
         left out is derived from position). Default: by the headers, also for signals not mapped.
     units : mapping of str to str, optional
         Signal → unit, e.g. ``{"position": "deg"}``, whatever the header says.
         Default: the header's.
+    scale : mapping of str to float, optional
+        Signal → SI value of the file's 1, whatever the header says: for encoder counts
+        (``{"position": 2 * math.pi / 4096}``), a voltage that drives a known force, a sign.
+        Noted in ``metadata["scale"]``. Default: units tell.
     where : mapping of str to number or str, optional
         Header → value: only rows with this value are kept. Default: all rows.
     kind : {"revolute", "prismatic"}, optional
@@ -66,118 +75,93 @@ def load(
         file, the line or the header, and what would be right.
     """
     file = Path(path)
-    ending = ending_of(file)
-    table: CsvTable | NpzTable
-    try:
-        table = NpzTable(file) if ending == ".npz" else CsvTable(file)
-    except FileNotFoundError:
-        raise InputError(f"{file}: there is no such file") from None
-    except IsADirectoryError:
-        raise InputError(f"{file}: this is a folder; the name of a file is expected") from None
-    except OSError as error:
-        raise InputError(f"{file}: the file cannot be read ({error.strerror})") from None
-    fields = fields_from(
-        table, columns=columns, units=units, where=where, kind=kind, torque_hold=torque_hold
+    contents = read_contents(
+        _table(file), columns=columns, units=units, scale=scale, kind=kind, torque_hold=torque_hold
     )
-    fields.setdefault("name", file.name[: -len(ending)])
-    if name is not None:
-        fields["name"] = name
-    try:
-        return Recording(**fields)
-    except InputError as error:
-        raise InputError(f"{file}: {error}") from None
+    if where:
+        fields = contents.fields(contents.rows_where(where))
+    else:
+        advice = ' (of several runs in a file choose one, where={"run": 1}, or take load_runs)'
+        fields = contents.fields(time_advice=advice)
+    return _recording(file, fields, name)
 
 
-def fields_from(
-    table: Table,
+def load_runs(
+    path: str | os.PathLike[str],
     *,
+    by: str | int,
     columns: Mapping[str, str | int | None] | None = None,
     units: Mapping[str, str] | None = None,
-    where: Mapping[str, float | str] | None = None,
+    scale: Mapping[str, float] | None = None,
     kind: str | None = None,
     torque_hold: str | None = None,
-) -> dict[str, Any]:
-    """Return the arguments of `Recording` that a table holds; parameters are those of `load`.
+    name: str | None = None,
+) -> tuple[Recording, ...]:
+    """Return the recordings of a file that holds several runs one below the other.
+
+    Parameters
+    ----------
+    path : path-like
+        As in `load`.
+    by : str or int
+        Header or 0-based number of the column that tells the runs apart: rows with the same
+        value are one run.
+    columns, units, scale, kind, torque_hold
+        As in `load`.
+    name : str, optional
+        What the runs' names begin with. Default: as in `load`.
+
+    Returns
+    -------
+    tuple of Recording
+        In the order in which the values of `by` first appear, each named ``"NAME BY=VALUE"``.
 
     Raises
     ------
     InputError
         As `load`.
     """
-    if kind is not None:
-        check_kind(kind)
-    check_torque_hold(torque_hold)
-    saved = dict(table.saved or {})
-    saved_kind = saved.get("kind")
-    if kind is not None and saved_kind not in (None, kind):
-        raise InputError(
-            f"{table.source}: the recording was saved as {saved_kind}, not {kind}; leave kind= out"
-        )
-    found, kind = match_columns(table, columns=columns, units=units, kind=kind or saved_kind)
-    values = dict(
-        zip(found, table.numbers([column.index for column in found.values()]), strict=True)
+    file = Path(path)
+    contents = read_contents(
+        _table(file), columns=columns, units=units, scale=scale, kind=kind, torque_hold=torque_hold
     )
-    rows = _rows(table, where, len(values["time"])) if where else None
-    signals = {}
-    for signal, column in found.items():
-        chosen = values[signal] if rows is None else values[signal][rows]
-        signals[signal] = column.unit.to_si(chosen) if column.unit else chosen
-
-    def place(signal: str, index: int) -> str:
-        return table.place(found[signal].index, index if rows is None else int(rows[index]))
-
-    check_signals(
-        signals,
-        place=place,
-        source=table.source,
-        time_advice="" if where else ' (of several runs in a file choose one: where={"run": 1})',
-    )
-    if columns and "velocity" in columns:
-        saved.pop("velocity_derived", None)
-    fields = {**saved, **signals, "kind": kind}
-    if torque_hold is not None:
-        fields["torque_hold"] = torque_hold
-    if table.saved is None:
-        fields["metadata"] = _assumed(found)
-    return fields
+    header = contents.table.headers[column_index(contents.table, by, "by")]
+    runs = []
+    for value, rows in contents.rows_of(by).items():
+        run = f"{header}={value}"
+        try:
+            fields = contents.fields(rows)
+            runs.append(_recording(file, fields, f"{_name(file, fields, name)} {run}".lstrip()))
+        except InputError as error:
+            raise InputError(f"{error} (the run {run})") from None
+    return tuple(runs)
 
 
-def _assumed(found: Mapping[str, Column]) -> dict[str, list[str]]:
-    # A sensor's reading has no unit of its own: nothing is assumed there.
-    assumed = [
-        signal for signal, column in found.items() if column.unit is None and signal != "sensor"
-    ]
-    return {"assumed_units": assumed} if assumed else {}
+def _table(file: Path) -> Table:
+    """Return a file as a table of columns, by what its name ends in."""
+    ending = ending_of(file, ENDINGS)
+    readers: dict[str, type[NpzTable | MatTable | ParquetTable]] = {
+        ".npz": NpzTable,
+        ".mat": MatTable,
+        ".parquet": ParquetTable,
+    }
+    try:
+        return readers.get(ending, CsvTable)(file)
+    except FileNotFoundError:
+        raise InputError(f"{file}: there is no such file") from None
+    except IsADirectoryError:
+        raise InputError(f"{file}: this is a folder; the name of a file is expected") from None
+    except OSError as error:
+        raise InputError(f"{file}: the file cannot be read ({error.strerror})") from None
 
 
-def _rows(table: Table, where: Mapping[str, float | str], length: int) -> npt.NDArray[np.intp]:
-    """Return the numbers of the rows that `where` keeps."""
-    kept = np.ones(length, dtype=np.bool_)
-    for header, wanted in where.items():
-        column = column_index(table, header, "where")
-        if isinstance(wanted, str):
-            cells = table.text(column)
-            matches = np.array([cell == wanted for cell in cells], dtype=np.bool_)
-            present = list(dict.fromkeys(cells))
-        elif isinstance(wanted, int | float | np.number):
-            (numbers,) = table.numbers([column])
-            matches = numbers == float(wanted)
-            present = [f"{value:g}" for value in dict.fromkeys(numbers.tolist())]
-        else:
-            raise InputError(
-                f"{table.source}: where[{header!r}] is {wanted!r}; a number or text is expected"
-            )
-        if len(matches) != length:
-            raise InputError(
-                f"{table.source}: where names {header!r} with {len(matches)} samples, time has "
-                f"{length}"
-            )
-        if not matches.any():
-            shown = ", ".join(present[:8]) + (", ..." if len(present) > 8 else "")
-            raise InputError(
-                f"{table.source}: no row has {wanted!r} in column {header!r}; it holds {shown}"
-            )
-        kept &= matches
-    if not kept.any():
-        raise InputError(f"{table.source}: no row meets all of where={dict(where)!r}")
-    return np.flatnonzero(kept)
+def _name(file: Path, fields: Mapping[str, Any], name: str | None) -> Any:
+    stem = file.name[: -len(ending_of(file, ENDINGS))]
+    return fields.get("name", stem) if name is None else name
+
+
+def _recording(file: Path, fields: Mapping[str, Any], name: str | None) -> Recording:
+    try:
+        return Recording(**{**fields, "name": _name(file, fields, name)})
+    except InputError as error:
+        raise InputError(f"{file}: {error}") from None

@@ -5,12 +5,14 @@ import zipfile
 import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from jointid.errors import InputError
+from jointid.recording.reasons import reason_of
 from jointid.recording.saving import NPZ_MEMBER, saved_attributes
 from jointid.recording.signals import FloatArray, signal_array
 
@@ -34,6 +36,8 @@ class NpzTable:
         The file is no archive of arrays.
     """
 
+    other_names: Mapping[str, int] = MappingProxyType({})
+
     def __init__(self, path: Path) -> None:
         self.source = str(path)
         self.header_place = self.source
@@ -46,7 +50,7 @@ class NpzTable:
         try:
             archive = np.load(content, allow_pickle=False)
         except _DAMAGED as error:
-            raise InputError(f"{path}: the archive is damaged ({_short(error)})") from None
+            raise InputError(f"{path}: the archive is damaged ({reason_of(error)})") from None
         self._archive: Mapping[str, Any] = archive
         self.saved: Mapping[str, Any] | None = None
         if NPZ_MEMBER in archive.files:
@@ -79,12 +83,8 @@ class NpzTable:
                     "never read; save it as an array of floats"
                 ) from None
             raise InputError(
-                f"{self.source}: member {name!r} cannot be read ({_short(error)})"
+                f"{self.source}: member {name!r} cannot be read ({reason_of(error)})"
             ) from None
         if not isinstance(value, np.ndarray):
             raise InputError(f"{self.source}: member {name!r} is not an array")
         return value
-
-
-def _short(error: BaseException) -> str:
-    return " ".join(str(error).split())[:120].rstrip(".") or type(error).__name__

@@ -2,20 +2,19 @@
 
 import functools
 import hashlib
-import json
 import os
-from collections.abc import Mapping
-from types import MappingProxyType
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal, NoReturn, Self
 
 import numpy as np
 import numpy.typing as npt
 
 from jointid.errors import InputError
+from jointid.recording.attributes import check_kind, check_torque_hold, json_mapping
 from jointid.recording.gaps import Gap, derived_velocity, find_gaps
+from jointid.recording.parts import slice_between, slices_of
+from jointid.recording.resampling import resampled
 from jointid.recording.signals import (
-    KINDS,
-    SHORTEST,
     SIGNALS,
     FloatArray,
     check_signal_name,
@@ -149,8 +148,8 @@ class Recording:
             torque_hold=torque_hold,
             velocity_derived=velocity_derived or velocity is None,
             name=name,
-            metadata=_json_mapping("metadata", metadata or {}),
-            truth=None if truth is None else _json_mapping("truth", truth),
+            metadata=json_mapping("metadata", metadata or {}),
+            truth=None if truth is None else json_mapping("truth", truth),
         )
         if velocity is None:
             vars(self)["velocity"] = derived_velocity(self.time, self.position, self.gaps)
@@ -162,6 +161,7 @@ class Recording:
         *,
         columns: Mapping[str, str | int | None] | None = None,
         units: Mapping[str, str] | None = None,
+        scale: Mapping[str, float] | None = None,
         kind: str | None = None,
         torque_hold: str | None = None,
     ) -> Self:
@@ -171,7 +171,7 @@ class Recording:
         ----------
         df : DataFrame
             Anything with `columns` and `df[column]`; headers are read as `load` reads a file's.
-        columns, units, kind, torque_hold
+        columns, units, scale, kind, torque_hold
             As in `load`.
 
         Raises
@@ -179,13 +179,18 @@ class Recording:
         InputError
             As in `load`; a row is named by its 0-based number.
         """
+        from jointid.recording.contents import read_contents
         from jointid.recording.frame_reader import FrameTable
-        from jointid.recording.loading import fields_from
 
-        table = FrameTable(df)
-        return cls(
-            **fields_from(table, columns=columns, units=units, kind=kind, torque_hold=torque_hold)
+        contents = read_contents(
+            FrameTable(df),
+            columns=columns,
+            units=units,
+            scale=scale,
+            kind=kind,
+            torque_hold=torque_hold,
         )
+        return cls(**contents.fields())
 
     @property
     def signals(self) -> tuple[str, ...]:
@@ -239,24 +244,70 @@ class Recording:
         InputError
             Fewer than 8 samples would be left, or a bound is no number.
         """
-        low = self.time[0] if start is None else start
-        high = self.time[-1] if stop is None else stop
-        for bound, value in (("start", low), ("stop", high)):
-            if not isinstance(value, int | float | np.number) or np.isnan(value):
-                raise InputError(f"crop: {bound} is {value!r}; a time [s] is expected")
-        kept = slice(
-            int(np.searchsorted(self.time, low, side="left")),
-            int(np.searchsorted(self.time, high, side="right")),
+        return self._part(slice_between(self.time, start, stop))
+
+    def split(
+        self, parts: int | None = None, *, at: Sequence[float] | None = None
+    ) -> tuple[Self, ...]:
+        """Return the recording in consecutive parts that share no sample.
+
+        Parameters
+        ----------
+        parts : int, optional
+            How many; their numbers of samples differ by one at most.
+        at : sequence of float, optional
+            Instead of `parts`: the times [s] at which a new part begins, on the recording's
+            clock, increasing; a sample at such a time is the new part's first.
+
+        Returns
+        -------
+        tuple of Recording
+            Named ``"NAME 1/3"``, ..., with the same time stamps and velocities, derived ones too.
+
+        Raises
+        ------
+        InputError
+            Neither or both are given, a time is not inside the recording, or a part would have
+            fewer than 8 samples.
+        """
+        slices = slices_of(self.time, parts, at)
+        return tuple(
+            self._part(part, name=f"{self.name} {number}/{len(slices)}".lstrip())
+            for number, part in enumerate(slices, start=1)
         )
-        left = max(0, kept.stop - kept.start)
-        if left < SHORTEST:
-            raise InputError(
-                f"crop from {low!s} s to {high!s} s leaves {left} samples of {len(self)} "
-                f"({self.time[0]!s} s to {self.time[-1]!s} s); at least {SHORTEST} are needed"
-            )
-        fields = self._fields()
-        fields.update({signal: fields[signal][kept] for signal in self.signals})
-        return type(self)(**fields)
+
+    def resample(self, *, period: float | None = None, rate: float | None = None) -> Self:
+        """Return the recording on a uniform clock.
+
+        `identify` does not need this: it takes the time stamps as they are, and interpolation
+        correlates the noise. It serves what wants equal steps: spectra, filters, other tools.
+
+        Each gap-free stretch begins at its own first sample and is interpolated linearly, a held
+        torque (``torque_hold="zoh"``: torque, motor_torque and current) by its last value; gaps
+        stay gaps. Nothing is filtered: below the rate of the recording, noise folds back.
+
+        Parameters
+        ----------
+        period : float, optional
+            Time between samples [s].
+        rate : float, optional
+            Instead of `period`: samples per second [Hz].
+
+        Returns
+        -------
+        Recording
+            Derived velocities are interpolated like given ones and stay marked as derived;
+            ``metadata["resampled_from"]`` is the former median period [s].
+
+        Raises
+        ------
+        InputError
+            Neither or both are given, one is not positive, too few or too many samples would
+            result, or a gap would not stand out any more.
+        """
+        signals = resampled(self, period, rate)
+        metadata = {**self.metadata, "resampled_from": self.sample_period}
+        return type(self)(**{**self._fields(), **signals, "metadata": metadata})
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the recording to a file, whole or not at all.
@@ -317,6 +368,11 @@ class Recording:
         # Through the constructor: pickles of arrays forget that they are read-only.
         return functools.partial(type(self), **self._fields()), ()
 
+    def _part(self, kept: slice, **changes: Any) -> Self:
+        fields = self._fields()
+        fields.update({signal: fields[signal][kept] for signal in self.signals}, **changes)
+        return type(self)(**fields)
+
     def _fields(self) -> dict[str, Any]:
         """Return the arguments that build this recording again."""
         fields = {name: getattr(self, name) for name in (*SIGNALS, "kind", "torque_hold", "name")}
@@ -325,35 +381,3 @@ class Recording:
             "metadata": dict(self.metadata),
             "truth": None if self.truth is None else dict(self.truth),
         }
-
-
-def check_kind(kind: object) -> None:
-    """Refuse a kind of joint that does not exist."""
-    if kind not in KINDS:
-        raise InputError(f"kind is {kind!r}; 'revolute' or 'prismatic' is expected")
-
-
-def check_torque_hold(torque_hold: object) -> None:
-    """Refuse a way of holding the torque that does not exist."""
-    if torque_hold not in (None, "zoh", "linear"):
-        raise InputError(
-            f"torque_hold is {torque_hold!r}; 'zoh' (held between samples), 'linear' or None "
-            "(not known) is expected"
-        )
-
-
-def _json_mapping(argument: str, mapping: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return a read-only copy, as JSON would give it back."""
-    if not isinstance(mapping, Mapping):
-        raise InputError(f"{argument} is a {type(mapping).__name__}; a mapping is expected")
-    copy = {}
-    for key, value in mapping.items():
-        if not isinstance(key, str):
-            raise InputError(f"{argument}: the key {key!r} is not a string")
-        try:
-            copy[key] = json.loads(json.dumps(value, allow_nan=False))
-        except (TypeError, ValueError, RecursionError):
-            raise InputError(
-                f"{argument}: {key!r} holds no JSON value (text, finite number, list, mapping)"
-            ) from None
-    return MappingProxyType(copy)

@@ -4,6 +4,7 @@ import gzip
 import io
 import json
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,7 +27,7 @@ _ATTRIBUTES = ("name", "kind", "torque_hold", "velocity_derived", "metadata", "t
 def save_recording(recording: "Recording", path: str | os.PathLike[str]) -> None:
     """Write a recording to a file: see `Recording.save`."""
     target = Path(path)
-    ending = ending_of(target)
+    ending = ending_of(target, ENDINGS)
     if not target.parent.is_dir():
         raise InputError(f"{target}: the folder '{target.parent}' does not exist; create it first")
     if target.is_dir():
@@ -39,20 +40,19 @@ def save_recording(recording: "Recording", path: str | os.PathLike[str]) -> None
         write_whole(target, gzip.compress(_csv(recording), compresslevel=6, mtime=0))
 
 
-def ending_of(path: Path) -> str:
-    """Return which of the known endings a file's name has.
+def ending_of(path: Path, endings: Sequence[str]) -> str:
+    """Return which of some endings a file's name has, in any case.
 
     Raises
     ------
     InputError
         None of them.
     """
-    name = path.name.lower()
-    for ending in (".csv.gz", ".csv", ".npz"):
-        if name.endswith(ending):
+    for ending in sorted(endings, key=len, reverse=True):
+        if path.name.lower().endswith(ending):
             return ending
     raise InputError(
-        f"{path}: a name that ends in {path.suffix!r} is not known; {', '.join(ENDINGS)} are"
+        f"{path}: a name that ends in {path.suffix!r} is not known; {', '.join(endings)} are"
     )
 
 

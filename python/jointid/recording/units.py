@@ -1,6 +1,7 @@
 """Units that a header or `units=` may name, and their way to SI."""
 
 import math
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,9 @@ import numpy.typing as npt
 from jointid.errors import InputError
 
 _BLANKS = str.maketrans("", "", "·⋅*. \u00a0")
-_SPELLINGS = {"°": "deg", "µ": "u", "μ": "u", "/": "_", "_per_": "_"}
+_SPELLINGS = {"°": "deg", "º": "deg", "µ": "u", "μ": "u", "/": "_", "_per_": "_"}
+_PER_TIME = re.compile(r"(?<=[a-z°º])_?(s|min)(?:\^?-1|⁻¹)$", re.IGNORECASE)
+_HYPHEN = re.compile(r"(?<=[^\W\d_])-(?=[^\W\d_])")  # between letters: N-m, oz-in
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,6 +50,7 @@ class Unit:
 
 
 _TURN = 2.0 * math.pi
+_POUND = 0.45359237 * 9.80665  # N, by definition
 
 UNITS: dict[str, Unit] = {
     name: Unit(name=name, dimension=dimension, factor=factor, offset=offset)
@@ -74,9 +78,18 @@ UNITS: dict[str, Unit] = {
         ("Nm", "torque", 1.0, 0.0),
         ("mNm", "torque", 1e-3, 0.0),
         ("kNm", "torque", 1e3, 0.0),
+        ("Ncm", "torque", 1e-2, 0.0),
+        ("Nmm", "torque", 1e-3, 0.0),
+        ("kgfm", "torque", 9.80665, 0.0),
+        ("kgfcm", "torque", 9.80665e-2, 0.0),
+        ("ozfin", "torque", _POUND / 16 * 0.0254, 0.0),
+        ("lbfin", "torque", _POUND * 0.0254, 0.0),
+        ("lbfft", "torque", _POUND * 0.3048, 0.0),
         ("N", "force", 1.0, 0.0),
         ("mN", "force", 1e-3, 0.0),
         ("kN", "force", 1e3, 0.0),
+        ("kgf", "force", 9.80665, 0.0),
+        ("lbf", "force", _POUND, 0.0),
         ("A", "current", 1.0, 0.0),
         ("mA", "current", 1e-3, 0.0),
         ("degC", "temperature", 1.0, 0.0),
@@ -92,17 +105,26 @@ _ALIASES: dict[str, str] = {
     for name, aliases in {
         "rad": "radian radians",
         "deg": "degree degrees",
+        "rev": "turn turns revolution revolutions",
         "m": "metre meter metres meters",
         "s": "sec second seconds",
         "rad_s": "rads",
         "deg_s": "degs dps",
-        "rpm": "rev_min 1_min",
+        "rev_s": "rps",
+        "rpm": "rev_min r_min u_min 1_min min^-1 min-1 min⁻¹",
         "Nm": "n_m",
         "mNm": "mn_m",
         "kNm": "kn_m",
+        "Ncm": "n_cm",
+        "Nmm": "n_mm",
+        "kgfm": "kgf_m",
+        "kgfcm": "kgf_cm kgcm kg_cm",
+        "ozfin": "ozf_in ozin oz_in",
+        "lbfin": "lbf_in lbin lb_in inlb in_lb inlbf in_lbf",
+        "lbfft": "lbf_ft lbft lb_ft ftlb ft_lb ftlbf ft_lbf",
         "degC": "celsius",
         "K": "kelvin",
-        "raw": "1 - counts lsb",
+        "raw": "1 - count counts cnt inc increments ticks lsb",
     }.items()
     for alias in aliases.split()
 }
@@ -111,7 +133,7 @@ _BY_FOLDED: dict[str, Unit] = {name.casefold(): unit for name, unit in UNITS.ite
 
 def find_unit(text: str) -> Unit | None:
     """Return the unit that a text names (`rad_s`, `rad/s`, `N·m`, `°`; any case), or None."""
-    name = text.strip().translate(_BLANKS)
+    name = _HYPHEN.sub("", _PER_TIME.sub(r"_\1", text.strip().translate(_BLANKS)))
     for spelling, plain in _SPELLINGS.items():
         name = name.replace(spelling, plain)
     if name in UNITS:

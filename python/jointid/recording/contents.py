@@ -1,0 +1,170 @@
+"""What a table holds of a recording: its signals in SI units, all rows or some."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jointid.errors import InputError
+from jointid.recording.attributes import check_kind, check_torque_hold
+from jointid.recording.columns import Column, Table, column_index, match_columns
+from jointid.recording.signals import FloatArray, check_signals
+
+Rows = npt.NDArray[np.intp]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Contents:
+    """The columns of a table that hold signals, as numbers.
+
+    Attributes
+    ----------
+    table : Table
+    found : mapping of str to Column
+        Signal → its column.
+    values : mapping of str to ndarray, each of shape (rows of the table,)
+        Signal → what its column holds, in the column's own unit.
+    saved : mapping of str to object
+        What a saved recording says of itself, as arguments of `Recording`.
+    kind : str
+        ``"revolute"`` or ``"prismatic"``.
+    """
+
+    table: Table
+    found: Mapping[str, Column]
+    values: Mapping[str, FloatArray]
+    saved: Mapping[str, Any]
+    kind: str
+
+    def fields(self, rows: Rows | None = None, *, time_advice: str = "") -> dict[str, Any]:
+        """Return the arguments of `Recording` that the table, or some of its rows, hold.
+
+        Parameters
+        ----------
+        rows : ndarray of int, optional
+            Default: all.
+        time_advice : str
+            Added to the sentence on time stamps that go back. Default: none.
+
+        Raises
+        ------
+        InputError
+            The signals are not finite, too short, or time does not increase.
+        """
+        signals = {
+            signal: column.to_si(values if rows is None else values[rows])
+            for (signal, column), values in zip(
+                self.found.items(), self.values.values(), strict=True
+            )
+        }
+
+        def place(signal: str, index: int) -> str:
+            row = index if rows is None else int(rows[index])
+            return self.table.place(self.found[signal].index, row)
+
+        check_signals(signals, place=place, source=self.table.source, time_advice=time_advice)
+        fields = {**self.saved, **signals, "kind": self.kind}
+        if self.table.saved is None:
+            fields["metadata"] = self._notes()
+        return fields
+
+    def rows_of(self, by: str | int) -> dict[str, Rows]:
+        """Return value → rows that have it in a column, by the first appearance of each value."""
+        column = column_index(self.table, by, "by")
+        cells = np.array(self.table.text(column), dtype=np.str_)
+        self._check_length(self.table.headers[column], len(cells))
+        values, first, inverse = np.unique(cells, return_index=True, return_inverse=True)
+        grouped = np.split(np.argsort(inverse, kind="stable"), np.cumsum(np.bincount(inverse))[:-1])
+        return {str(values[k]): grouped[k] for k in np.argsort(first)}
+
+    def rows_where(self, where: Mapping[str, float | str]) -> Rows:
+        """Return the rows that have a value in each of some columns."""
+        kept = np.ones(len(self.values["time"]), dtype=np.bool_)
+        for header, wanted in where.items():
+            column = column_index(self.table, header, "where")
+            if isinstance(wanted, str):
+                cells = self.table.text(column)
+                matches = np.array([cell == wanted for cell in cells], dtype=np.bool_)
+                present = list(dict.fromkeys(cells))
+            elif isinstance(wanted, int | float | np.number):
+                (numbers,) = self.table.numbers([column])
+                matches = numbers == float(wanted)
+                present = [f"{value:g}" for value in dict.fromkeys(numbers.tolist())]
+            else:
+                raise InputError(
+                    f"{self.table.source}: where[{header!r}] is {wanted!r}; "
+                    "a number or text is expected"
+                )
+            self._check_length(header, len(matches))
+            if not matches.any():
+                shown = ", ".join(present[:8]) + (", ..." if len(present) > 8 else "")
+                raise InputError(
+                    f"{self.table.source}: no row has {wanted!r} in column {header!r}; "
+                    f"it holds {shown}"
+                )
+            kept &= matches
+        if not kept.any():
+            raise InputError(f"{self.table.source}: no row meets all of where={dict(where)!r}")
+        return np.flatnonzero(kept)
+
+    def _check_length(self, header: str, length: int) -> None:
+        if length != len(self.values["time"]):
+            raise InputError(
+                f"{self.table.source}: {header!r} has {length} samples, time has "
+                f"{len(self.values['time'])}; the rows are told apart by a column as long as time"
+            )
+
+    def _notes(self) -> dict[str, Any]:
+        # A sensor's reading has no unit of its own: nothing is assumed there.
+        assumed = [
+            signal
+            for signal, column in self.found.items()
+            if column.unit is None and column.scale is None and signal != "sensor"
+        ]
+        scaled = {signal: column.scale for signal, column in self.found.items() if column.scale}
+        notes = {"assumed_units": assumed, "scale": scaled}
+        return {note: value for note, value in notes.items() if value}
+
+
+def read_contents(
+    table: Table,
+    *,
+    columns: Mapping[str, str | int | None] | None = None,
+    units: Mapping[str, str] | None = None,
+    scale: Mapping[str, float] | None = None,
+    kind: str | None = None,
+    torque_hold: str | None = None,
+) -> Contents:
+    """Return what a table holds of a recording; parameters are those of `load`.
+
+    Raises
+    ------
+    InputError
+        As `load`.
+    """
+    if kind is not None:
+        check_kind(kind)
+    check_torque_hold(torque_hold)
+    saved = dict(table.saved or {})
+    saved_kind = saved.get("kind")
+    if kind is not None and saved_kind not in (None, kind):
+        raise InputError(
+            f"{table.source}: the recording was saved as {saved_kind}, not {kind}; leave kind= out"
+        )
+    found, kind = match_columns(
+        table, columns=columns, units=units, scale=scale, kind=kind or saved_kind
+    )
+    values = table.numbers([column.index for column in found.values()])
+    if columns and "velocity" in columns:
+        saved.pop("velocity_derived", None)
+    if torque_hold is not None:
+        saved["torque_hold"] = torque_hold
+    return Contents(
+        table=table,
+        found=found,
+        values=dict(zip(found, values, strict=True)),
+        saved=saved,
+        kind=kind,
+    )

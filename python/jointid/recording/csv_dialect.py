@@ -1,0 +1,122 @@
+"""How a .csv file is written: what separates its cells, and which sign its decimals have."""
+
+import csv
+import re
+from collections.abc import Sequence
+
+from jointid.errors import InputError
+
+_SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
+_DECIMAL_COMMA = re.compile(r"[+-]?(\d+,\d*|,\d+)(e[+-]?\d+)?", re.IGNORECASE)
+# 1,234 may be a thousand or a little more than one; 0,25 and 1,5 and 1234,567 are plain.
+_MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
+
+
+def cells_of(line: str, separator: str) -> list[str]:
+    """Return the cells of a line, without blanks around them.
+
+    Raises
+    ------
+    csv.Error
+        Quotation marks do not match.
+    """
+    if '"' not in line:
+        return [cell.strip() for cell in line.split(separator)]
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, strict=True))]
+
+
+def number_of(cell: str, separator: str = ",") -> float | None:
+    """Return a cell's number as numpy's parser would, or None.
+
+    A decimal comma counts where commas do not separate.
+    """
+    if separator != "," and _DECIMAL_COMMA.fullmatch(cell):
+        cell = cell.replace(",", ".")
+    try:
+        return float(cell) if cell.isascii() and "_" not in cell else None
+    except ValueError:
+        return None
+
+
+def separator_named(line: str) -> str | None:
+    """Return the separator that a line such as ``sep=;`` names (spreadsheets write it), or None."""
+    named = re.fullmatch(r'"?sep=([,;\t])"?[,;\t]*', line.strip(" "))
+    return named[1] if named else None
+
+
+def separator_of(header: str, row: str, place: str) -> str:
+    """Return what separates the cells, told from the first line and the one below it.
+
+    A separator fits when it divides both lines into the same number of cells, two at least; of
+    several the one that leaves the most numbers. When none fits the row is damaged, and the first
+    line alone must tell.
+
+    Raises
+    ------
+    InputError
+        Several fit equally well, or nothing separates the first line at all.
+    """
+    fitting: dict[str, int] = {}
+    for separator in _SEPARATORS:
+        above, below = _cells_or_none(header, separator), _cells_or_none(row, separator)
+        if above and below and len(above) == len(below) > 1:
+            fitting[separator] = sum(number_of(cell, separator) is not None for cell in below)
+    if fitting:
+        most = max(fitting.values())
+        best = [separator for separator, numbers in fitting.items() if numbers == most]
+        if len(best) == 1:
+            return best[0]
+        names = " or ".join(_SEPARATORS[separator] for separator in best)
+        raise InputError(
+            f"{place}: the cells may be separated by {names}; put texts that hold such a sign "
+            "into quotation marks"
+        )
+    by_header = max(_SEPARATORS, key=lambda separator: header.count(separator))
+    if by_header not in header:
+        raise InputError(
+            f"{place}: nothing separates {header.strip()[:60]!r} into columns; commas, semicolons "
+            "or tabs are expected between at least time and position"
+        )
+    return by_header
+
+
+def _cells_or_none(line: str, separator: str) -> list[str] | None:
+    try:
+        return cells_of(line, separator)
+    except csv.Error:
+        return None
+
+
+def decimal_comma(columns: Sequence[Sequence[str]]) -> tuple[int, int, str] | None:
+    """Return what speaks against reading a comma in these cells as the decimal sign, or None.
+
+    Parameters
+    ----------
+    columns : sequence of sequences of str
+        The cells of each column, one comma among them at least.
+
+    Returns
+    -------
+    tuple of int, int, str, or None
+        Column, row and reason: a decimal point elsewhere, or nothing but ``1,234``, which may be
+        a thousand.
+    """
+    commas = points = None
+    plain = False
+    for column, cells in enumerate(columns):
+        together = "\n".join(cells)
+        if commas is None and "," in together:
+            commas = column, next(k for k, cell in enumerate(cells) if "," in cell)
+        if points is None and "." in together:
+            points = column, next(k for k, cell in enumerate(cells) if "." in cell)
+        plain = plain or any("," in cell and not _MAYBE_THOUSANDS.fullmatch(cell) for cell in cells)
+    if commas is None:
+        return None
+    cell = columns[commas[0]][commas[1]][:40]
+    if points is not None:
+        other = columns[points[0]][points[1]][:40]
+        both = f"{cell!r} here and {other!r} elsewhere" if cell != other else repr(cell)
+        return *commas, f"commas and points stand in the numbers ({both})"
+    if not plain:
+        return *commas, f"{cell!r} may be {cell.replace(',', '.')} or {cell.replace(',', '')}"
+    return None

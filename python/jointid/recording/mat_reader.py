@@ -1,0 +1,108 @@
+"""Reading MATLAB's .mat files of version 5 to 7: variables by name, structs one level deep."""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from jointid.errors import InputError
+from jointid.recording.mat_elements import Array, DamageError, Variable, variables_of
+from jointid.recording.signals import FloatArray, signal_array
+
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+_HEADER = 128  # bytes before the first variable
+_ORDERS = {b"IM": "<", b"MI": ">"}  # the header's last two bytes → order of a number's bytes
+_WIDEST = 256  # columns of a matrix: a wider one is no table of signals
+
+
+class MatTable:
+    """A .mat file as a table of columns.
+
+    A column is a vector (n x 1 or 1 x n), named by its variable or by its field of a struct, with
+    the struct before it, ``struct.field``, where the field's name alone would not tell. A matrix
+    gives one for each column, ``data(:,1)``, or for each row when it is wider than long,
+    ``data(1,:)``.
+
+    Parameters
+    ----------
+    path : Path
+
+    Raises
+    ------
+    InputError
+        The file is of version 7.3 or 4, damaged, no .mat file, or holds no vectors.
+    """
+
+    saved: Mapping[str, Any] | None = None
+
+    def __init__(self, path: Path) -> None:
+        self.source = str(path)
+        self.header_place = self.source
+        variables = _variables(path)
+        found = [part for variable in variables for part in _columns(variable)]
+        short = Counter(field for _, field, _ in found)
+        self._arrays = [array for _, _, array in found]
+        self.headers = tuple(field if short[field] == 1 else full for full, field, _ in found)
+        self.other_names = {full: k for k, (full, _, _) in enumerate(found)}
+        if not found:
+            shown = ", ".join(repr(each.name[:40]) for each in variables[:8]) or "nothing"
+            raise InputError(
+                f"{path}: no vectors of numbers are found, only {shown}; save time and position "
+                "as vectors or as fields of a struct, not as tables, timeseries or nested structs"
+            )
+
+    def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
+        """Return vectors as arrays of shape (n,), or name the one that is none."""
+        return [
+            signal_array(f"variable {self.headers[k]!r}", self._arrays[k], self.source)
+            for k in columns
+        ]
+
+    def text(self, column: int) -> list[str]:
+        """Return the values of a vector as text."""
+        return [f"{value:g}" for value in self._arrays[column].tolist()]
+
+    def place(self, column: int, row: int) -> str:
+        """Return file, variable and 0-based index of a value."""
+        return f"{self.source}, variable {self.headers[column]!r}, index {row}"
+
+
+def _variables(path: Path) -> list[Variable]:
+    content = path.read_bytes()
+    if _HDF5 in (content[:8], content[512:520]) or content.startswith(b"MATLAB 7.3"):
+        raise InputError(
+            f"{path}: a MATLAB 7.3 file (HDF5) is not read; in MATLAB save it with '-v7', or read "
+            "it with h5py and give the arrays to jointid.Recording"
+        )
+    order = _ORDERS.get(content[_HEADER - 2 : _HEADER])
+    if order is None:
+        raise InputError(
+            f"{path}: the file is no .mat file of version 5 to 7 (or is cut off); in MATLAB save "
+            "it with '-v7'"
+        )
+    try:
+        return list(variables_of(content[_HEADER:], order))
+    except DamageError as error:
+        raise InputError(f"{path}: the .mat file is damaged or cut off ({error})") from None
+
+
+def _columns(variable: Variable) -> Iterator[tuple[str, str, Array]]:
+    """Yield full name, name without the struct's, and values of each vector in a variable."""
+    yield from _vectors("", variable)
+    for number, element in enumerate(variable.fields, start=1):
+        index = f"({number})" if len(variable.fields) > 1 else ""  # of several runs, perhaps
+        for field in element:
+            yield from _vectors(f"{variable.name}{index}.", field)
+
+
+def _vectors(struct: str, variable: Variable) -> Iterator[tuple[str, str, Array]]:
+    array, name = variable.array, variable.name
+    if array is None or array.size < 2:  # a lone number is a setting, no signal
+        return
+    if min(array.shape) == 1:
+        yield struct + name, name, array.ravel()
+    elif min(array.shape) <= _WIDEST:
+        long = array.shape[0] >= array.shape[1]
+        for number, vector in enumerate(array.T if long else array, start=1):
+            part = f"{name}(:,{number})" if long else f"{name}({number},:)"
+            yield struct + part, part, vector
