@@ -41,7 +41,7 @@ GROUPS: dict[str, Group] = {
     "recording": Group(
         modules={"errors", "files", "recording.", "joint."},
         may_use={"core"},
-        packages={"numpy", "scipy", "pandas", "tomlkit"},
+        packages={"numpy", "scipy", "pandas", "pyarrow", "tomlkit"},
     ),
     "analysis": Group(
         modules={"identification.", "estimate.", "study."},
@@ -69,7 +69,7 @@ GROUPS: dict[str, Group] = {
         packages=set(),
     ),
     "command line": Group(
-        modules={"cli", "__main__", "demo", "progress"},
+        modules={"cli", "cli_arguments", "cli_commands", "__main__", "demo", "progress"},
         may_use={
             *("core", "recording", "analysis", "presentation", "hardware", "commissioning"),
             *("face", "command line"),
@@ -78,7 +78,7 @@ GROUPS: dict[str, Group] = {
     ),
 }
 # Slow to load, or of use to few: imported inside the function that needs it (hardware aside).
-HEAVY = {"scipy", "pandas", "matplotlib", "can", "canopen", "tomlkit"}
+HEAVY = {"scipy", "pandas", "pyarrow", "matplotlib", "can", "canopen", "tomlkit"}
 
 FORBIDDEN_WORDS = {
     *("data", "manager", "managers", "helper", "helpers", "util", "utils"),

@@ -21,17 +21,21 @@ from jointid import plotting as plot
 from jointid._core import GaOptions, Generation, WindowOptions
 from jointid.errors import InputError
 from jointid.estimate.estimate import Estimate
+from jointid.identification.comparison import compare_models
+from jointid.identification.comparison_result import Comparison
 from jointid.identification.identification import identify
+from jointid.identification.model_spec import ModelSpec
 from jointid.joint.joint import Joint
 from jointid.joint.link import Limits, Link
 from jointid.joint.parameters import Parameter
 from jointid.joint.thesis import thesis_joint
-from jointid.recording.loading import load
+from jointid.recording.loading import load, load_runs
 from jointid.recording.recording import Recording
 
 __version__ = _core.__version__
 
 __all__ = [
+    "Comparison",
     "Estimate",
     "GaOptions",
     "Generation",
@@ -39,12 +43,15 @@ __all__ = [
     "Joint",
     "Limits",
     "Link",
+    "ModelSpec",
     "Parameter",
     "Recording",
     "WindowOptions",
     "__version__",
+    "compare_models",
     "identify",
     "load",
+    "load_runs",
     "plot",
     "thesis_joint",
 ]

@@ -1,19 +1,56 @@
-"""A progress bar on the terminal for long searches."""
+"""Progress bars on the terminal for what takes long."""
 
 from __future__ import annotations
 
 import sys
 import time
 from types import TracebackType
-from typing import TextIO
+from typing import TYPE_CHECKING, Self, TextIO
 
 from jointid._core import GaOptions, Generation
+
+if TYPE_CHECKING:
+    from jointid.identification.comparison import ComparisonStep
 
 _WIDTH = 24
 _PERIOD = 0.1  # [s] between two drawings
 
 
-class Progress:
+class _Bar:
+    """A bar on a terminal, and nothing elsewhere."""
+
+    def __init__(self, *, enabled: bool, stream: TextIO | None) -> None:
+        self._stream = stream if stream is not None else sys.stderr
+        self._enabled = enabled and self._stream.isatty()
+        self._drawn = 0.0
+
+    def _draw(self, share: float, text: str) -> None:
+        """Draw, at most ten times a second."""
+        now = time.monotonic()
+        if not self._enabled or now - self._drawn < _PERIOD:
+            return
+        self._drawn = now
+        full = round(_WIDTH * min(1.0, share))
+        self._stream.write(f"\r{'█' * full}{'·' * (_WIDTH - full)} {text}\033[K")
+        self._stream.flush()
+
+    def __enter__(self) -> Self:
+        """Nothing yet."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Clear the line."""
+        if self._enabled and self._drawn:
+            self._stream.write("\r\033[K")
+            self._stream.flush()
+
+
+class Progress(_Bar):
     """A callback for `identify` that draws a bar on a terminal, and nothing elsewhere.
 
     Parameters
@@ -28,34 +65,30 @@ class Progress:
     def __init__(
         self, *, total: int | None = None, enabled: bool = True, stream: TextIO | None = None
     ) -> None:
+        super().__init__(enabled=enabled, stream=stream)
         self._total = total or GaOptions().generations
-        self._stream = stream if stream is not None else sys.stderr
-        self._enabled = enabled and self._stream.isatty()
-        self._drawn = 0.0
 
     def __call__(self, generation: Generation) -> None:
-        """Draw, at most ten times a second."""
-        now = time.monotonic()
-        if not self._enabled or now - self._drawn < _PERIOD:
-            return
-        self._drawn = now
-        share = min(1.0, generation.number / self._total)
-        bar = "█" * round(_WIDTH * share) + "·" * (_WIDTH - round(_WIDTH * share))
-        text = f"\r{bar} generation {generation.number}/{self._total}, best penalty {generation.best:.6g} "
-        self._stream.write(text)
-        self._stream.flush()
+        """Show a generation."""
+        self._draw(
+            generation.number / self._total,
+            f"generation {generation.number}/{self._total}, best penalty {generation.best:.6g}",
+        )
 
-    def __enter__(self) -> Progress:
-        """Nothing yet."""
-        return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        """Clear the line."""
-        if self._enabled and self._drawn:
-            self._stream.write("\r\033[K")
-            self._stream.flush()
+class ComparisonProgress(_Bar):
+    """A callback for `compare_models` that draws a bar on a terminal, and nothing elsewhere.
+
+    Parameters
+    ----------
+    enabled : bool
+    stream : text file, optional
+        Default: standard error.
+    """
+
+    def __init__(self, *, enabled: bool = True, stream: TextIO | None = None) -> None:
+        super().__init__(enabled=enabled, stream=stream)
+
+    def __call__(self, step: ComparisonStep) -> None:
+        """Show a fit."""
+        self._draw(step.number / step.total, f"fit {step.number}/{step.total}, {step.model}")

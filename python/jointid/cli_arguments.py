@@ -1,0 +1,293 @@
+"""The command line's grammar, and its arguments as values."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from jointid.recording.recording import Recording
+
+BAD_USAGE = 2
+_MOST_WINDOWS = 1_000_000_000
+_TEXT = argparse.RawDescriptionHelpFormatter
+
+
+class _Parser(argparse.ArgumentParser):
+    """One line on bad usage, not a page."""
+
+    def error(self, message: str) -> None:  # type: ignore[override]
+        told = " ".join(message.split())
+        self.exit(BAD_USAGE, f"{self.prog}: {told}; see {self.prog} --help\n")
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line's grammar."""
+    main_parser = _Parser(
+        prog="jointid",
+        description="Identify a robot joint's friction and torque sensor from a recording of ordinary motion.",
+        epilog="example:\n  jointid identify run.csv --joint joint.toml --report report.html",
+        formatter_class=_TEXT,
+    )
+    main_parser.add_argument("--version", action="store_true", help="print the version and exit")
+    commands = main_parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=_Parser)
+    for add in (_add_demo, _add_identify, _add_compare, _add_report, _add_info):
+        add(commands)
+    return main_parser
+
+
+def _add_demo(commands: Any) -> None:
+    demo = commands.add_parser(
+        "demo",
+        help="identify a real industrial robot's joint that ships with jointid",
+        epilog="example:\n  jointid demo --output demo",
+        formatter_class=_TEXT,
+    )
+    demo.add_argument(
+        "--output", default="demo", type=Path, help="folder for report.html and estimate.json"
+    )
+    demo.add_argument("--json", action="store_true", help="print the estimate as JSON")
+    demo.add_argument("--quiet", action="store_true", help="no progress bar")
+
+
+def _add_identify(commands: Any) -> None:
+    identify = commands.add_parser(
+        "identify",
+        help="identify a joint from one recording or several",
+        epilog=(
+            "examples:\n  jointid identify run.csv\n"
+            "  jointid identify run.csv --joint joint.toml --set viscous=12 --report report.html --save joint.toml\n"
+            "  jointid identify log.csv --column position=enc1_rad --unit position=deg --windows 0.05s --json\n"
+            "  jointid identify monday.csv tuesday.csv --joint joint.toml   (one fit, shared parameters)"
+        ),
+        formatter_class=_TEXT,
+    )
+    _several_recordings(identify)
+    _identification_arguments(identify, method="ga")
+    identify.add_argument(
+        "--model",
+        help="friction model: coulomb_viscous or stribeck; stribeck:asymmetric:ripple=2,4",
+    )
+    identify.add_argument("--population", type=int, help="individuals of the genetic algorithm")
+    identify.add_argument("--generations", type=int, help="generations of the genetic algorithm")
+    _output_arguments(identify)
+
+
+def _add_compare(commands: Any) -> None:
+    compare = commands.add_parser(
+        "compare",
+        help="compare friction models by how well they predict held-out motion",
+        epilog=(
+            "examples:\n  jointid compare run.csv\n"
+            "  jointid compare run.csv --model stribeck --model stribeck:ripple=2 --folds 8 --json\n"
+            "  jointid compare monday.csv tuesday.csv wednesday.csv --joint joint.toml --save joint.toml\n"
+            "one recording is cut into blocks; of several, whole recordings are held out"
+        ),
+        formatter_class=_TEXT,
+    )
+    _several_recordings(compare)
+    _identification_arguments(compare, method="separable")
+    compare.add_argument(
+        "--model",
+        action="append",
+        dest="models",
+        metavar="NAME[:OPTION[=VALUE]]",
+        help="a model to compare; may be repeated; default: the usual ones",
+    )
+    compare.add_argument("--folds", type=int, default=5, help="parts held out in turn (5)")
+    _output_arguments(compare)
+
+
+def _add_report(commands: Any) -> None:
+    report = commands.add_parser(
+        "report",
+        help="write the HTML report of a saved estimate",
+        epilog=(
+            "example:\n  jointid identify run.csv --save estimate.json\n"
+            "  jointid report estimate.json --output report.html"
+        ),
+        formatter_class=_TEXT,
+    )
+    report.add_argument(
+        "estimate", type=Path, help="estimate (.json), from identify --save or estimate.save"
+    )
+    report.add_argument(
+        "--output", type=Path, default=Path("report.html"), help="where to write it (report.html)"
+    )
+    report.add_argument("--json", action="store_true", help="for machines")
+
+
+def _add_info(commands: Any) -> None:
+    info = commands.add_parser(
+        "info",
+        help="say what a recording holds",
+        epilog="example:\n  jointid info run.csv",
+        formatter_class=_TEXT,
+    )
+    info.add_argument(
+        "recording", type=Path, help="recording: .csv, .csv.gz, .npz, .mat or .parquet"
+    )
+    _reading_arguments(info)
+    info.add_argument("--json", action="store_true", help="for machines")
+
+
+def _several_recordings(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "recordings",
+        type=Path,
+        nargs="+",
+        metavar="recording",
+        help="recording: .csv, .csv.gz, .npz, .mat or .parquet; several are read alike",
+    )
+    _reading_arguments(command)
+
+
+def _reading_arguments(command: argparse.ArgumentParser) -> None:
+    for name, shown, told in (
+        (
+            "--column",
+            "SIGNAL=HEADER",
+            "which column (header or number) is which signal; may be repeated",
+        ),
+        ("--unit", "SIGNAL=UNIT", "overrides the header's unit"),
+        ("--where", "COLUMN=VALUE", "keep only such rows"),
+    ):
+        command.add_argument(
+            name, action="append", type=_pair, default=[], metavar=shown, help=told
+        )
+
+
+def _identification_arguments(command: argparse.ArgumentParser, *, method: str) -> None:
+    other = "separable" if method == "ga" else "ga"
+    command.add_argument("--joint", type=Path, help="joint file (.toml)")
+    command.add_argument("--method", default=method, help=f"{method} (default) or {other}")
+    command.add_argument("--residual", help="sensor or torque")
+    command.add_argument(
+        "--windows", type=_windows, help="number of windows (400), duration (0.05s) or cumulative"
+    )
+    command.add_argument(
+        "--set",
+        action="append",
+        type=_pair,
+        default=[],
+        metavar="PARAMETER=VALUE",
+        help="fix a parameter (SI)",
+    )
+    command.add_argument("--seed", type=_seed, default=0, help="same seed, same bits (0)")
+    command.add_argument("--threads", type=int, default=0, help="0: all")
+
+
+def _output_arguments(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--report", type=Path, help="write the estimate's HTML report here")
+    command.add_argument(
+        "--save", type=Path, help="write the estimate to a joint file (.toml) or .json"
+    )
+    command.add_argument("--json", action="store_true", help="print the result as JSON")
+    command.add_argument("--quiet", action="store_true", help="no progress bar")
+
+
+def _pair(text: str) -> tuple[str, str]:
+    name, separator, value = text.partition("=")
+    if not separator or not name or not value:
+        raise argparse.ArgumentTypeError(f"'{text}' is not of the form name=value")
+    return name, value
+
+
+def _number_or_text(text: str) -> Any:
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text
+
+
+def _windows(text: str) -> int | float | str:
+    if text == "cumulative":
+        return text
+    value = (
+        _number_or_text(text.removesuffix("s").strip())
+        if text.endswith("s")
+        else _number_or_text(text)
+    )
+    if isinstance(value, str):
+        raise argparse.ArgumentTypeError(
+            f"'{text}' is neither a number (400) nor a duration (0.05s) nor cumulative"
+        )
+    if value > _MOST_WINDOWS:
+        raise argparse.ArgumentTypeError(f"'{text}' is more than any recording holds")
+    return float(value) if text.endswith("s") else value
+
+
+def _seed(text: str) -> int:
+    value = _number_or_text(text)
+    if not isinstance(value, int) or not 0 <= value < 2**64:
+        raise argparse.ArgumentTypeError(f"'{text}' is no whole number from 0 to 2^64 - 1")
+    return value
+
+
+def load_all(paths: Sequence[Path], arguments: argparse.Namespace) -> list[Recording]:
+    """The recordings of a command, each read with the same --column, --unit and --where."""
+    from jointid.recording.loading import load
+
+    columns = {
+        signal: int(header) if header.isdigit() else header for signal, header in arguments.column
+    }
+    where = {column: _number_or_text(value) for column, value in arguments.where}
+    units = dict(arguments.unit)
+    return [
+        load(path, columns=columns or None, units=units or None, where=where or None)
+        for path in paths
+    ]
+
+
+def fixed_values(arguments: argparse.Namespace) -> dict[str, float]:
+    """What --set fixes, by parameter name (SI).
+
+    Raises
+    ------
+    InputError
+        Not a number.
+    """
+    from jointid.errors import InputError
+
+    changes: dict[str, float] = {}
+    for name, value in arguments.set:
+        number = _number_or_text(value)
+        if isinstance(number, str):
+            raise InputError(f"--set {name}={value}: '{value}' is not a number")
+        changes[name] = float(number)
+    return changes
+
+
+def check_outputs(arguments: argparse.Namespace) -> None:
+    """Refuse before the work, not after it, what cannot be written.
+
+    Raises
+    ------
+    InputError
+        Another extension than .toml or .json, or a folder that does not exist.
+    """
+    from jointid.errors import InputError
+
+    save = arguments.save
+    if save is not None and save.suffix not in (".toml", ".json"):
+        raise InputError(f"--save {save}: an estimate is saved as .toml (joint file) or .json")
+    check_folder("--save", save)
+    check_folder("--report", arguments.report)
+
+
+def check_folder(option: str, path: Path | None) -> None:
+    """Refuse a file to be written in a folder that does not exist.
+
+    Raises
+    ------
+    InputError
+        There is no such folder.
+    """
+    from jointid.errors import InputError
+
+    if path is not None and not path.parent.is_dir():
+        raise InputError(f"{option} {path}: the folder {path.parent} does not exist")

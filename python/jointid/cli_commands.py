@@ -1,0 +1,187 @@
+"""What the commands of the command line do. Everything heavy is imported inside."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointid.cli_arguments import check_folder, check_outputs, fixed_values, load_all
+
+if TYPE_CHECKING:
+    from jointid.estimate.estimate import Estimate
+    from jointid.joint.joint import Joint
+    from jointid.recording.recording import Recording
+
+
+def demo(arguments: argparse.Namespace) -> None:
+    """Identify the joint that ships with the package."""
+    from jointid.demo import demonstrate
+    from jointid.progress import Progress
+    from jointid.reporting import save_report
+
+    with Progress(enabled=not arguments.quiet) as progress:
+        demonstration = demonstrate(callback=progress)
+    estimate = demonstration.estimate
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    page = save_report(estimate, arguments.output / "report.html")
+    estimate.save(arguments.output / "estimate.json")
+    if arguments.json:
+        print(estimate.to_json())
+        return
+    print(estimate.report())
+    print()
+    for name, nominal in demonstration.nominal.items():
+        found = estimate.parameters[name]
+        difference = 100.0 * (found.value / nominal - 1.0)
+        print(
+            f"{name}: {found.value:.4g} {found.unit}, the robot's authors give {nominal:g} ({difference:+.1f} %)"
+        )
+    print(f"\nreport: {page}")
+
+
+def identify(arguments: argparse.Namespace) -> None:
+    """Identify a joint from one recording or several."""
+    from jointid._core import GaOptions
+    from jointid.identification import identification
+    from jointid.identification.model_spec import ModelSpec
+    from jointid.progress import Progress
+
+    changes = fixed_values(arguments)
+    check_outputs(arguments)
+    budget = {
+        name: getattr(arguments, name)
+        for name in ("population", "generations")
+        if getattr(arguments, name) is not None
+    }
+    options = GaOptions(**budget)
+    model: dict[str, Any] = {}
+    if arguments.model is not None:
+        model = ModelSpec.parse(arguments.model).arguments()
+    joint = _joint(arguments)
+    recordings = load_all(arguments.recordings, arguments)
+    with Progress(total=options.generations, enabled=not arguments.quiet) as progress:
+        estimate = identification.identify(
+            recordings,
+            joint,
+            parameters=changes or None,
+            method=arguments.method,
+            ga=options,
+            residual=arguments.residual,
+            windows=arguments.windows,
+            seed=arguments.seed,
+            threads=arguments.threads,
+            callback=progress,
+            **model,
+        )
+    _write(estimate, arguments)
+    print(estimate.to_json() if arguments.json else estimate.report())
+
+
+def compare(arguments: argparse.Namespace) -> None:
+    """Compare models by how well they predict held-out motion."""
+    from jointid.identification.comparison import compare_models
+    from jointid.progress import ComparisonProgress
+
+    changes = fixed_values(arguments)
+    check_outputs(arguments)
+    joint = _joint(arguments)
+    recordings = load_all(arguments.recordings, arguments)
+    with ComparisonProgress(enabled=not arguments.quiet) as progress:
+        comparison = compare_models(
+            recordings,
+            joint,
+            models=arguments.models,
+            folds=arguments.folds,
+            parameters=changes or None,
+            method=arguments.method,
+            residual=arguments.residual,
+            windows=arguments.windows,
+            seed=arguments.seed,
+            threads=arguments.threads,
+            callback=progress,
+        )
+    _write(comparison.estimate, arguments)
+    print(comparison.to_json() if arguments.json else comparison.report())
+
+
+def report(arguments: argparse.Namespace) -> None:
+    """Write the HTML report of a saved estimate."""
+    from jointid.errors import InputError
+    from jointid.estimate.estimate import Estimate
+    from jointid.reporting import save_report
+
+    path = arguments.estimate
+    check_folder("--output", arguments.output)
+    try:
+        estimate = Estimate.from_json(path.read_text(encoding="utf-8"))
+        page = save_report(estimate, arguments.output)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+    except (UnicodeDecodeError, RecursionError) as error:
+        raise InputError(
+            f"{path}: this is no estimate; one is saved with identify --save estimate.json"
+        ) from error
+    except (ArithmeticError, AttributeError, LookupError, TypeError) as error:
+        told = f"{type(error).__name__} {error}"
+        raise InputError(f"{path}: the estimate's JSON is damaged: {told}") from error
+    if arguments.json:
+        facts = {"report": str(page), "warnings": [warning.code for warning in estimate.warnings]}
+        print(json.dumps(facts, indent=1, ensure_ascii=False))
+    else:
+        print(f"report: {page}")
+
+
+def info(arguments: argparse.Namespace) -> None:
+    """Say what a recording holds."""
+    (recording,) = load_all([arguments.recording], arguments)
+    if arguments.json:
+        print(json.dumps(_facts(recording), indent=1, ensure_ascii=False))
+        return
+    for label, value in _facts(recording).items():
+        if isinstance(value, dict):
+            print(f"{label}:")
+            for signal, entry in value.items():
+                print(
+                    f"  {signal:14s} {entry['min']:12.6g} … {entry['max']:<12.6g} {entry['unit']}"
+                )
+        else:
+            print(f"{label}: {value}")
+
+
+def _joint(arguments: argparse.Namespace) -> Joint | None:
+    from jointid.joint.joint import Joint
+
+    path: Path | None = arguments.joint
+    return Joint.load(path) if path is not None else None
+
+
+def _write(estimate: Estimate, arguments: argparse.Namespace) -> None:
+    from jointid.reporting import save_report
+
+    if arguments.report is not None:
+        save_report(estimate, arguments.report)
+    if arguments.save is not None:
+        estimate.save(arguments.save)
+
+
+def _facts(recording: Recording) -> dict[str, Any]:
+    return {
+        "name": recording.name,
+        "kind": recording.kind,
+        "samples": len(recording),
+        "duration [s]": round(recording.duration, 9),
+        "sample period [s]": round(recording.sample_period, 9),
+        "gaps": len(recording.gaps),
+        "velocity": "derived from the position" if recording.velocity_derived else "recorded",
+        "fingerprint": recording.fingerprint,
+        "signals": {
+            signal: {
+                "min": float(getattr(recording, signal).min()),
+                "max": float(getattr(recording, signal).max()),
+                "unit": recording.unit(signal),
+            }
+            for signal in recording.signals
+        },
+    }

@@ -1,0 +1,232 @@
+"""`compare_models`: which friction model predicts motion that it has not been fitted to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from jointid import _core
+from jointid.errors import InputError
+from jointid.estimate.estimate import Estimate
+from jointid.identification.comparison_result import ComparedModel, Comparison
+from jointid.identification.held_out import Fold, folds_by_block, folds_by_recording
+from jointid.identification.identification import identify
+from jointid.identification.model_spec import ModelSpec, specified
+from jointid.identification.parsimony import judge, refusal
+from jointid.identification.problem import Windows, listed
+from jointid.joint.joint import Joint
+from jointid.joint.parameters import Parameter
+from jointid.recording.recording import Recording
+
+_MODELS = ("coulomb_viscous", "stribeck")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ComparisonStep:
+    """One fit of a comparison, as the callback sees it.
+
+    Attributes
+    ----------
+    number, total : int
+        Fits done so far, and in all.
+    model : str
+        What was fitted.
+    """
+
+    number: int
+    total: int
+    model: str
+
+
+def default_models() -> tuple[ModelSpec, ...]:
+    """The models compared by default: Coulomb + viscous and Stribeck, each also asymmetric."""
+    return tuple(
+        ModelSpec(name, **options) for options in ({}, {"asymmetric": True}) for name in _MODELS
+    )
+
+
+def compare_models(
+    recordings: Recording | Sequence[Recording],
+    joint: Joint | None = None,
+    *,
+    models: str | ModelSpec | Sequence[Any] | None = None,
+    folds: int = 5,
+    parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
+    method: str = "separable",
+    residual: str | None = None,
+    windows: Windows = None,
+    torque_hold: str | None = None,
+    mask_standstill: bool = True,
+    seed: int = 0,
+    threads: int = 0,
+    callback: Callable[[ComparisonStep], object] | None = None,
+) -> Comparison:
+    """Compare friction models by how well they predict what they were not fitted to.
+
+    One recording is cut into contiguous blocks, of several recordings each is a block of its own. Every
+    model is fitted to all blocks but one and predicts that one, in turn. The winner is the model with
+    the fewest parameters whose score lies within one standard error of the best score (the
+    one-standard-error rule of Breiman et al., 1984). A model that the data do not carry, because its
+    estimate on everything warns `model_too_rich` or ends on a bound, cannot win.
+
+    Parameters
+    ----------
+    recordings : Recording or sequence of Recording
+    joint : Joint, optional
+        As in `identify`, but its friction model and its `asymmetric` are not used, and an asymmetric
+        model takes no offset from it: asymmetric Coulomb friction holds one.
+    models : sequence, optional
+        Names, texts such as "coulomb_viscous:asymmetric", pairs (name, {option: value}) or `ModelSpec`;
+        options are keyword arguments of `identify`. Default: `default_models()`, less those that
+        cannot be told apart from an offset here; they are listed in `settings["left_out"]`.
+    folds : int
+        Blocks of one recording; of several recordings, groups at most.
+    parameters : mapping, optional
+        As in `identify`; for all models.
+    method : str
+        "separable" (default) or "ga", as in `identify`.
+    residual, torque_hold, mask_standstill, seed, threads
+        As in `identify`.
+    windows : int, float, str or WindowOptions, optional
+        As in `identify`; all models get the same, by default the shortest that one of them asks for.
+    callback : callable, optional
+        Called with a `ComparisonStep` after every fit.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    InputError
+        Anything that cannot be used, in one sentence.
+    KeyboardInterrupt
+        Ctrl-C.
+    """
+    runs = listed(recordings)
+    specs = default_models() if models is None else specified(models)
+    if isinstance(folds, bool) or not isinstance(folds, int | np.integer) or folds < 2:
+        raise InputError(f"folds is {folds!r}; a whole number from 2 on is expected")
+    parts = int(folds) if len(runs) == 1 else min(int(folds), len(runs))
+    fitter = _Fitter(
+        joint=joint,
+        common={
+            "parameters": parameters,
+            "method": method,
+            "residual": residual,
+            "torque_hold": torque_hold,
+            "mask_standstill": mask_standstill,
+            "seed": seed,
+            "threads": threads,
+        },
+        total=len(specs) * (1 + parts),
+        callback=callback,
+    )
+    whole: dict[ModelSpec, Estimate] = {}
+    left_out: dict[str, str] = {}
+    for spec in specs:
+        try:
+            whole[spec] = fitter.fit(spec, runs, windows)
+        except InputError as error:
+            if models is not None or spec == specs[0]:
+                raise
+            left_out[str(spec)] = str(error.__cause__)
+            fitter.total -= 1 + parts
+    # Residuals over windows of different length cannot be compared: the shortest for all.
+    duration = min(estimate.settings["windows"] for estimate in whole.values())
+    cut = _core.WindowOptions(duration=duration, cumulative=_cumulative(windows))
+    for spec, estimate in whole.items():
+        if not np.isclose(estimate.settings["windows"], duration, rtol=1e-9, atol=0.0):
+            fitter.total += 1
+            whole[spec] = fitter.fit(spec, runs, cut)
+    first = next(iter(whole.values()))
+    splits = (
+        folds_by_block(runs[0], first.windows, parts)
+        if len(runs) == 1
+        else folds_by_recording(runs, parts)
+    )
+    rows = [
+        _row(spec, estimate, fitter.scores(spec, splits, cut)) for spec, estimate in whole.items()
+    ]
+    judged, winner, reason = judge(rows)
+    kind = "block" if len(runs) == 1 else "recording" if parts == len(runs) else "recordings"
+    return Comparison(
+        rows=judged,
+        winner=judged[winner].model,
+        reason=reason,
+        estimate=whole[judged[winner].spec],
+        settings={
+            "folds": parts,
+            "held_out": kind,
+            "windows": duration,
+            "method": method,
+            "residual": first.settings["residual"],
+            "left_out": left_out,
+        },
+    )
+
+
+class _Fitter:
+    """Fits models to parts of the data, names them in refusals, and tells the callback how far it is."""
+
+    def __init__(
+        self,
+        *,
+        joint: Joint | None,
+        common: Mapping[str, Any],
+        total: int,
+        callback: Callable[[ComparisonStep], object] | None,
+    ) -> None:
+        self._joint, self._common, self._callback = joint, common, callback
+        self.total = total
+        self._done = 0
+
+    def fit(
+        self, spec: ModelSpec, training: Sequence[Recording], windows: Windows, where: str = ""
+    ) -> Estimate:
+        arguments = {"asymmetric": False} | spec.arguments()
+        joint = self._joint
+        if joint is not None and joint.torque_offset and arguments["asymmetric"]:
+            joint = joint.replace(torque_offset=False)
+        try:
+            estimate = identify(training, joint, windows=windows, **arguments, **self._common)
+        except InputError as error:
+            raise InputError(f"model '{spec}'{where}: {error}") from error
+        self._done += 1
+        if self._callback is not None:
+            self._callback(ComparisonStep(number=self._done, total=self.total, model=str(spec)))
+        return estimate
+
+    def scores(self, spec: ModelSpec, splits: Sequence[Fold], windows: Windows) -> list[float]:
+        found = []
+        for number, split in enumerate(splits, start=1):
+            where = f", fold {number} of {len(splits)}"
+            estimate = self.fit(spec, split.training, windows, where)
+            try:
+                found.append(split.residual(estimate))
+            except InputError as error:
+                raise InputError(f"model '{spec}'{where}: {error}") from error
+        return found
+
+
+def _cumulative(windows: Windows) -> bool:
+    given = isinstance(windows, _core.WindowOptions) and windows.cumulative
+    return given or windows == "cumulative"
+
+
+def _row(spec: ModelSpec, estimate: Estimate, scores: Sequence[float]) -> ComparedModel:
+    told = refusal(estimate)
+    return ComparedModel(
+        model=str(spec),
+        spec=spec,
+        parameters=sum(parameter.vary for parameter in estimate.parameters.values()),
+        score=float(np.mean(scores)),
+        stderr=float(np.std(scores, ddof=1) / np.sqrt(len(scores))),
+        fold_scores=tuple(scores),
+        penalty=estimate.penalty,
+        eligible=told is None,
+        reason=told or "",
+    )

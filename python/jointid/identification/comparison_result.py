@@ -1,0 +1,153 @@
+"""What a comparison of models found: a row a model, the winner, and why."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from html import escape
+from typing import Any
+
+from jointid.estimate.estimate import Estimate
+from jointid.identification.model_spec import ModelSpec
+
+SCHEMA = 1
+"""Raised when a reader of the old form would misread the new one."""
+
+_HEAD = ("model", "parameters", "held-out residual", "± std. error", "penalty", "remark")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ComparedModel:
+    """One row of a comparison.
+
+    Attributes
+    ----------
+    model : str
+        The model's text, e.g. "coulomb_viscous:asymmetric".
+    spec : ModelSpec
+    parameters : int
+        Free parameters, shape parameters included.
+    score : float
+        Relative residual of held-out windows, mean over the folds.
+    stderr : float
+        Its standard error over the folds.
+    fold_scores : tuple of float
+    penalty : float
+        Fitted to everything [unit of a window integral, squared].
+    eligible : bool
+        Whether the data carry the model.
+    reason : str
+        Why it wins or does not.
+    """
+
+    model: str
+    spec: ModelSpec
+    parameters: int
+    score: float
+    stderr: float
+    fold_scores: tuple[float, ...]
+    penalty: float
+    eligible: bool
+    reason: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Comparison:
+    """The result of `compare_models`.
+
+    Attributes
+    ----------
+    rows : tuple of ComparedModel
+        In the order of the call.
+    winner : str
+        Text of the winning model.
+    reason : str
+        Why it won, in a sentence.
+    estimate : Estimate
+        The winner fitted to everything.
+    settings : mapping
+        How the comparison was made: folds, what was held out, windows, models left out and why.
+    """
+
+    rows: tuple[ComparedModel, ...]
+    winner: str
+    reason: str
+    estimate: Estimate
+    settings: Mapping[str, Any]
+
+    def __repr__(self) -> str:
+        scores = ", ".join(f"{row.model} {100.0 * row.score:.3g} %" for row in self.rows)
+        return f"Comparison({scores}; winner {self.winner})"
+
+    def report(self) -> str:
+        """The comparison as text: a line a model, then the winner and why."""
+        table = [_HEAD, *self._cells()]
+        widths = [max(len(row[column]) for row in table) for column in range(len(_HEAD))]
+        lines = [f"jointid comparison — {self._title()}", ""]
+        for index, row in enumerate(table):
+            cells = [
+                cell.rjust(width) if 0 < column < 5 and index else cell.ljust(width)
+                for column, (cell, width) in enumerate(zip(row, widths, strict=True))
+            ]
+            lines.append("  ".join(cells).rstrip())
+            if index == 0:
+                lines.append("  ".join("-" * width for width in widths))
+        lines += ["", self._setting()]
+        lines += [f"left out: {model}: {why}" for model, why in self.settings["left_out"].items()]
+        return "\n".join([*lines, f"winner: {self.winner}", self.reason])
+
+    def _repr_html_(self) -> str:
+        head = "".join(f"<th>{escape(cell)}</th>" for cell in _HEAD)
+        body = ""
+        for row, cells in zip(self.rows, self._cells(), strict=True):
+            tag = "th" if row.model == self.winner else "td"
+            body += f"<tr><{tag}>{escape(cells[0])}</{tag}>"
+            body += "".join(f"<td>{escape(cell)}</td>" for cell in cells[1:]) + "</tr>"
+        table = (
+            f"<table class='jointid'><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+        )
+        told = f"<p>{escape(self._setting())}</p><p>{escape(self.reason)}</p>"
+        return f"<div><b>jointid comparison — {escape(self._title())}</b>{table}{told}</div>"
+
+    def to_json(self) -> str:
+        """Everything, as JSON with a schema version; the winner's estimate as `Estimate.to_json` writes it."""
+        document = {
+            "schema": SCHEMA,
+            "kind": "jointid comparison",
+            "winner": self.winner,
+            "reason": self.reason,
+            "rows": [
+                asdict(row) | {"spec": {"name": row.spec.name, "options": dict(row.spec.options)}}
+                for row in self.rows
+            ],
+            "settings": dict(self.settings),
+            "estimate": json.loads(self.estimate.to_json()),
+        }
+        return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
+
+    def _title(self) -> str:
+        return self.estimate.joint.name or "joint"
+
+    def _setting(self) -> str:
+        settings = self.settings
+        unit = "block of the recording" if settings["held_out"] == "block" else "recording"
+        if settings["held_out"] == "recordings":
+            unit = "group of recordings"
+        return (
+            f"{settings['folds']} folds, one {unit} held out in each; residual of the {settings['residual']}, "
+            "relative to what was measured"
+        )
+
+    def _cells(self) -> list[tuple[str, ...]]:
+        return [
+            (
+                row.model,
+                str(row.parameters),
+                f"{100.0 * row.score:.3f} %",
+                f"{100.0 * row.stderr:.3f} %",
+                f"{row.penalty:.5g}",
+                row.reason,
+            )
+            for row in self.rows
+        ]

@@ -1,0 +1,118 @@
+"""Folds of a cross-validation: what is fitted, and what is held out to be predicted."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointid.errors import InputError
+from jointid.estimate.estimate import Estimate
+from jointid.estimate.findings import WindowTable
+from jointid.recording.recording import Recording
+
+_FEWEST = 4  # windows in a held-out block
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Block:
+    """A stretch of a recording, both edges included.
+
+    Attributes
+    ----------
+    recording : Recording
+        The whole of it: windows, mask and velocities in the stretch are those of the whole.
+    start, stop : float
+        [s], on the recording's clock.
+    """
+
+    recording: Recording
+    start: float
+    stop: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fold:
+    """One split: recordings to fit, and the blocks that the fit has not seen."""
+
+    training: tuple[Recording, ...]
+    held_out: tuple[Block, ...]
+
+    def residual(self, estimate: Estimate) -> float:
+        """Relative residual of the held-out windows: norm of the misses over that of the measured.
+
+        Parameters
+        ----------
+        estimate : Estimate
+            Fitted to `training`.
+        """
+        missed = measured = 0.0
+        for block in self.held_out:
+            table = estimate.predict(block.recording).windows
+            inside = (table.start >= block.start) & (table.stop <= block.stop)
+            missed += float(np.sum(table.residual[inside] ** 2))
+            measured += float(np.sum(table.measured[inside] ** 2))
+        if measured == 0.0:
+            raise InputError("no torque was measured in what is held out; use fewer folds")
+        return float(np.sqrt(missed / measured))
+
+
+def folds_by_block(recording: Recording, windows: WindowTable, count: int) -> tuple[Fold, ...]:
+    """Cut one recording into contiguous blocks of equally many windows, each held out once.
+
+    The training recording has a gap where the block was, and no window crosses a gap.
+
+    Parameters
+    ----------
+    windows : WindowTable
+        The windows of the whole recording; where the joint stands still there are none.
+    count : int
+
+    Raises
+    ------
+    InputError
+        Too few windows for so many blocks.
+    """
+    if count * _FEWEST > len(windows.start):
+        raise InputError(
+            f"folds is {count}, but the recording has {len(windows.start)} windows; "
+            f"a block needs {_FEWEST}: use fewer folds, or shorter windows"
+        )
+    firsts = [part[0] for part in np.array_split(np.arange(len(windows.start)), count)]
+    edges = [-np.inf, *(float(windows.start[first]) for first in firsts[1:]), np.inf]
+    return tuple(
+        Fold(
+            training=(_without(recording, start, stop),),
+            held_out=(Block(recording=recording, start=start, stop=stop),),
+        )
+        for start, stop in itertools.pairwise(edges)
+    )
+
+
+def folds_by_recording(recordings: Sequence[Recording], count: int) -> tuple[Fold, ...]:
+    """Hold out whole recordings: each alone, or in `count` groups when there are more."""
+    groups = np.array_split(np.arange(len(recordings)), min(count, len(recordings)))
+    return tuple(
+        Fold(
+            training=tuple(run for index, run in enumerate(recordings) if index not in group),
+            held_out=tuple(
+                Block(recording=recordings[index], start=-np.inf, stop=np.inf) for index in group
+            ),
+        )
+        for group in groups
+    )
+
+
+def _without(recording: Recording, start: float, stop: float) -> Recording:
+    """The recording without the samples from start up to, not including, stop."""
+    kept = (recording.time < start) | (recording.time >= stop)
+    return Recording(
+        **{signal: getattr(recording, signal)[kept] for signal in recording.signals},
+        kind=recording.kind,
+        torque_hold=recording.torque_hold,
+        velocity_derived=recording.velocity_derived,
+        name=recording.name,
+        metadata=recording.metadata,
+    )
