@@ -211,3 +211,26 @@ def test_interrupt_ends_a_comparison_with_130(
     assert code == 130
     assert capsys.readouterr().err.strip() == "jointid: interrupted"
     assert ended - sent[0] < 2.0
+
+
+def test_scale_and_checkpoint_from_the_shell(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    state = tmp_path / "search.state"
+    arguments = [
+        "identify",
+        WELL,
+        "--scale",
+        "torque=2",
+        "--torque-hold",
+        "zoh",
+        "--json",
+        "--quiet",
+    ]
+    assert main([*arguments, "--checkpoint", str(state), "--generations", "60"]) == 0
+    doubled = jid.Estimate.from_json(capsys.readouterr().out)
+    assert state.stat().st_size > 100
+    assert main([*arguments, "--resume", str(state), "--generations", "60"]) == 0
+    again = jid.Estimate.from_json(capsys.readouterr().out)
+    assert again.parameters == doubled.parameters
+    assert doubled.parameters["viscous"].value == pytest.approx(40.0, rel=0.1)

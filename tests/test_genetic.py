@@ -13,6 +13,7 @@ import pytest
 
 import jointid as jid
 from jointid import _core
+from jointid.demo import data_folder
 
 CHOICES: dict[str, list[str]] = {
     "coding": ["real", "binary"],
@@ -31,6 +32,7 @@ SHORT = jid.GaOptions(population=12, generations=40, tolerance=0.0)
 PENALTY = """
 import numpy as np
 from jointid import _core
+from jointid.demo import data_folder
 
 def penalty_of(frequency):
     time = np.arange(2001) * 1e-3
@@ -278,3 +280,45 @@ def test_identify_takes_the_presets(repo: Path) -> None:
         options = preset.replace(population=20, generations=10)
         estimate = jid.identify(recording, jid.thesis_joint(), ga=options)
         assert estimate.settings["ga"] == options.asdict()
+
+
+def test_identify_resumes_a_killed_search_to_the_same_bits(tmp_path: Path) -> None:
+    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    options = jid.GaOptions(population=20, generations=120)
+    whole = jid.identify(recording, jid.thesis_joint(), ga=options, seed=5)
+    path = tmp_path / "search.state"
+
+    def give_up(generation: jid.Generation) -> None:
+        if generation.number == 70:
+            raise RuntimeError("killed")
+
+    with pytest.raises(RuntimeError, match="killed"):
+        jid.identify(
+            recording, jid.thesis_joint(), ga=options, seed=5, checkpoint=path, callback=give_up
+        )
+    resumed = jid.identify(recording, jid.thesis_joint(), ga=options, seed=5, resume=path)
+    assert {n: p.value for n, p in resumed.parameters.items()} == {
+        n: p.value for n, p in whole.parameters.items()
+    }
+    assert whole.convergence is not None
+    assert resumed.convergence is not None
+    assert np.array_equal(whole.convergence.mean, resumed.convergence.mean)
+    with pytest.raises(jid.InputError, match="seed"):
+        jid.identify(recording, jid.thesis_joint(), ga=options, seed=6, resume=path)
+    path.write_bytes(b"nonsense")
+    with pytest.raises(jid.InputError, match=r"search\.state"):
+        jid.identify(recording, jid.thesis_joint(), ga=options, resume=path)
+
+
+def test_random_search_is_worse_for_the_same_budget() -> None:
+    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    options = jid.GaOptions(population=60, generations=150, polish=False)
+    random, genetic = (
+        jid.identify(recording, jid.thesis_joint(), ga=options, method=method)
+        for method in ("random", "ga")
+    )
+    assert random.convergence is not None
+    assert genetic.convergence is not None
+    assert random.convergence.evaluations[-1] == genetic.convergence.evaluations[-1]
+    assert random.penalty > genetic.penalty
+    assert random.status == "stopped"

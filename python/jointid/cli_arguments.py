@@ -72,6 +72,8 @@ def _add_identify(commands: Any) -> None:
     )
     identify.add_argument("--population", type=int, help="individuals of the genetic algorithm")
     identify.add_argument("--generations", type=int, help="generations of the genetic algorithm")
+    identify.add_argument("--checkpoint", type=Path, help="keep the state of a long search here")
+    identify.add_argument("--resume", type=Path, help="go on from such a checkpoint")
     _output_arguments(identify)
 
 
@@ -152,6 +154,7 @@ def _reading_arguments(command: argparse.ArgumentParser) -> None:
             "which column (header or number) is which signal; may be repeated",
         ),
         ("--unit", "SIGNAL=UNIT", "overrides the header's unit"),
+        ("--scale", "SIGNAL=FACTOR", "SI value of the file's 1, for a unit nobody knows"),
         ("--where", "COLUMN=VALUE", "keep only such rows"),
     ):
         command.add_argument(
@@ -164,6 +167,9 @@ def _identification_arguments(command: argparse.ArgumentParser, *, method: str) 
     command.add_argument("--joint", type=Path, help="joint file (.toml)")
     command.add_argument("--method", default=method, help=f"{method} (default) or {other}")
     command.add_argument("--residual", help="sensor or torque")
+    command.add_argument(
+        "--torque-hold", help="zoh: a command held between samples; linear: measured"
+    )
     command.add_argument(
         "--windows", type=_windows, help="number of windows (400), duration (0.05s) or cumulative"
     )
@@ -237,8 +243,15 @@ def load_all(paths: Sequence[Path], arguments: argparse.Namespace) -> list[Recor
     }
     where = {column: _number_or_text(value) for column, value in arguments.where}
     units = dict(arguments.unit)
+    scale = _numbers("--scale", arguments.scale)
     return [
-        load(path, columns=columns or None, units=units or None, where=where or None)
+        load(
+            path,
+            columns=columns or None,
+            units=units or None,
+            scale=scale or None,
+            where=where or None,
+        )
         for path in paths
     ]
 
@@ -251,15 +264,19 @@ def fixed_values(arguments: argparse.Namespace) -> dict[str, float]:
     InputError
         Not a number.
     """
+    return _numbers("--set", arguments.set)
+
+
+def _numbers(option: str, pairs: Sequence[tuple[str, str]]) -> dict[str, float]:
     from jointid.errors import InputError
 
-    changes: dict[str, float] = {}
-    for name, value in arguments.set:
+    numbers: dict[str, float] = {}
+    for name, value in pairs:
         number = _number_or_text(value)
         if isinstance(number, str):
-            raise InputError(f"--set {name}={value}: '{value}' is not a number")
-        changes[name] = float(number)
-    return changes
+            raise InputError(f"{option} {name}={value}: '{value}' is not a number")
+        numbers[name] = float(number)
+    return numbers
 
 
 def check_outputs(arguments: argparse.Namespace) -> None:

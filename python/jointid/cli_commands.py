@@ -70,9 +70,12 @@ def identify(arguments: argparse.Namespace) -> None:
             ga=options,
             residual=arguments.residual,
             windows=arguments.windows,
+            torque_hold=arguments.torque_hold,
             seed=arguments.seed,
             threads=arguments.threads,
             callback=progress,
+            checkpoint=arguments.checkpoint,
+            resume=arguments.resume,
             **model,
         )
     _write(estimate, arguments)
@@ -98,6 +101,7 @@ def compare(arguments: argparse.Namespace) -> None:
             method=arguments.method,
             residual=arguments.residual,
             windows=arguments.windows,
+            torque_hold=arguments.torque_hold,
             seed=arguments.seed,
             threads=arguments.threads,
             callback=progress,

@@ -56,7 +56,7 @@ def read_estimate(text: str) -> Estimate:
         )
     try:
         return _estimate(document)
-    except (KeyError, TypeError, ValueError) as error:
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         raise InputError(
             f"the estimate's JSON is damaged: {type(error).__name__} {error}"
         ) from error

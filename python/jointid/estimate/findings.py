@@ -18,7 +18,8 @@ class ParameterEstimate:
     value : float
         In `unit`.
     stderr : float or None
-        Standard error, robust to autocorrelated residuals; None when fixed or held at a bound.
+        Standard error, robust to autocorrelated residuals, with how the value moves with the windows and
+        with the instant at which a sensor is sampled; None when fixed or held at a bound.
     interval : tuple of float or None
         95 % confidence interval (Student's t).
     min, max : float
@@ -129,6 +130,10 @@ class Convergence:
     generation : ndarray of int
     best, mean : ndarray
         Penalty of the best individual so far and mean over the population.
+    diversity : ndarray
+        Genetic diversity measure, between 0 and 1; how it is formed is an option.
+    crossover_probability, mutation_probability : ndarray
+        As used for the generation; they follow the diversity when the options say so.
     evaluations : ndarray of int
         Penalties computed so far.
     """
@@ -136,6 +141,9 @@ class Convergence:
     generation: NDArray[np.int64]
     best: Array
     mean: Array
+    diversity: Array
+    crossover_probability: Array
+    mutation_probability: Array
     evaluations: NDArray[np.int64]
 
 

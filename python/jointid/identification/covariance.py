@@ -1,6 +1,6 @@
 """How sure a least-squares answer is: covariance, correlations and the direction the data know least about."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -88,14 +88,14 @@ def parameter_covariance(
     tests/test_covariance.py. Directions the data leave free get an infinite variance.
     """
     rows, count = jacobian.shape
-    if count == 0:
-        nothing = np.empty((0, 0))
+    if count == 0:  # every parameter is fixed or ended on a bound
+        nothing = np.zeros((0, 0))
         return Covariance(
             matrix=nothing,
-            stderr=np.empty(0),
+            stderr=np.zeros(0),
             correlation=nothing,
             condition=1.0,
-            weakest=np.empty(0),
+            weakest=np.zeros(0),
         )
     norms = np.linalg.norm(jacobian, axis=0)
     scale = np.where(norms > 0.0, norms, 1.0)
@@ -132,3 +132,18 @@ def parameter_covariance(
         condition=float(values[0] / values[-1]) if values[-1] > 0.0 else float("inf"),
         weakest=vectors[-1],
     )
+
+
+def widened(spread: Covariance, systematic: Array) -> Covariance:
+    """The covariance with errors that are not of chance added to each parameter's own; correlations stay.
+
+    Parameters
+    ----------
+    systematic : ndarray, shape (p,)
+        Their sizes, as standard errors.
+    """
+    known = np.isfinite(spread.stderr) & (spread.stderr > 0.0)
+    chance = np.where(known, spread.stderr, 1.0)
+    stretch = np.where(known, np.hypot(chance, systematic) / chance, 1.0)
+    matrix = spread.matrix * np.outer(stretch, stretch)
+    return replace(spread, matrix=matrix, stderr=np.sqrt(np.diag(matrix)))

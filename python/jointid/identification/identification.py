@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,27 +12,17 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.errors import InputError
 from jointid.estimate.estimate import Estimate
-from jointid.estimate.findings import Convergence, Prediction
+from jointid.estimate.findings import Prediction
 from jointid.identification.inference import infer, r_squared, relative_residual
 from jointid.identification.model_terms import Request, TermChoice, choose_terms
 from jointid.identification.problem import Problem, Windows, listed, whole_number
+from jointid.identification.search import Callback, Search, StatePath
 from jointid.identification.search_domain import SearchDomain, domain_for
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
-Callback = Callable[[_core.Generation], bool | None]
-
-_METHODS = ("ga", "separable")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Outcome:
-    best: Array
-    convergence: Convergence | None
-    status: str
-    message: str
 
 
 def identify(
@@ -56,6 +45,8 @@ def identify(
     seed: int = 0,
     threads: int = 0,
     callback: Callback | None = None,
+    checkpoint: StatePath | None = None,
+    resume: StatePath | None = None,
 ) -> Estimate:
     """Identify a joint's friction, and its torque sensor if it has one, from ordinary motion.
 
@@ -88,7 +79,8 @@ def identify(
         fields. Values in SI.
     method : str
         "ga" (default): genetic algorithm, then a local polish. "separable": linear parameters
-        eliminated exactly, a scan over the shape.
+        eliminated exactly, a search over the shapes alone. "random": random search with the genetic
+        algorithm's budget and no polish, for comparison.
     ga : GaOptions, optional
         Settings of the genetic algorithm.
     residual : str, optional
@@ -108,7 +100,11 @@ def identify(
     threads : int
         0 (default): all.
     callback : callable, optional
-        Called with each `Generation`; returning True stops the search.
+        Called with each `Generation`; returning True stops the search. Not with "separable".
+    checkpoint : path, optional
+        The genetic search's state is kept in this file, written whole, every 50 generations.
+    resume : path, optional
+        A checkpoint to go on from; the result has the same bits as an uninterrupted search.
 
     Returns
     -------
@@ -123,8 +119,6 @@ def identify(
     """
     started = time.perf_counter()
     runs = listed(recordings)
-    if method not in _METHODS:
-        raise InputError(f"method {method!r} is not known; known are {', '.join(_METHODS)}")
     if joint is not None and not isinstance(joint, Joint):
         raise InputError(
             f"joint must be a Joint, got {joint!r}; read a file with jointid.Joint.load"
@@ -133,6 +127,15 @@ def identify(
         raise InputError(f"mask_standstill must be True or False, got {mask_standstill!r}")
     seed = whole_number("seed", seed, 0, 2**64 - 1)
     threads = whole_number("threads", threads, 0, 1024)
+    search = Search(
+        method=method,
+        options=ga if ga is not None else _core.GaOptions(),
+        seed=seed,
+        threads=threads,
+        callback=callback,
+        checkpoint=checkpoint,
+        resume=resume,
+    )
     request = Request(
         model=model,
         residual=residual,
@@ -152,14 +155,7 @@ def identify(
     )
     penalty = problem.penalty(windows)
     domain = domain_for(penalty, joint, parameters, problem.peak_speed)
-    options = ga if ga is not None else _core.GaOptions()
-    if not isinstance(options, _core.GaOptions):
-        raise InputError(
-            f"ga must be GaOptions, got {options!r}; use jointid.GaOptions(population=...)"
-        )
-    if callback is not None and not callable(callback):
-        raise InputError(f"callback must be callable, got {callback!r}")
-    outcome = _search(penalty, domain, method, options, seed, threads, callback)
+    outcome = search.run(penalty, domain)
     settings: dict[str, Any] = {
         "version": _core.__version__,
         "kind": runs[0].kind,
@@ -178,7 +174,7 @@ def identify(
         "torque_hold": torque_hold,
         "mask_standstill": mask_standstill,
         "seed": seed,
-        "ga": options.asdict() if method == "ga" else None,
+        "ga": None if method == "separable" else search.options.asdict(),
         "bounds_from_data": list(domain.from_data),
         "recordings": [{"name": run.name, "fingerprint": run.fingerprint} for run in runs],
     }
@@ -237,49 +233,6 @@ def _predicting(estimate: Estimate, name: str) -> float:
         return estimate.parameters[name].value
     own = [p.value for key, p in estimate.parameters.items() if key.startswith(f"{name}[")]
     return float(np.mean(own))
-
-
-def _search(
-    penalty: _core.Penalty,
-    domain: SearchDomain,
-    method: str,
-    options: _core.GaOptions,
-    seed: int,
-    threads: int,
-    callback: Callback | None,
-) -> _Outcome:
-    if method == "separable":
-        found = _core.minimise_separable(penalty, domain.lower, domain.upper, threads=threads)
-        told = f"separable optimum after {found.evaluations} shapes"
-        return _Outcome(best=found.best, convergence=None, status="converged", message=told)
-    result = _core.minimise_genetic(
-        penalty,
-        domain.lower,
-        domain.upper,
-        options=options,
-        seed=seed,
-        threads=threads,
-        callback=callback,
-    )
-    convergence = Convergence(
-        generation=np.array([g.number for g in result.history], dtype=np.int64),
-        best=np.array([g.best for g in result.history]),
-        mean=np.array([g.mean for g in result.history]),
-        evaluations=np.array([g.evaluations for g in result.history], dtype=np.int64),
-    )
-    told = f"{convergence.generation[-1]} generations, {result.evaluations} penalties"
-    best, status = result.best, "converged"
-    if result.stop == _core.Stop.generations and not options.polish:
-        status, told = "stopped", f"used up its {told} without a polish"
-    elif result.stop == _core.Stop.observer:
-        status, told = "stopped", f"stopped by the callback after {told}"
-    elif options.polish:
-        polished = _core.polish(penalty, domain.lower, domain.upper, best)
-        best = polished.best
-        told = f"{told}, then {polished.iterations} polish steps"
-        if not polished.converged:
-            status, told = "stopped", f"the polish did not settle after {told}"
-    return _Outcome(best=best, convergence=convergence, status=status, message=told)
 
 
 def _window_shifts(

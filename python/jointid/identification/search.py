@@ -1,0 +1,168 @@
+"""Running a search over the penalty: genetic, random or separable; checkpoints of a long one."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.errors import InputError
+from jointid.estimate.findings import Convergence
+from jointid.files import write_whole
+from jointid.identification.search_domain import SearchDomain
+
+Array = NDArray[np.float64]
+Callback = Callable[[_core.Generation], bool | None]
+StatePath = str | os.PathLike[str]
+
+METHODS = ("ga", "separable", "random")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outcome:
+    """Where a search ended, and how."""
+
+    best: Array
+    convergence: Convergence | None
+    status: str
+    message: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Search:
+    """How to search.
+
+    Attributes
+    ----------
+    method : str
+        "ga", "separable" or "random".
+    options : GaOptions
+    seed, threads : int
+    callback : callable or None
+    checkpoint : path or None
+        The state of the search is written here every 50 generations and at its end, whole or not at all.
+    resume : path or None
+        A checkpoint to go on from, to the same bits as an uninterrupted search.
+    """
+
+    method: str
+    options: _core.GaOptions
+    seed: int
+    threads: int
+    callback: Callback | None
+    checkpoint: StatePath | None = None
+    resume: StatePath | None = None
+
+    def __post_init__(self) -> None:
+        if self.method not in METHODS:
+            raise InputError(f"method {self.method!r} is not known; known are {', '.join(METHODS)}")
+        if not isinstance(self.options, _core.GaOptions):
+            raise InputError(
+                f"ga must be GaOptions, got {self.options!r}; use jointid.GaOptions(population=...)"
+            )
+        if self.callback is not None and not callable(self.callback):
+            raise InputError(f"callback must be callable, got {self.callback!r}")
+        if self.method != "ga" and (self.checkpoint is not None or self.resume is not None):
+            raise InputError(f"checkpoint and resume go with method='ga', not '{self.method}'")
+
+    def run(self, penalty: _core.Penalty, domain: SearchDomain) -> Outcome:
+        """Search.
+
+        Raises
+        ------
+        InputError
+            A checkpoint that does not fit.
+        KeyboardInterrupt
+            Ctrl-C.
+        """
+        if self.method == "separable":
+            found = _core.minimise_separable(
+                penalty, domain.lower, domain.upper, threads=self.threads
+            )
+            told = f"separable optimum after {found.evaluations} shapes"
+            return Outcome(best=found.best, convergence=None, status="converged", message=told)
+        if self.method == "random":
+            result = _core.minimise_random(
+                penalty,
+                domain.lower,
+                domain.upper,
+                options=self.options,
+                seed=self.seed,
+                threads=self.threads,
+                callback=self.callback,
+            )
+        else:
+            result = self._genetic(penalty, domain)
+        return self._outcome(penalty, domain, result)
+
+    def _genetic(self, penalty: _core.Penalty, domain: SearchDomain) -> _core.GaResult:
+        state = None if self.resume is None else _read_state(Path(self.resume))
+        try:
+            result = _core.minimise_genetic(
+                penalty,
+                domain.lower,
+                domain.upper,
+                options=self.options,
+                seed=self.seed,
+                threads=self.threads,
+                callback=self.callback,
+                resume=state,
+                checkpoint=None if self.checkpoint is None else self._write_state,
+            )
+        except ValueError as error:
+            raise InputError(str(error)) from error
+        if self.checkpoint is not None and result.state is not None:
+            self._write_state(result.state)
+        return result
+
+    def _write_state(self, state: _core.GaState) -> None:
+        if self.checkpoint is not None:
+            write_whole(Path(self.checkpoint), state.to_bytes())
+
+    def _outcome(
+        self, penalty: _core.Penalty, domain: SearchDomain, result: _core.GaResult
+    ) -> Outcome:
+        convergence = _convergence(result)
+        told = f"{convergence.generation[-1]} generations, {result.evaluations} penalties"
+        best, status = result.best, "converged"
+        polish = self.options.polish and self.method == "ga"
+        if result.stop == _core.Stop.observer:
+            status, told = "stopped", f"stopped by the callback after {told}"
+        elif result.stop == _core.Stop.generations and not polish:
+            status, told = "stopped", f"used up its {told} without a polish"
+        elif polish:
+            polished = _core.polish(penalty, domain.lower, domain.upper, best)
+            best = polished.best
+            told = f"{told}, then {polished.iterations} polish steps"
+            if not polished.converged:
+                status, told = "stopped", f"the polish did not settle after {told}"
+        return Outcome(best=best, convergence=convergence, status=status, message=told)
+
+
+def _convergence(result: _core.GaResult) -> Convergence:
+    def series(name: str) -> Array:
+        return np.array([getattr(g, name) for g in result.history], dtype=np.float64)
+
+    return Convergence(
+        generation=np.array([g.number for g in result.history], dtype=np.int64),
+        best=series("best"),
+        mean=series("mean"),
+        diversity=series("diversity"),
+        crossover_probability=series("crossover_probability"),
+        mutation_probability=series("mutation_probability"),
+        evaluations=np.array([g.evaluations for g in result.history], dtype=np.int64),
+    )
+
+
+def _read_state(path: Path) -> _core.GaState:
+    try:
+        return _core.GaState.from_bytes(path.read_bytes())
+    except OSError as error:
+        raise InputError(f"{path}: the checkpoint cannot be read: {error.strerror}") from error
+    except ValueError as error:
+        raise InputError(f"{path}: {error}") from error
