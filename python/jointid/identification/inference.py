@@ -17,10 +17,12 @@ from jointid.estimate.findings import (
     WindowTable,
 )
 from jointid.estimate.student import quantile
-from jointid.identification.covariance import Covariance, parameter_covariance
-from jointid.identification.diagnosis import Facts, diagnose
+from jointid.identification.covariance import Covariance, parameter_covariance, widened
+from jointid.identification.diagnosis import diagnose
+from jointid.identification.facts import Facts
 from jointid.identification.problem import Problem
 from jointid.identification.search_domain import SearchDomain
+from jointid.identification.systematic import systematic_errors
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
 
@@ -68,7 +70,9 @@ def infer(
     freedom = _freedom(domain, best, jacobian.T @ residual, alone)
     free = list(freedom.indices)
     table = problem.table(penalty, best)
-    spread = parameter_covariance(jacobian[:, free], residual, _centre(penalty, best, free))
+    by_chance = parameter_covariance(jacobian[:, free], residual, _centre(penalty, best, free))
+    systematic = systematic_errors(problem, penalty, best, free, jacobian[:, free], shifts)
+    spread = widened(by_chance, systematic)
     parameters = _parameters(problem, penalty, domain, best, freedom, spread, len(residual), shifts)
     statistics = _statistics(problem, penalty, table)
     named = sorted(zip(free, np.abs(spread.weakest), strict=True), key=lambda pair: -pair[1])
@@ -76,11 +80,13 @@ def infer(
     torque_level = float(np.sqrt(np.mean((penalty.target / penalty.usable_duration) ** 2)))
     warnings = diagnose(
         Facts(
-            recordings=problem.recordings,
+            problem=problem,
+            penalty=penalty,
+            best=best,
+            table=table,
             parameters=parameters,
+            chance=dict(zip((domain.names[i] for i in free), by_chance.stderr, strict=True)),
             residuals=statistics,
-            model=problem.choice.model,
-            noise_limited=penalty.noise_limited,
             torque_level=torque_level,
             status=status,
             message=message,

@@ -54,7 +54,7 @@ class Problem:
         options = self.window_options(windows)
         try:
             return _core.Penalty(
-                recordings=[self._in_core(recording) for recording in self.recordings],
+                recordings=[self.in_core(recording) for recording in self.recordings],
                 terms=list(self.choice.terms),
                 windows=options,
                 residual=_core.Residual[self.choice.residual],
@@ -128,7 +128,8 @@ class Problem:
             friction=friction / penalty.usable_duration,
         )
 
-    def _in_core(self, recording: Recording) -> _core.Recording:
+    def in_core(self, recording: Recording) -> _core.Recording:
+        """The recording as the core takes it."""
         hold = self.torque_hold or recording.torque_hold
         if hold is None:
             hold = (self.joint.torque_hold if self.joint is not None else None) or "linear"
@@ -138,14 +139,21 @@ class Problem:
             time=recording.time,
             position=recording.position,
             velocity=recording.velocity,
-            torque=_output_torque(recording, self.joint),
+            torque=output_torque(recording, self.joint),
             sensor=recording.sensor if self.choice.sensor else None,
             torque_hold=_HOLDS[hold],
             gap_after=[gap.index for gap in recording.gaps],
         )
 
 
-def _output_torque(recording: Recording, joint: Joint | None) -> Array:
+def output_torque(recording: Recording, joint: Joint | None) -> Array:
+    """The drive's torque at the output [N·m or N].
+
+    Raises
+    ------
+    InputError
+        The recording has none, or only one on the motor side and no joint to turn it round.
+    """
     if joint is not None:
         return joint.output_torque(recording)
     if recording.torque is not None:

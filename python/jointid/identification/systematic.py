@@ -1,0 +1,93 @@
+"""What chance does not explain of an error: the choice of windows, and the instant at which a sensor is sampled."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.identification.problem import Problem, output_torque
+from jointid.recording.recording import Recording
+
+Array = NDArray[np.float64]
+
+
+def systematic_errors(
+    problem: Problem,
+    penalty: _core.Penalty,
+    best: Array,
+    free: list[int],
+    jacobian: Array,
+    shifts: tuple[Array | None, Array | None],
+) -> Array:
+    """Size of the errors that remain however long the recording is, as standard errors.
+
+    Parameters
+    ----------
+    free : list of int
+        The parameters that were free, and the columns of `jacobian`.
+    jacobian : ndarray, shape (windows, p)
+        Derivatives of the residuals at `best`.
+    shifts : tuple of ndarray or None
+        How each parameter moves when the windows are halved and doubled.
+
+    Returns
+    -------
+    ndarray, shape (p,)
+        In the parameters' units.
+    """
+    moved = [shift[free] for shift in shifts if shift is not None]
+    of_windows = np.sqrt(np.mean(np.square(moved), axis=0)) if moved else np.zeros(len(free))
+    return np.asarray(np.hypot(of_windows, _of_sampling(problem, penalty, best, jacobian)))
+
+
+def _of_sampling(problem: Problem, penalty: _core.Penalty, best: Array, jacobian: Array) -> Array:
+    """Effect of not knowing on which side of a command's step the sensor was sampled.
+
+    A held torque steps at the samples. Its step accelerates the drive and the link together, and the
+    link's share of it steps in the sensor. Sampled before the step rather than in its middle, the
+    reading lacks half of that share at every sample; what is smooth is not concerned.
+    """
+    nothing = np.zeros(jacobian.shape[1])
+    names = list(penalty.names)
+    if not {"sensor_gain", "inertia"} <= set(names) or jacobian.shape[1] == 0:
+        return nothing
+    bounds = np.asarray(penalty.windows)
+    run = np.asarray(penalty.recording_of)
+    duration = np.asarray(penalty.usable_duration)
+    accelerated, angle, stepped = np.zeros((3, run.size))
+    for number, recording in enumerate(problem.recordings):
+        if not _held(problem, recording):
+            continue
+        mine = run == number
+        first, last = bounds[mine, 0], bounds[mine, 1]
+        accelerated[mine] = recording.velocity[last] - recording.velocity[first]
+        angle[mine] = 0.5 * (recording.position[first] + recording.position[last])
+        core = problem.in_core(recording)
+        usable = np.asarray(_core.usable_intervals(core, problem.mask_standstill), dtype=np.bool_)
+        steps = np.where(usable, np.diff(output_torque(recording, problem.joint)), 0.0)
+        risen = np.concatenate([[0.0], np.cumsum(steps)])
+        stepped[mine] = recording.sample_period * (risen[last] - risen[first])
+    if not np.any(stepped) or run.size < 50:
+        return nothing
+    gain = float(best[names.index("sensor_gain")])
+    reading = penalty.columns(best[penalty.coefficients :])[:, names.index("sensor_gain")]
+    link = np.column_stack(
+        [accelerated, duration * np.cos(angle), duration * np.sin(angle), duration]
+    )
+    share = float(np.linalg.lstsq(link, reading, rcond=1e-10)[0][0])  # the link's inertia / gain
+    both = float(best[names.index("inertia")]) + share * gain
+    if both <= 0.0 or share * gain <= 0.0:
+        return nothing
+    lacking = 0.5 * share / both * stepped
+    if penalty.residual == _core.Residual.torque:
+        lacking = lacking * gain
+    scale = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-300)
+    return np.asarray(np.abs(np.linalg.lstsq(jacobian / scale, lacking, rcond=1e-10)[0]) / scale)
+
+
+def _held(problem: Problem, recording: Recording) -> bool:
+    hold = problem.torque_hold or recording.torque_hold
+    if hold is None and problem.joint is not None:
+        hold = problem.joint.torque_hold
+    return hold == "zoh"
