@@ -1,5 +1,7 @@
 """What went wrong once, or would: wide bounds, all at bounds, constant signals, odd arguments."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -124,3 +126,29 @@ def test_prediction_asks_for_the_same_kind() -> None:
     )
     with pytest.raises(jid.InputError, match="prismatic"):
         estimate.predict(axis)
+
+
+def test_bounds_free_a_known_inertia_and_the_joint_learns_it() -> None:
+    joint = jid.Joint(rotor_inertia=0.008, gear_ratio=10.0)  # 0.8 at the output, truly 0.5
+    free = {"inertia": {"min": 0.1, "max": 2.0}}
+    estimate = jid.identify(moving(), joint, parameters=free, method="separable")
+    assert estimate.parameters["inertia"].value == pytest.approx(0.5, rel=0.01)
+    assert estimate.joint.reflected_inertia == estimate.parameters["inertia"].value
+
+
+def test_bursts_of_stamps_are_refused() -> None:
+    base = moving()
+    time = base.time.copy()
+    time[1::2] = time[:-1:2] + 1e-6
+    assert base.torque is not None
+    bursts = jid.Recording(time=time, position=base.position, torque=base.torque)
+    with pytest.raises(jid.InputError, match="bursts"):
+        jid.identify(bursts)
+
+
+def test_an_estimate_is_not_saved_over_a_folder(tmp_path: Path) -> None:
+    from jointid.reporting import save_report
+
+    with pytest.raises(IsADirectoryError, match="folder"):
+        save_report(jid.identify(moving(), method="separable"), tmp_path)
+    assert list(tmp_path.iterdir()) == []

@@ -91,6 +91,22 @@ def test_published_asymmetric_fit(shared_data: Path) -> None:
         assert estimate.parameters[name].value == pytest.approx(value, rel=0.02), name
 
 
+def test_published_asymmetric_fit_from_matlab(shared_data: Path) -> None:
+    folder = shared_data / "emps"
+    recording = jid.load(
+        folder / "DATA_EMPS.mat",
+        columns={"time": "t", "position": "qm", "torque": "vir"},
+        scale={"torque": 35.150652},
+        kind="prismatic",
+    )
+    matlab = jid.identify(recording, asymmetric=True, method="separable")
+    csv = jid.identify(jid.load(folder / "emps_train.csv.gz"), asymmetric=True, method="separable")
+    for name in ("inertia", "viscous_positive", "coulomb_negative"):
+        assert matlab.parameters[name].value == pytest.approx(csv.parameters[name].value, rel=1e-4)
+    assert matlab.parameters["viscous_positive"].value == pytest.approx(166.7061, rel=0.02)
+    assert matlab.parameters["viscous_negative"].value == pytest.approx(240.4236, rel=0.02)
+
+
 def test_harmonics_and_ripple() -> None:
     truth = {
         "inertia": 0.8,

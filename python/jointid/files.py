@@ -1,5 +1,6 @@
 """Files are written whole or not at all."""
 
+import errno
 import os
 import tempfile
 from pathlib import Path
@@ -20,6 +21,10 @@ def write_whole(path: Path, content: bytes) -> None:
         The folder does not exist or cannot be written; the old file is untouched.
     """
     target = path.resolve()
+    if target.is_dir():
+        raise IsADirectoryError(
+            errno.EISDIR, "this is a folder; a file's name is expected", str(path)
+        )
     mode = target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~_umask()
     handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
     try:

@@ -252,6 +252,10 @@ def _joint(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Joint:
         high = None if known is None or known.max is None else max(known.max, found.value)
         vary = found.vary if known is None else known.vary
         table[name] = Parameter(name=name, value=found.value, min=low, max=high, vary=vary)
+    inertia = parameters.get("inertia")
+    if inertia is not None and inertia.vary and base.reflected_inertia is not None:
+        # What was found takes the place of what was believed.
+        base = base.replace(inertia=inertia.value, rotor_inertia=None)
     return base.replace(
         parameters=table,
         friction=choice.model,

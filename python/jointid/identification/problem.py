@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 
 Windows = int | float | str | _core.WindowOptions | None
 
+_MOST_GAPS = 0.1  # of the intervals; beyond, the median period is not the period
+
 _HOLDS = {"zoh": _core.Hold.zero_order, "linear": _core.Hold.linear}
 
 
@@ -211,7 +213,7 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
         None, something else, or revolute and prismatic mixed.
     """
     if isinstance(recordings, Recording):
-        return (recordings,)
+        recordings = (recordings,)
     if not isinstance(recordings, Iterable) or isinstance(recordings, str):
         raise InputError(
             f"recordings is a {type(recordings).__name__}, not a Recording; read a file with jointid.load"
@@ -223,6 +225,11 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
         if not isinstance(run, Recording):
             raise InputError(
                 f"recording {number} is a {type(run).__name__}, not a Recording; read a file with jointid.load"
+            )
+        if len(run.gaps) > _MOST_GAPS * len(run):
+            raise InputError(
+                f"recording {number}: {100 * len(run.gaps) / len(run):.0f} % of its sample intervals are gaps, as when "
+                "a bus hands over samples in bursts; take the drive's time stamps, not the host's, or a uniform clock"
             )
         if run.kind != runs[0].kind:
             raise InputError(

@@ -155,7 +155,9 @@ def domain_for(
         A parameter that the model does not have, or bounds that cannot be.
     """
     table = merge(_known_values(joint), joint.parameters if joint is not None else {})
-    table = merge(table, changes or {})
+    table = merge(
+        table, {name: _freed(table, name, entry) for name, entry in (changes or {}).items()}
+    )
     names = tuple(penalty.names)
     for name in changes or {}:
         if name not in names and not any(other.startswith(f"{name}[") for other in names):
@@ -191,6 +193,21 @@ def domain_for(
     if bool(np.all(lower == upper)):
         raise InputError("parameters: every parameter is fixed; leave at least one to identify")
     return SearchDomain(names=names, lower=lower, upper=upper, from_data=tuple(from_data))
+
+
+def _freed(
+    table: Mapping[str, Parameter], name: str, entry: float | Mapping[str, object] | Parameter
+) -> float | Mapping[str, object] | Parameter:
+    """Bounds for what the joint knows as a fact mean that it is to be found."""
+    fixed = name in table and not table[name].vary
+    if (
+        fixed
+        and isinstance(entry, Mapping)
+        and {"min", "max"} & entry.keys()
+        and "vary" not in entry
+    ):
+        return {"value": None, **entry, "vary": True}
+    return entry
 
 
 def _refuse_zero_gain(
