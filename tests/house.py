@@ -44,7 +44,7 @@ GROUPS: dict[str, Group] = {
         packages={"numpy", "scipy", "pandas", "pyarrow", "tomlkit"},
     ),
     "analysis": Group(
-        modules={"identification.", "estimate.", "study."},
+        modules={"identification.", "estimate.", "comparison.", "study."},
         may_use={"core", "recording"},
         packages={"numpy", "scipy", "pandas"},
     ),

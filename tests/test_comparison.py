@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import jointid as jid
+from jointid.comparison.comparison import ComparisonStep
+from jointid.comparison.comparison_result import ComparedModel
+from jointid.comparison.held_out import folds_by_block, folds_by_recording
+from jointid.comparison.model_spec import ModelSpec
+from jointid.comparison.parsimony import judge
 from jointid.demo import data_folder
 from jointid.errors import InputError
-from jointid.identification.comparison import ComparisonStep
-from jointid.identification.comparison_result import ComparedModel
-from jointid.identification.held_out import folds_by_block, folds_by_recording
-from jointid.identification.model_spec import ModelSpec
-from jointid.identification.parsimony import judge
 from jointid.progress import ComparisonProgress
 
 

@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from jointid.comparison.model_spec import ModelSpec, specified
 from jointid.errors import InputError
-from jointid.identification.model_spec import ModelSpec, specified
 
 
 @pytest.mark.parametrize(

@@ -19,12 +19,12 @@ except ModuleNotFoundError as error:
 
 from jointid import plotting as plot
 from jointid._core import GaOptions, Generation, WindowOptions
+from jointid.comparison.comparison import compare_models
+from jointid.comparison.comparison_result import Comparison
+from jointid.comparison.model_spec import ModelSpec
 from jointid.errors import InputError
 from jointid.estimate.estimate import Estimate
-from jointid.identification.comparison import compare_models
-from jointid.identification.comparison_result import Comparison
 from jointid.identification.identification import identify
-from jointid.identification.model_spec import ModelSpec
 from jointid.joint.joint import Joint
 from jointid.joint.link import Limits, Link
 from jointid.joint.parameters import Parameter

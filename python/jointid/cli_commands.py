@@ -44,8 +44,8 @@ def demo(arguments: argparse.Namespace) -> None:
 def identify(arguments: argparse.Namespace) -> None:
     """Identify a joint from one recording or several."""
     from jointid._core import GaOptions
+    from jointid.comparison.model_spec import ModelSpec
     from jointid.identification import identification
-    from jointid.identification.model_spec import ModelSpec
     from jointid.progress import Progress
 
     changes = fixed_values(arguments)
@@ -84,7 +84,7 @@ def identify(arguments: argparse.Namespace) -> None:
 
 def compare(arguments: argparse.Namespace) -> None:
     """Compare models by how well they predict held-out motion."""
-    from jointid.identification.comparison import compare_models
+    from jointid.comparison.comparison import compare_models
     from jointid.progress import ComparisonProgress
 
     changes = fixed_values(arguments)

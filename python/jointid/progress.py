@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Self, TextIO
 from jointid._core import GaOptions, Generation
 
 if TYPE_CHECKING:
-    from jointid.identification.comparison import ComparisonStep
+    from jointid.comparison.comparison import ComparisonStep
 
 _WIDTH = 24
 _PERIOD = 0.1  # [s] between two drawings

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from jointid.comparison.comparison_result import ComparedModel
 from jointid.estimate.estimate import Estimate
-from jointid.identification.comparison_result import ComparedModel
 
 
 def judge(rows: Sequence[ComparedModel]) -> tuple[tuple[ComparedModel, ...], int, str]:

@@ -8,8 +8,8 @@ from dataclasses import asdict, dataclass
 from html import escape
 from typing import Any
 
+from jointid.comparison.model_spec import ModelSpec
 from jointid.estimate.estimate import Estimate
-from jointid.identification.model_spec import ModelSpec
 
 SCHEMA = 1
 """Raised when a reader of the old form would misread the new one."""

@@ -1,0 +1,1 @@
+"""Comparing models by what they predict of motion that they have not seen."""
