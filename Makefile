@@ -79,6 +79,8 @@ check-sdist: sdist  ## the sdist installs, imports and runs in an environment of
 
 study: $(INSTALLED)  ## accuracy over many seeds; by hand, the results go to docs/
 	@$(BIN)/python benchmarks/accuracy_study.py
+	@$(BIN)/python benchmarks/coverage_study.py
+	@$(BIN)/python benchmarks/presets_study.py
 
 bench: $(INSTALLED)  ## speed; by hand
 	@$(BIN)/python benchmarks/speed.py
