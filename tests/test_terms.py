@@ -201,6 +201,7 @@ def test_cumulative_windows_are_the_running_integral(well_excited: jid.Recording
         well_excited, jid.thesis_joint(), windows="cumulative", method="separable"
     )
     assert estimate.residuals.windows > 11000
+    assert not {"noisy_velocity", "structured_residual"} & {w.code for w in estimate.warnings}
     for name, truth in TRUTH.items():
         assert estimate.parameters[name].value == pytest.approx(truth, rel=0.05), name
 

@@ -21,7 +21,9 @@ def diagnose(facts: Facts) -> tuple[Warned, ...]:
     """All warnings, the gravest first."""
     found = [warning for check in _CHECKS for warning in check(facts)]
     units = [warning for warning in found if warning.code == "implausible_units"]
-    return tuple(warning for warning in found if warning not in units[1:])
+    # Degrees make the motor's angle wrong, too: what swings with it is not ripple.
+    spurious = [warning for warning in found if units and warning.code == "ripple"]
+    return tuple(warning for warning in found if warning not in (*units[1:], *spurious))
 
 
 def _stopped(facts: Facts) -> Iterator[Warned]:
@@ -34,7 +36,8 @@ def _stopped(facts: Facts) -> Iterator[Warned]:
 
 
 def _noisy_velocity(facts: Facts) -> Iterator[Warned]:
-    if facts.penalty.noise_limited:
+    # Running integrals have no edges whose noise would count.
+    if facts.penalty.noise_limited and not facts.penalty.cumulative:
         inertia = facts.parameters.get("inertia")
         share = percent(facts.residuals.noise_share)
         yield Warned(
@@ -60,7 +63,8 @@ def _poor_fit(facts: Facts) -> Iterator[Warned]:
 
 
 def _structured_residual(facts: Facts) -> Iterator[Warned]:
-    if facts.residuals.autocorrelation > 0.5:
+    # Running integrals of white noise are correlated by themselves.
+    if facts.residuals.autocorrelation > 0.5 and not facts.penalty.cumulative:
         yield Warned(
             code="structured_residual",
             parameters=(),
