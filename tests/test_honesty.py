@@ -203,6 +203,7 @@ def test_stribeck_is_too_rich_for_the_kr300() -> None:
 def test_units_are_told_once(well_excited: jid.Recording) -> None:
     found = [warning.code for warning in separable(degrees(well_excited)).warnings]
     assert found.count("implausible_units") == 1
+    assert "ripple" not in found
 
 
 @pytest.fixture(scope="module")
