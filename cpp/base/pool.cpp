@@ -8,14 +8,23 @@
 
 namespace jointid::base {
 
-Pool::Pool(int threads, Poll poll) : poll_(std::move(poll)) {
+namespace {
+
+unsigned checked(int threads) {
   if (threads < 0 || threads > 1024) {
     throw std::invalid_argument("threads must be 0 (all) to 1024, got " + std::to_string(threads));
   }
-  const auto wanted = threads > 0 ? static_cast<unsigned>(threads)
-                                  : std::max(1U, std::thread::hardware_concurrency());
-  workers_.reserve(wanted);
-  for (unsigned i = 0; i < wanted; ++i) workers_.emplace_back([this] { run(); });
+  return threads > 0 ? static_cast<unsigned>(threads)
+                     : std::max(1U, std::thread::hardware_concurrency());
+}
+
+}  // namespace
+
+Pool::Pool(int threads, Poll poll) : wanted_(checked(threads)), poll_(std::move(poll)) {}
+
+void Pool::start() {
+  workers_.reserve(wanted_);
+  while (workers_.size() < wanted_) workers_.emplace_back([this] { run(); });
 }
 
 Pool::~Pool() {
@@ -70,6 +79,7 @@ void Pool::run() {
 
 void Pool::for_each(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work) {
   if (count == 0) return;
+  start();
   std::unique_lock lock(mutex_);
   work_ = &work;
   next_ = 0;

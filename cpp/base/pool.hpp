@@ -1,6 +1,6 @@
 #pragma once
-// Threads for one call: made on construction, joined by the destructor, so nothing outlives the
-// call (fork stays safe).
+// Threads for one call: made when there is work for them, joined by the destructor, so nothing
+// outlives the call (fork stays safe).
 
 #include <condition_variable>
 #include <cstddef>
@@ -30,7 +30,7 @@ class Pool {
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
-  [[nodiscard]] int threads() const { return static_cast<int>(workers_.size()); }
+  [[nodiscard]] int threads() const { return static_cast<int>(wanted_); }
   /// Work hands this to whatever runs long.
   [[nodiscard]] const Cancel& cancel() const { return cancel_; }
   /// Ask the poll now (between generations); throws what the poll throws.
@@ -40,9 +40,11 @@ class Pool {
   void for_each(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work);
 
  private:
+  void start();
   void run();
   bool take(std::size_t& begin, std::size_t& end);
 
+  unsigned wanted_;
   Poll poll_;
   Cancel cancel_;
   std::mutex mutex_;

@@ -2,12 +2,12 @@
 
 #include "bind/bind.hpp"
 #include "bind/choices.hpp"
-#include "identify/penalty.hpp"
+#include "identify/penalty_function.hpp"
 #include "search/random_search.hpp"
 
 namespace jointid::bind {
 
-using identify::Penalty;
+using identify::PenaltyFunction;
 using search::Domain;
 using search::GaOptions;
 using search::GaResult;
@@ -19,7 +19,7 @@ namespace {
 
 using Function = std::optional<py::function>;
 
-search::Objective objective(const Penalty& penalty) {
+search::Objective objective(const PenaltyFunction& penalty) {
   return [&penalty](const Eigen::MatrixXd& candidates, Eigen::VectorXd& penalties,
                     base::Pool& pool) { penalty.evaluate(candidates, penalties, pool); };
 }
@@ -196,7 +196,7 @@ void bind_genetic(py::module_& m) {
 
   m.def(
       "minimise_genetic",
-      [](const Penalty& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
+      [](const PenaltyFunction& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
          const GaOptions& options, std::uint64_t seed, std::uint32_t trial, int threads,
          const Function& callback, const std::optional<GaState>& resume,
          const Function& on_checkpoint, int checkpoint_interval) {
@@ -218,7 +218,7 @@ void bind_genetic(py::module_& m) {
       "generations.");
   m.def(
       "minimise_random",
-      [](const Penalty& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
+      [](const PenaltyFunction& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
          const GaOptions& options, std::uint64_t seed, std::uint32_t trial, int threads,
          const Function& callback) {
         const Domain domain{std::move(lower), std::move(upper)};

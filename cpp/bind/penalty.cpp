@@ -1,10 +1,13 @@
 #include "identify/penalty.hpp"
+#include "identify/compressed_penalty.hpp"
 
 #include "bind/bind.hpp"
 
 namespace jointid::bind {
 
+using identify::CompressedPenalty;
 using identify::Penalty;
+using identify::PenaltyFunction;
 using identify::Recording;
 using identify::Residual;
 using identify::WindowOptions;
@@ -15,8 +18,61 @@ void bind_penalty(py::module_& m) {
       .value("sensor", Residual::sensor)
       .value("torque", Residual::torque)
       .finalize();
-  py::class_<Penalty>(m, "Penalty",
-                      "The integral penalty of recordings and terms, by the direct sum.")
+  py::class_<PenaltyFunction>(m, "PenaltyFunction",
+                              "What every form of the penalty offers to a search.")
+      .def(
+          "__call__",
+          [](const PenaltyFunction& p, const Eigen::VectorXd& theta) { return p(theta); },
+          py::arg("theta"), py::call_guard<py::gil_scoped_release>(), "Sum of squared residuals.")
+      .def(
+          "evaluate",
+          [](const PenaltyFunction& p, const Eigen::MatrixXd& candidates, int threads) {
+            if (candidates.rows() != p.parameters()) {
+              throw std::invalid_argument("candidates must have one row a parameter, " +
+                                          std::to_string(p.parameters()) + ", got " +
+                                          std::to_string(candidates.rows()));
+            }
+            Eigen::VectorXd penalties(candidates.cols());
+            base::Pool pool(threads, SignalPoll{});
+            p.evaluate(candidates, penalties, pool);
+            return penalties;
+          },
+          py::arg("candidates"), py::kw_only(), py::arg("threads") = 0,
+          py::call_guard<py::gil_scoped_release>(),
+          "Penalties of many candidates, one a column, shape (parameters, count).")
+      .def(
+          "residuals",
+          [](const PenaltyFunction& p, const Eigen::VectorXd& theta) {
+            Eigen::VectorXd residual;
+            p.residuals(theta, residual, nullptr);
+            return residual;
+          },
+          py::arg("theta"), "Residuals, one a row.")
+      .def(
+          "jacobian",
+          [](const PenaltyFunction& p, const Eigen::VectorXd& theta) {
+            Eigen::VectorXd residual;
+            Eigen::MatrixXd jacobian;
+            p.residuals(theta, residual, &jacobian);
+            return jacobian;
+          },
+          py::arg("theta"), "Derivatives of the residuals, shape (rows, parameters).")
+      .def(
+          "columns",
+          [](const PenaltyFunction& p, const Eigen::VectorXd& shapes) {
+            Eigen::MatrixXd columns;
+            p.columns(shapes, columns);
+            return columns;
+          },
+          py::arg("shapes"), "Columns of all coefficients, shape (rows, coefficients).")
+      .def_property_readonly("target", &PenaltyFunction::target,
+                             "What the columns add up to [N m s], one a row.")
+      .def_property_readonly("names", &PenaltyFunction::names)
+      .def_property_readonly("coefficients", &PenaltyFunction::coefficients)
+      .def_property_readonly("residual", &PenaltyFunction::residual);
+  py::class_<Penalty, PenaltyFunction>(
+      m, "Penalty",
+      "The integral penalty of recordings and terms, by the direct sum; a row is a window.")
       .def(py::init([](std::vector<Recording> recordings, const std::vector<std::string>& terms,
                        const WindowOptions& windows, Residual residual, bool mask_standstill,
                        double gear_ratio, const std::vector<std::string>& per_recording) {
@@ -27,43 +83,9 @@ void bind_penalty(py::module_& m) {
            py::kw_only(), py::arg("recordings"), py::arg("terms"), py::arg("windows"),
            py::arg("residual"), py::arg("mask_standstill") = true, py::arg("gear_ratio") = 1.0,
            py::arg("per_recording") = std::vector<std::string>{})
-      .def(
-          "__call__", [](const Penalty& p, const Eigen::VectorXd& theta) { return p(theta); },
-          py::arg("theta"), py::call_guard<py::gil_scoped_release>(),
-          "Sum of squared window residuals, by the direct sum.")
-      .def(
-          "residuals",
-          [](const Penalty& p, const Eigen::VectorXd& theta) {
-            Eigen::VectorXd residual;
-            p.residuals(theta, residual, nullptr);
-            return residual;
-          },
-          py::arg("theta"), "Window residuals, length `window_count`.")
-      .def(
-          "jacobian",
-          [](const Penalty& p, const Eigen::VectorXd& theta) {
-            Eigen::VectorXd residual;
-            Eigen::MatrixXd jacobian;
-            p.residuals(theta, residual, &jacobian);
-            return jacobian;
-          },
-          py::arg("theta"),
-          "Derivatives of the window residuals, shape (window_count, parameters).")
-      .def(
-          "columns",
-          [](const Penalty& p, const Eigen::VectorXd& shapes) {
-            Eigen::MatrixXd columns;
-            p.columns(shapes, columns);
-            return columns;
-          },
-          py::arg("shapes"), "Window integrals of all terms, shape (window_count, coefficients).")
-      .def_property_readonly("target", &Penalty::target, "Window integrals of the torque [N m s].")
-      .def_property_readonly("names", &Penalty::names)
       .def_property_readonly("terms", &Penalty::terms, "The term of each coefficient.")
       .def_property_readonly("cumulative", &Penalty::cumulative)
-      .def_property_readonly("coefficients", &Penalty::coefficients)
       .def_property_readonly("window_count", &Penalty::window_count)
-      .def_property_readonly("residual", &Penalty::residual)
       .def_property_readonly(
           "windows",
           [](const Penalty& p) {
@@ -89,6 +111,24 @@ void bind_penalty(py::module_& m) {
       .def_property_readonly("standing_samples", &Penalty::standing_samples)
       .def_property_readonly("unusable_intervals", &Penalty::unusable_intervals)
       .def_property_readonly("total_samples", &Penalty::total_samples);
+  py::class_<CompressedPenalty, PenaltyFunction>(
+      m, "CompressedPenalty",
+      "The same penalty within bounds, at a cost that does not depend on the recording's length.")
+      .def(py::init([](const Penalty& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
+                       int threads) {
+             const search::Domain domain{std::move(lower), std::move(upper)};
+             base::Pool pool(threads, SignalPoll{});
+             return CompressedPenalty(penalty, domain, pool);
+           }),
+           py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::kw_only(),
+           py::arg("threads") = 0, py::call_guard<py::gil_scoped_release>())
+      .def_property_readonly("exact", &CompressedPenalty::exact,
+                             "Whether it meets the tolerance; else use the direct sum.")
+      .def_property_readonly("reason", &CompressedPenalty::reason, "Why not; empty if it does.")
+      .def_property_readonly("passes", &CompressedPenalty::passes,
+                             "Shapes at which the samples were summed.")
+      .def_property_readonly("error", &CompressedPenalty::error,
+                             "Largest error found between those, of the columns' squared size.");
 }
 
 }  // namespace jointid::bind

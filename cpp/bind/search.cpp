@@ -1,16 +1,16 @@
 #include "bind/bind.hpp"
-#include "identify/penalty.hpp"
+#include "identify/penalty_function.hpp"
 #include "identify/separable.hpp"
 #include "search/polish.hpp"
 
 namespace jointid::bind {
 
-using identify::Penalty;
+using identify::PenaltyFunction;
 using search::Domain;
 
 namespace {
 
-search::ResidualFunction residual_function(const Penalty& penalty, const base::Pool& pool) {
+search::ResidualFunction residual_function(const PenaltyFunction& penalty, const base::Pool& pool) {
   return [&](const Eigen::VectorXd& theta, Eigen::VectorXd& residual, Eigen::MatrixXd* jacobian) {
     penalty.residuals(theta, residual, jacobian, &pool.cancel());
   };
@@ -32,7 +32,8 @@ void bind_search(py::module_& m) {
 
   m.def(
       "minimise_separable",
-      [](const Penalty& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper, int threads) {
+      [](const PenaltyFunction& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
+         int threads) {
         const Domain domain{std::move(lower), std::move(upper)};
         const py::gil_scoped_release nogil;
         base::Pool pool(threads, SignalPoll{});
@@ -41,8 +42,20 @@ void bind_search(py::module_& m) {
       py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::kw_only(),
       py::arg("threads") = 0);
   m.def(
+      "refine_separable",
+      [](const PenaltyFunction& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
+         const Eigen::VectorXd& start, bool everywhere, int threads) {
+        const Domain domain{std::move(lower), std::move(upper)};
+        const py::gil_scoped_release nogil;
+        base::Pool pool(threads, SignalPoll{});
+        return identify::refine_separable(penalty, domain, start, pool, everywhere);
+      },
+      py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::arg("start"), py::kw_only(),
+      py::arg("everywhere") = true, py::arg("threads") = 0,
+      "The local optimum near a start; `everywhere` also searches one free shape's whole range.");
+  m.def(
       "polish",
-      [](const Penalty& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
+      [](const PenaltyFunction& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
          const Eigen::VectorXd& start, int iterations) {
         const Domain domain{std::move(lower), std::move(upper)};
         const py::gil_scoped_release nogil;

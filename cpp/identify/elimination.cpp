@@ -18,8 +18,8 @@ struct Reduced {
       free;  ///< coefficients, without the gain when that is eliminated with the rest
 };
 
-Reduced reduce(const Penalty& penalty, const Eigen::MatrixXd& columns, const search::Domain& domain,
-               bool keep_gain) {
+Reduced reduce(const PenaltyFunction& penalty, const Eigen::MatrixXd& columns,
+               const search::Domain& domain, bool keep_gain) {
   Reduced result;
   result.target = penalty.target();
   for (Eigen::Index j = 0; j < columns.cols(); ++j) {
@@ -56,8 +56,9 @@ Eigen::VectorXd solve_box(const Reduced& r, const search::Domain& domain,
 
 /// Free gain, residual in the sensor's terms: min |target u - columns g - sensor|, u = 1/gain, g =
 /// c u.
-Eigen::VectorXd solve_ratio(const Penalty& penalty, const Reduced& r, const Eigen::VectorXd& sensor,
-                            const search::Domain& domain, Eigen::VectorXd coefficients) {
+Eigen::VectorXd solve_ratio(const PenaltyFunction& penalty, const Reduced& r,
+                            const Eigen::VectorXd& sensor, const search::Domain& domain,
+                            Eigen::VectorXd coefficients) {
   const Eigen::Index gain = penalty.gain_index();
   const auto n = static_cast<Eigen::Index>(r.free.size());
   const double low = domain.lower[gain];
@@ -94,7 +95,7 @@ Eigen::VectorXd solve_ratio(const Penalty& penalty, const Reduced& r, const Eige
 
 }  // namespace
 
-Eigen::VectorXd best_coefficients(const Penalty& penalty, const Eigen::VectorXd& shapes,
+Eigen::VectorXd best_coefficients(const PenaltyFunction& penalty, const Eigen::VectorXd& shapes,
                                   const search::Domain& domain, const base::Cancel* cancel) {
   Eigen::MatrixXd columns;
   penalty.columns(shapes, columns, cancel);

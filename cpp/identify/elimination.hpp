@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "identify/penalty.hpp"
+#include "identify/penalty_function.hpp"
 #include "search/domain.hpp"
 
 namespace jointid::identify {
@@ -13,7 +13,7 @@ namespace jointid::identify {
 /// residual torque: bounded least squares. residual sensor: linear in u = 1/gain and g = c/gain,
 /// where the box of each c becomes lower u <= g <= upper u. Throws std::invalid_argument when the
 /// gain's bounds contain zero.
-Eigen::VectorXd best_coefficients(const Penalty& penalty, const Eigen::VectorXd& shapes,
+Eigen::VectorXd best_coefficients(const PenaltyFunction& penalty, const Eigen::VectorXd& shapes,
                                   const search::Domain& domain,
                                   const base::Cancel* cancel = nullptr);
 

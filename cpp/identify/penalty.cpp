@@ -155,8 +155,9 @@ void Penalty::own_columns(const std::vector<std::string>& per_recording, std::si
   }
 }
 
-const FrictionNodes& Penalty::nodes(model::Direction direction) const {
-  return nodes_[static_cast<std::size_t>(direction)];
+bool Penalty::is_shaped(Eigen::Index coefficient) const {
+  return std::any_of(shaped_.begin(), shaped_.end(),
+                     [&](const Shaped& shaped) { return shaped.coefficient == coefficient; });
 }
 
 void Penalty::accumulate(Eigen::Ref<Eigen::VectorXd> values) const {
@@ -172,16 +173,6 @@ void Penalty::shaped_column(const Shaped& shaped, const double* shapes, int whic
   for (std::size_t i = 0; i < shaped.shapes.size(); ++i) own[i] = shapes[shaped.shapes[i]];
   integrate_friction(shaped.term, nodes(shaped.term.direction), own.data(), which, cancel, column);
   if (cumulative_) accumulate(column);
-}
-
-void Penalty::check(const Eigen::VectorXd& theta) const {
-  if (theta.size() != parameters()) {
-    throw std::invalid_argument("theta must have " + std::to_string(parameters()) +
-                                " values, got " + std::to_string(theta.size()));
-  }
-  if (residual_ == Residual::sensor && theta[gain_index_] == 0.0) {
-    throw std::invalid_argument("sensor_gain must not be 0 with residual 'sensor'");
-  }
 }
 
 void Penalty::columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,

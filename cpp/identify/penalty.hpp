@@ -7,16 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "base/pool.hpp"
+#include "identify/penalty_function.hpp"
 #include "identify/quadrature.hpp"
 
 namespace jointid::identify {
-
-enum class Residual {
-  sensor,  ///< integral of the sensor reading: the torque residual over the sensor's gain (the
-           ///< thesis)
-  torque,  ///< integral of the commanded torque
-};
 
 /// Penalty of a parameter vector over one or several recordings.
 ///
@@ -24,37 +18,46 @@ enum class Residual {
 /// that over sensor_gain. Parameters are ordered as `names()`: coefficients in the order given,
 /// then shapes. A coefficient of `per_recording` is one a recording, "name[0]", "name[1]", ...
 /// With cumulative windows r is the running sum of the windows' residuals, within each recording.
-class Penalty {
+class Penalty final : public PenaltyFunction {
  public:
   Penalty(std::vector<Recording> recordings, const std::vector<std::string>& terms,
           const WindowOptions& windows, Residual residual, bool mask_standstill,
           double gear_ratio = 1.0, const std::vector<std::string>& per_recording = {});
 
-  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  /// A term whose column depends on shapes.
+  struct Shaped {
+    Eigen::Index coefficient;
+    std::vector<Eigen::Index> shapes;  ///< among the shapes
+    Term term;
+  };
+
+  [[nodiscard]] const std::vector<std::string>& names() const override { return names_; }
   /// The term of each coefficient.
   [[nodiscard]] const std::vector<Term>& terms() const { return terms_; }
-  [[nodiscard]] Eigen::Index coefficients() const { return columns_.cols(); }
-  [[nodiscard]] Eigen::Index parameters() const { return static_cast<Eigen::Index>(names_.size()); }
+  [[nodiscard]] const std::vector<Shaped>& shaped() const { return shaped_; }
+  [[nodiscard]] bool is_shaped(Eigen::Index coefficient) const;
+  [[nodiscard]] Eigen::Index coefficients() const override { return columns_.cols(); }
   [[nodiscard]] Eigen::Index window_count() const { return target_.size(); }
-  [[nodiscard]] Residual residual() const { return residual_; }
-  /// Position of sensor_gain among the parameters, -1 without a sensor.
-  [[nodiscard]] Eigen::Index gain_index() const { return gain_index_; }
+  [[nodiscard]] Residual residual() const override { return residual_; }
+  [[nodiscard]] Eigen::Index gain_index() const override { return gain_index_; }
+  [[nodiscard]] bool brief() const override { return false; }
 
-  /// Direct sum. Throws std::invalid_argument when theta has the wrong length or the gain is zero.
-  [[nodiscard]] double operator()(const Eigen::VectorXd& theta,
-                                  const base::Cancel* cancel = nullptr) const;
-  /// Window residuals, and on request their derivatives (windows x parameters).
+  double operator()(const Eigen::VectorXd& theta,
+                    const base::Cancel* cancel = nullptr) const override;
   void residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual, Eigen::MatrixXd* jacobian,
-                 const base::Cancel* cancel = nullptr) const;
-  /// One candidate a column.
+                 const base::Cancel* cancel = nullptr) const override;
   void evaluate(const Eigen::MatrixXd& candidates, Eigen::VectorXd& penalties,
-                base::Pool& pool) const;
-
-  /// Columns of all terms for these shapes (windows x coefficients), and the integrals of the
-  /// torque.
+                base::Pool& pool) const override;
   void columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
-               const base::Cancel* cancel = nullptr) const;
-  [[nodiscard]] const Eigen::VectorXd& target() const { return target_; }
+               const base::Cancel* cancel = nullptr) const override;
+  /// Integrals of the torque.
+  [[nodiscard]] const Eigen::VectorXd& target() const override { return target_; }
+  /// Columns without the shaped ones, which are zero here.
+  [[nodiscard]] const Eigen::MatrixXd& constant_columns() const { return columns_; }
+  /// What the shaped columns of a direction are sums over.
+  [[nodiscard]] const FrictionNodes& nodes(model::Direction direction) const {
+    return nodes_[static_cast<std::size_t>(direction)];
+  }
 
   /// What was cut and why, one entry a window; sample numbers are within `recording_of`.
   [[nodiscard]] const std::vector<Window>& windows() const { return windows_; }
@@ -69,19 +72,12 @@ class Penalty {
   [[nodiscard]] std::int64_t total_samples() const { return total_; }
 
  private:
-  struct Shaped {
-    Eigen::Index coefficient;
-    std::vector<Eigen::Index> shapes;  ///< among the shapes
-    Term term;
-  };
-  void check(const Eigen::VectorXd& theta) const;
   void add_term(const std::string& key);
   void own_columns(const std::vector<std::string>& per_recording, std::size_t recordings);
   /// A shaped term's column, or its derivative by the term's shape number `which`.
   void shaped_column(const Shaped& shaped, const double* shapes, int which,
                      const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) const;
   void accumulate(Eigen::Ref<Eigen::VectorXd> values) const;
-  [[nodiscard]] const FrictionNodes& nodes(model::Direction direction) const;
 
   std::vector<std::string> names_;  ///< coefficients, then shapes
   std::vector<Term> terms_;

@@ -20,7 +20,7 @@ constexpr double kGolden = 0.6180339887498949;
 /// The penalty as a function of the free shapes alone.
 class Eliminated {
  public:
-  Eliminated(const Penalty& penalty, const search::Domain& domain, base::Pool& pool)
+  Eliminated(const PenaltyFunction& penalty, const search::Domain& domain, base::Pool& pool)
       : penalty_(penalty), domain_(domain), pool_(pool) {
     for (Eigen::Index i = penalty.coefficients(); i < penalty.parameters(); ++i) {
       if (domain.lower[i] < domain.upper[i]) free_.push_back(i);
@@ -51,6 +51,10 @@ class Eliminated {
   /// Penalties at many points, over the threads.
   [[nodiscard]] std::vector<double> values(const std::vector<std::vector<double>>& points) const {
     std::vector<double> result(points.size());
+    if (penalty_.brief()) {
+      for (std::size_t i = 0; i < points.size(); ++i) result[i] = penalty_(full(points[i]));
+      return result;
+    }
     pool_.for_each(points.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         result[i] = penalty_(full(points[i]), &pool_.cancel());
@@ -60,7 +64,7 @@ class Eliminated {
   }
 
  private:
-  const Penalty& penalty_;
+  const PenaltyFunction& penalty_;
   const search::Domain& domain_;
   base::Pool& pool_;
   std::vector<Eigen::Index> free_;
@@ -72,6 +76,10 @@ class Scale {
  public:
   Scale(double lower, double upper, bool root)
       : lower_(lower), upper_(upper), root_(root && lower >= 0.0) {}
+  [[nodiscard]] double share(double shape) const {
+    const auto even = [&](double value) { return root_ ? std::sqrt(value) : value; };
+    return (even(shape) - even(lower_)) / (even(upper_) - even(lower_));
+  }
   [[nodiscard]] double at(double share) const {
     if (share <= 0.0) return lower_;  // the bounds to the last bit
     if (share >= 1.0) return upper_;
@@ -86,17 +94,27 @@ class Scale {
   bool root_;
 };
 
-/// A scan, then golden sections around its best, then the ends, which golden sections never touch.
-void search_line(const Eliminated& reduced, const Scale& scale, base::Pool& pool,
-                 SeparableResult& result) {
+/// Shares of a scale's range.
+struct Interval {
+  double left;
+  double right;
+};
+
+/// The scan's best point, between its neighbours.
+Interval scan(const Eliminated& reduced, const Scale& scale, SeparableResult& result) {
   std::vector<std::vector<double>> points;
   for (int i = 0; i <= kScan; ++i) points.push_back({scale.at(static_cast<double>(i) / kScan)});
   const auto values = reduced.values(points);
   result.evaluations += kScan + 1;
   const auto best =
       static_cast<double>(std::min_element(values.begin(), values.end()) - values.begin());
-  double left = std::max(0.0, best - 1.0) / kScan;
-  double right = std::min<double>(kScan, best + 1.0) / kScan;
+  return {std::max(0.0, best - 1.0) / kScan, std::min<double>(kScan, best + 1.0) / kScan};
+}
+
+/// Golden sections within an interval.
+void narrow(const Eliminated& reduced, const Scale& scale, Interval interval, base::Pool& pool,
+            SeparableResult& result) {
+  auto [left, right] = interval;
   const auto value = [&](double share) {
     pool.poll();
     ++result.evaluations;
@@ -121,13 +139,18 @@ void search_line(const Eliminated& reduced, const Scale& scale, base::Pool& pool
       at_b = value(b);
     }
   }
-  for (const double share : {at_a <= at_b ? a : b, 0.0, 1.0}) {
-    reduced.offer(reduced.full({scale.at(share)}), result);
-  }
+  reduced.offer(reduced.full({scale.at(at_a <= at_b ? a : b)}), result);
+}
+
+/// A scan, golden sections around its best, then the ends, which golden sections never touch.
+void search_line(const Eliminated& reduced, const Scale& scale, base::Pool& pool,
+                 SeparableResult& result) {
+  narrow(reduced, scale, scan(reduced, scale, result), pool, result);
+  for (const double share : {0.0, 1.0}) reduced.offer(reduced.full({scale.at(share)}), result);
 }
 
 void search_grid(const Eliminated& reduced, const std::vector<Scale>& scales,
-                 const Penalty& penalty, const search::Domain& domain, base::Pool& pool,
+                 const PenaltyFunction& penalty, const search::Domain& domain, base::Pool& pool,
                  SeparableResult& result) {
   std::vector<std::vector<double>> points{{}};
   for (const auto& scale : scales) {
@@ -160,19 +183,32 @@ void search_grid(const Eliminated& reduced, const std::vector<Scale>& scales,
 
 }  // namespace
 
-SeparableResult minimise_separable(const Penalty& penalty, const search::Domain& domain,
-                                   base::Pool& pool) {
+namespace {
+
+void require_size(const PenaltyFunction& penalty, const search::Domain& domain) {
   domain.validate();
-  if (domain.size() != penalty.parameters()) {
-    throw std::invalid_argument("domain must have " + std::to_string(penalty.parameters()) +
-                                " parameters, got " + std::to_string(domain.size()));
-  }
-  const Eliminated reduced(penalty, domain, pool);
+  if (domain.size() == penalty.parameters()) return;
+  throw std::invalid_argument("domain must have " + std::to_string(penalty.parameters()) +
+                              " parameters, got " + std::to_string(domain.size()));
+}
+
+std::vector<Scale> scales_of(const PenaltyFunction& penalty, const search::Domain& domain,
+                             const Eliminated& reduced) {
   std::vector<Scale> scales;
   for (const auto i : reduced.free()) {
     const bool root = penalty.names()[static_cast<std::size_t>(i)] == "stribeck";
     scales.emplace_back(domain.lower[i], domain.upper[i], root);
   }
+  return scales;
+}
+
+}  // namespace
+
+SeparableResult minimise_separable(const PenaltyFunction& penalty, const search::Domain& domain,
+                                   base::Pool& pool) {
+  require_size(penalty, domain);
+  const Eliminated reduced(penalty, domain, pool);
+  const auto scales = scales_of(penalty, domain, reduced);
   SeparableResult result;
   if (scales.empty()) {
     reduced.offer(reduced.full({}), result);
@@ -181,6 +217,41 @@ SeparableResult minimise_separable(const Penalty& penalty, const search::Domain&
   } else {
     search_grid(reduced, scales, penalty, domain, pool, result);
   }
+  return result;
+}
+
+SeparableResult refine_separable(const PenaltyFunction& penalty, const search::Domain& domain,
+                                 const Eigen::VectorXd& start, base::Pool& pool, bool everywhere) {
+  require_size(penalty, domain);
+  const Eliminated reduced(penalty, domain, pool);
+  const auto scales = scales_of(penalty, domain, reduced);
+  SeparableResult result;
+  reduced.offer(start.cwiseMax(domain.lower).cwiseMin(domain.upper), result);
+  if (scales.empty()) {
+    reduced.offer(reduced.full({}), result);
+    return result;
+  }
+  if (scales.size() > 1) {
+    const auto residuals = [&](const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                               Eigen::MatrixXd* jacobian) {
+      penalty.residuals(theta, residual, jacobian, &pool.cancel());
+    };
+    reduced.offer(search::polish(residuals, domain, result.best, pool).best, result);
+    return result;
+  }
+  // Widens until the best is inside, or at the domain's end: the start may lie on a slope.
+  for (double reach = 1.0 / kScan;; reach *= 4.0) {
+    const double share = scales[0].share(result.best[reduced.free()[0]]);
+    const Interval near{std::max(0.0, share - reach), std::min(1.0, share + reach)};
+    narrow(reduced, scales[0], near, pool, result);
+    const double found = scales[0].share(result.best[reduced.free()[0]]);
+    const double margin = 0.01 * reach;
+    if ((near.left <= 0.0 || found > near.left + margin) &&
+        (near.right >= 1.0 || found < near.right - margin)) {
+      break;
+    }
+  }
+  if (everywhere) search_line(reduced, scales[0], pool, result);
   return result;
 }
 

@@ -6,7 +6,7 @@
 
 #include "base/pool.hpp"
 #include "identify/elimination.hpp"
-#include "identify/penalty.hpp"
+#include "identify/penalty_function.hpp"
 #include "search/domain.hpp"
 
 namespace jointid::identify {
@@ -19,7 +19,14 @@ struct SeparableResult {
 
 /// The separable optimum. No free shape: a single solve. One: a scan, then golden sections around
 /// the best. Several: a grid, then polishes of all parameters from its best points.
-SeparableResult minimise_separable(const Penalty& penalty, const search::Domain& domain,
+SeparableResult minimise_separable(const PenaltyFunction& penalty, const search::Domain& domain,
                                    base::Pool& pool);
+
+/// The local optimum near a start, never worse than it: for one free shape by elimination and
+/// golden sections about the start's, for several by Levenberg-Marquardt. `everywhere`: one free
+/// shape is also searched over its whole range, which costs next to nothing on the compressed
+/// penalty.
+SeparableResult refine_separable(const PenaltyFunction& penalty, const search::Domain& domain,
+                                 const Eigen::VectorXd& start, base::Pool& pool, bool everywhere);
 
 }  // namespace jointid::identify

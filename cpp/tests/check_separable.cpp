@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "check.hpp"
+#include "identify/penalty.hpp"
 #include "identify/separable.hpp"
 #include "reference.hpp"
 #include "synthetic.hpp"

@@ -1,0 +1,162 @@
+#include "identify/compression.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace jointid::identify {
+
+namespace {
+
+constexpr std::int64_t kSamples = 8192;  // of a part: its nodes stay in the second-level cache
+// Where log(1 + s v^2 / kKnee) is even enough at its lower end (fewest nodes, on `well_excited`).
+constexpr double kKnee = 10.0;
+// Pieces an octave of the scale, as powers of 2.
+constexpr int kFine = 3;
+constexpr int kCoarse = 2;
+constexpr double kGolden = 0.6180339887498949;
+
+Eigen::Index count_for(double even_length, double density) {
+  return static_cast<Eigen::Index>(std::ceil(density * (9.0 * even_length + 14.0)));
+}
+
+/// Parts of the windows; a running sum cannot be cut within a recording.
+std::vector<Stretch> parts_of(const Penalty& penalty) {
+  std::vector<Stretch> parts;
+  const auto& recordings = penalty.recording_of();
+  std::size_t begin = 0;
+  for (std::size_t w = 1; w <= recordings.size(); ++w) {
+    const bool last = w == recordings.size();
+    const bool other = !last && recordings[w] != recordings[w - 1];
+    const auto& windows = penalty.windows();
+    const bool full =
+        !penalty.cumulative() && !last && windows[w].end - windows[begin].begin > kSamples;
+    if (!last && !other && !full) continue;
+    parts.push_back({begin, w});
+    begin = w;
+  }
+  return parts;
+}
+
+void accumulate(Eigen::MatrixXd& columns) {
+  for (Eigen::Index row = 1; row < columns.rows(); ++row) columns.row(row) += columns.row(row - 1);
+}
+
+Digest digest_part(const Penalty& penalty, const Stretch& part,
+                   const std::vector<DecayRates>& groups, const base::Cancel& cancel) {
+  const auto rows = static_cast<Eigen::Index>(part.end - part.begin);
+  const auto first = static_cast<Eigen::Index>(part.begin);
+  const auto shaped = static_cast<Eigen::Index>(penalty.shaped().size());
+  Eigen::MatrixXd constant(rows, penalty.coefficients() - shaped + 1);
+  Eigen::Index to = 0;
+  for (Eigen::Index j = 0; j < penalty.coefficients(); ++j) {
+    if (!penalty.is_shaped(j))
+      constant.col(to++) = penalty.constant_columns().col(j).segment(first, rows);
+  }
+  constant.col(to) = penalty.target().segment(first, rows);
+  Eigen::Index nodes = 0;
+  for (const auto& group : groups) nodes += static_cast<Eigen::Index>(group.rates.size());
+  Eigen::MatrixXd columns(rows, shaped * nodes);
+  Eigen::MatrixXd own(rows, shaped > 1 ? nodes : 0);
+  for (Eigen::Index j = 0; j < shaped; ++j) {
+    const auto& term = penalty.shaped()[static_cast<std::size_t>(j)].term;
+    if (shaped == 1) {
+      integrate_decays(penalty.nodes(term.direction), part, groups, &cancel, columns);
+      break;
+    }
+    integrate_decays(penalty.nodes(term.direction), part, groups, &cancel, own);
+    for (Eigen::Index k = 0; k < nodes; ++k) columns.col(k * shaped + j) = own.col(k);
+  }
+  if (penalty.cumulative()) accumulate(columns);
+  return digest(constant, columns, shaped);
+}
+
+}  // namespace
+
+std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Domain& domain,
+                                      double speed, double density, std::string& reason) {
+  const auto& shaped = penalty.shaped();
+  const Eigen::Index p = penalty.coefficients();
+  for (const auto& one : shaped) {
+    if (one.term.basis != shaped.front().term.basis || one.shapes != shaped.front().shapes) {
+      reason = "its decaying terms have shapes of their own";
+      return std::nullopt;
+    }
+  }
+  const auto low = [&](Eigen::Index i) { return domain.lower[p + i]; };
+  const auto high = [&](Eigen::Index i) { return domain.upper[p + i]; };
+  ShapeNodes result;
+  if (shaped.front().term.basis == model::SpeedBasis::stribeck) {
+    const double rate = std::max(speed * speed, 1e-300) / kKnee;
+    if (!(1.0 + rate * low(0) > 0.0)) {
+      reason = "the bounds of stribeck reach too far below 0";
+      return std::nullopt;
+    }
+    result.order = {0};
+    result.axes = {{low(0), high(0), 1.0, rate, kFine}};
+    const auto& axis = result.axes[0];
+    const auto points = chebyshev_points(count_for(axis.length(), density));
+    result.lines.push_back({2.0, {}});
+    for (const double point : points) result.lines[0].rates.push_back(axis.shape(point));
+    for (int i = 1; i <= 5; ++i) {
+      const double share = i * kGolden - std::floor(i * kGolden);
+      result.probes.push_back({axis.shape(2.0 * share - 1.0)});
+    }
+    return result;
+  }
+  if (!(low(0) > 0.0) || !(low(1) > 0.0)) {
+    reason = "stribeck_velocity and stribeck_exponent need bounds above 0";
+    return std::nullopt;
+  }
+  result.order = {1, 0};
+  result.axes = {{low(1), high(1), 0.0, 1.0, kCoarse}, {low(0), high(0), 0.0, 1.0, kFine}};
+  const auto& exponents = result.axes[0];
+  const auto& velocities = result.axes[1];
+  const auto rate = [](double velocity, double exponent) {
+    return base::exp(-exponent * base::log(velocity));
+  };
+  // The decay is felt through exponent * log(speed / velocity).
+  const double reach = base::log(std::max(2.0, speed / velocities.shape(-1.0)));
+  const auto outer = chebyshev_points(count_for(1.2 * exponents.length() * reach, 0.6 * density));
+  for (const double place : outer) {
+    const double exponent = exponents.shape(place);
+    const auto inner = chebyshev_points(count_for(exponent * velocities.length(), density));
+    result.lines.push_back({exponent, {}});
+    for (const double point : inner) {
+      result.lines.back().rates.push_back(rate(velocities.shape(point), exponent));
+    }
+  }
+  for (int i = 1; i <= 9; ++i) {
+    const double share = i * kGolden - std::floor(i * kGolden);
+    const double other = (i - 0.5) / 9.0;
+    result.probes.push_back(
+        {exponents.shape(2.0 * share - 1.0), velocities.shape(2.0 * other - 1.0)});
+  }
+  return result;
+}
+
+std::vector<Digest> digest_all(const Penalty& penalty, const std::vector<DecayRates>& groups,
+                               base::Pool& pool) {
+  const auto parts = parts_of(penalty);
+  std::vector<std::vector<Digest>> digests(groups.size(), std::vector<Digest>(parts.size()));
+  pool.for_each(groups.size() * parts.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t part = i % parts.size();
+      const std::size_t group = i / parts.size();
+      digests[group][part] = digest_part(penalty, parts[part], {groups[group]}, pool.cancel());
+    }
+  });
+  std::vector<Digest> result;
+  for (const auto& group : digests) result.push_back(merge(group));
+  return result;
+}
+
+Eigen::MatrixXd functions_of(const Digest& digest) {
+  const Eigen::Index nodes = digest.nodes();
+  const Eigen::Index size = digest.projections.size() / nodes;  // all shaped columns of a node
+  Eigen::MatrixXd result(size + digest.remainders.rows(), nodes);
+  result.topRows(size) = digest.projections.reshaped(size, nodes);
+  result.bottomRows(digest.remainders.rows()) = digest.remainders;
+  return result;
+}
+
+}  // namespace jointid::identify

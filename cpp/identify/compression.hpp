@@ -1,0 +1,39 @@
+#pragma once
+// From a penalty over all samples to functions of the shapes: which nodes, their digests over all
+// windows, and the table through them.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/pool.hpp"
+#include "identify/digest.hpp"
+#include "identify/penalty.hpp"
+#include "identify/shape_table.hpp"
+#include "search/domain.hpp"
+
+namespace jointid::identify {
+
+/// The shapes at which columns are digested. Rates are those of decays.hpp.
+struct ShapeNodes {
+  std::vector<ShapeAxis> axes;  ///< exponent before velocity; one axis for the Gaussian decay
+  /// Parameters of the axes, among the shapes.
+  std::vector<Eigen::Index> order;
+  std::vector<DecayRates> lines;  ///< Chebyshev points: one line, or one a point of the first axis
+  std::vector<std::vector<double>> probes;  ///< shapes in the axes' order, between the points
+};
+
+/// Nodes for the domain's shapes, `density` times as many as usually suffice. `speed` is the
+/// largest. Says in `reason` why there are none when it returns nothing.
+std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Domain& domain,
+                                      double speed, double density, std::string& reason);
+
+/// One digest of all windows for each group of rates.
+std::vector<Digest> digest_all(const Penalty& penalty, const std::vector<DecayRates>& groups,
+                               base::Pool& pool);
+
+/// The functions of one node that a digest holds: projections of each shaped column, then inner
+/// products of the remainders.
+Eigen::MatrixXd functions_of(const Digest& digest);
+
+}  // namespace jointid::identify
