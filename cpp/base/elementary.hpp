@@ -48,23 +48,14 @@ inline double exp(double x) {
   return x == x ? high : x;
 }
 
-/// Natural logarithm of a positive normal number; -infinity at 0, NaN below.
-inline double log(double x) {
-  if (!(x > 0.0)) {
-    return x == 0.0 ? -std::numeric_limits<double>::infinity()
-                    : std::numeric_limits<double>::quiet_NaN();
-  }
-  if (x == std::numeric_limits<double>::infinity()) return x;
-  auto bits = std::bit_cast<std::uint64_t>(x);
-  double k = 0.0;
-  if (bits < (std::uint64_t{1} << 52U)) {  // denormal
-    bits = std::bit_cast<std::uint64_t>(x * 0x1p54);
-    k = -54.0;
-  }
+/// Natural logarithm of a positive, finite, normal number: branch-free, for loops.
+inline double log_normal(double x) {
   // Split so that the mantissa lies in [sqrt(1/2), sqrt(2)): the logarithm is then never a
   // difference of near equals.
-  const std::uint64_t offset = bits - 0x3fe6a09e667f3bcdULL;
-  k += static_cast<double>(static_cast<std::int64_t>(offset) >> 52);
+  const std::uint64_t offset = std::bit_cast<std::uint64_t>(x) - 0x3fe6a09e667f3bcdULL;
+  // The exponent by the sum that rounds to it: packed 64-bit conversions are rare.
+  const std::uint64_t biased = ((offset >> 52U) + 2048U) & 4095U;
+  const double k = std::bit_cast<double>(biased | 0x4330000000000000ULL) - (0x1p52 + 2048.0);
   const double m = std::bit_cast<double>((offset & 0x000fffffffffffffULL) + 0x3fe6a09e667f3bcdULL);
   const double s = (m - 1.0) / (m + 1.0);
   const double z = s * s;
@@ -82,6 +73,17 @@ inline double log(double x) {
   // log m = 2 s + 2 s z p; with f = m - 1 exact, 2 s = f - s f.
   const double f = m - 1.0;
   return k * detail::kLog2High + (f - (s * (f - 2.0 * z * p) - k * detail::kLog2Low));
+}
+
+/// Natural logarithm; -infinity at 0, NaN below.
+inline double log(double x) {
+  if (!(x > 0.0)) {
+    return x == 0.0 ? -std::numeric_limits<double>::infinity()
+                    : std::numeric_limits<double>::quiet_NaN();
+  }
+  if (x == std::numeric_limits<double>::infinity()) return x;
+  if (x >= std::numeric_limits<double>::min()) return log_normal(x);
+  return log_normal(x * 0x1p54) - 54.0 * (detail::kLog2High + detail::kLog2Low);
 }
 
 namespace detail {

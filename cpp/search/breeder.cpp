@@ -1,6 +1,7 @@
 #include "search/breeder.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "search/binary.hpp"
@@ -8,10 +9,19 @@
 
 namespace jointid::search {
 
+namespace {
+
+// An individual's draws for mutation begin here, whatever the selection and crossing of its pair
+// have drawn.
+constexpr std::uint32_t kMutationDraws = std::uint32_t{1} << 19U;
+
+}  // namespace
+
 void Breeder::first(Eigen::MatrixXd& genes) const {
   const auto codes = std::uint32_t{1} << static_cast<unsigned>(options_.bits);
+  const auto key = base::Random::key(seed_, trial_, 0);
   for (Eigen::Index i = 0; i < genes.cols(); ++i) {
-    base::Random random(seed_, trial_, 0, static_cast<std::uint32_t>(i));
+    base::Random random(key, static_cast<std::uint32_t>(i));
     for (Eigen::Index j = 0; j < genes.rows(); ++j) {
       genes(j, i) = options_.coding == Coding::real ? random.uniform()
                                                     : gene_of(random.below(codes), options_.bits);
@@ -21,51 +31,71 @@ void Breeder::first(Eigen::MatrixXd& genes) const {
 
 void Breeder::next(int generation, const Probabilities& probabilities, const Selector& select,
                    const Eigen::Ref<const Eigen::MatrixXd>& parents, Eigen::Index offset,
-                   Eigen::Ref<Eigen::MatrixXd> children) const {
+                   Eigen::Ref<Eigen::MatrixXd> children) {
   const Eigen::Index count = parents.cols();
-  for (Eigen::Index i = 0; i < options_.elite; ++i) {
-    children.col(i) = parents.col(select.order()[static_cast<std::size_t>(i)]);
-  }
-  const double progress = static_cast<double>(generation) / options_.generations;
-  Eigen::VectorXd spare(parents.rows());  // the second child of an odd last pair
-  for (Eigen::Index i = options_.elite; i < count; i += 2) {
-    base::Random random(seed_, trial_, static_cast<std::uint32_t>(generation),
-                        static_cast<std::uint32_t>(offset + i));
+  const Eigen::Index genes = parents.rows();
+  const auto key = base::Random::key(seed_, trial_, static_cast<std::uint32_t>(generation));
+  const auto copy = [&](Eigen::Index from, double* to) {
+    const double* source = parents.data() + from * parents.outerStride();
+    for (Eigen::Index j = 0; j < genes; ++j) to[j] = source[j];
+  };
+  const auto child = [&](Eigen::Index i) { return children.data() + i * children.outerStride(); };
+  Eigen::Index first = 0;
+  for (const auto best : select.elite()) copy(best, child(first++));
+  spare_.resize(genes);
+  crossings_.clear();
+  spreads_.clear();
+  for (Eigen::Index i = first; i < count; i += 2) {
+    base::Random random(key, static_cast<std::uint32_t>(offset + i));
     const bool paired = i + 1 < count;
-    auto one = children.col(i);
-    auto two = paired ? children.col(i + 1) : Genes(spare);
-    one = parents.col(select(random));
-    two = parents.col(select(random));
+    double* one = child(i);
+    double* two = paired ? child(i + 1) : spare_.data();
+    copy(select(random), one);
+    copy(select(random), two);
     if (random.uniform() < probabilities.crossover) {
-      options_.coding == Coding::real ? cross(random, one, two) : cross_bits(random, one, two);
+      options_.coding == Coding::real ? cross(random, one, two, genes)
+                                      : cross_bits(random, one, two, genes);
     } else if (options_.uncrossed == Uncrossed::places) {
-      one = parents.col(i);
-      two = parents.col(paired ? i + 1 : i);
+      copy(i, one);
+      copy(paired ? i + 1 : i, two);
     }
-    mutate(random, probabilities.mutation, progress, one);
-    mutate(random, probabilities.mutation, progress, two);
+  }
+  finish_crossings();
+  const double progress = static_cast<double>(generation) / options_.generations;
+  for (Eigen::Index i = first; i < count; ++i) {
+    base::Random random(key, static_cast<std::uint32_t>(offset + i), kMutationDraws);
+    mutate(random, probabilities.mutation, progress, child(i), genes);
   }
 }
 
-void Breeder::cross(base::Random& random, Genes one, Genes two) const {
-  for (Eigen::Index j = 0; j < one.size(); ++j) {
-    if (random.uniform() >= options_.crossover_gene_probability) continue;
-    double first = one[j];
-    double second = two[j];
-    if (options_.crossover == Crossover::sorted_sbx && first > second) std::swap(first, second);
-    const double u = random.uniform();
-    const auto [a, b] =
-        options_.crossover == Crossover::blx
-            ? blend_crossover(first, second, u, random.uniform(), options_.blx_alpha)
-            : simulated_binary_crossover(first, second, u, options_.crossover_eta);
-    one[j] = a;
-    two[j] = b;
+void Breeder::cross(base::Random& random, double* one, double* two, Eigen::Index genes) {
+  const bool all = options_.crossover_gene_probability >= 1.0;
+  for (Eigen::Index j = 0; j < genes; ++j) {
+    if (!all && random.uniform() >= options_.crossover_gene_probability) continue;
+    if (options_.crossover == Crossover::blx) {
+      const double u = random.uniform();
+      std::tie(one[j], two[j]) =
+          blend_crossover(one[j], two[j], u, random.uniform(), options_.blx_alpha);
+      continue;
+    }
+    if (options_.crossover == Crossover::sorted_sbx && one[j] > two[j]) std::swap(one[j], two[j]);
+    crossings_.push_back({one + j, two + j});
+    spreads_.push_back(random.uniform());
   }
 }
 
-void Breeder::cross_bits(base::Random& random, Genes one, Genes two) const {
+/// All powers of a generation in one loop, which vectorises.
+void Breeder::finish_crossings() {
+  spread_factors(spreads_.data(), spreads_.size(), options_.crossover_eta);
+  for (std::size_t i = 0; i < crossings_.size(); ++i) {
+    const auto [one, two] = crossings_[i];
+    std::tie(*one, *two) = spread_children(*one, *two, spreads_[i]);
+  }
+}
+
+void Breeder::cross_bits(base::Random& random, double* one, double* two, Eigen::Index genes) const {
   const int bits = options_.bits;
-  const int length = static_cast<int>(one.size()) * bits;
+  const int length = static_cast<int>(genes) * bits;
   if (length < 2) return;
   const auto between = [&] {
     return 1 + static_cast<int>(random.below(static_cast<std::uint32_t>(length - 1)));
@@ -76,7 +106,7 @@ void Breeder::cross_bits(base::Random& random, Genes one, Genes two) const {
     end = between();
     if (begin > end) std::swap(begin, end);
   }
-  for (Eigen::Index j = 0; j < one.size(); ++j) {
+  for (Eigen::Index j = 0; j < genes; ++j) {
     std::uint32_t first = code_of(one[j], bits);
     std::uint32_t second = code_of(two[j], bits);
     exchange(first, second, cut(static_cast<int>(j), bits, begin, end));
@@ -85,16 +115,17 @@ void Breeder::cross_bits(base::Random& random, Genes one, Genes two) const {
   }
 }
 
-void Breeder::mutate(base::Random& random, double probability, double progress, Genes genes) const {
-  if (genes.size() == 0) return;
+void Breeder::mutate(base::Random& random, double probability, double progress, double* genes,
+                     Eigen::Index count) const {
+  if (count == 0) return;
   if (options_.coding == Coding::binary) {
-    flip_bits(random, probability, genes);
+    flip_bits(random, probability, genes, count);
   } else if (options_.mutation_unit == MutationUnit::gene) {
-    for (double& gene : genes) {
-      if (random.uniform() < probability) gene = mutated(random, gene, progress);
+    for (Eigen::Index j = 0; j < count; ++j) {
+      if (random.uniform() < probability) genes[j] = mutated(random, genes[j], progress);
     }
   } else if (random.uniform() < probability) {
-    double& gene = genes[random.below(static_cast<std::uint32_t>(genes.size()))];
+    double& gene = genes[random.below(static_cast<std::uint32_t>(count))];
     gene = mutated(random, gene, progress);
   }
 }
@@ -114,15 +145,18 @@ double Breeder::mutated(base::Random& random, double gene, double progress) cons
   return step(gene, random.uniform(), upper, progress, options_.mutation_exponent);
 }
 
-void Breeder::flip_bits(base::Random& random, double probability, Genes genes) const {
+void Breeder::flip_bits(base::Random& random, double probability, double* genes,
+                        Eigen::Index count) const {
   const int bits = options_.bits;
   const auto flip = [bits](double& gene, std::uint32_t mask) {
     if (mask != 0) gene = gene_of(code_of(gene, bits) ^ mask, bits);
   };
   if (options_.mutation_unit == MutationUnit::gene) {
-    for (double& gene : genes) flip(gene, flips(random, bits, probability / bits));
+    for (Eigen::Index j = 0; j < count; ++j) {
+      flip(genes[j], flips(random, bits, probability / bits));
+    }
   } else if (random.uniform() < probability) {
-    const auto place = random.below(static_cast<std::uint32_t>(genes.size() * bits));
+    const auto place = random.below(static_cast<std::uint32_t>(count * bits));
     flip(genes[place / static_cast<std::uint32_t>(bits)],
          std::uint32_t{1} << (place % static_cast<std::uint32_t>(bits)));
   }

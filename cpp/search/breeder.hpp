@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <vector>
 
 #include "base/random.hpp"
 #include "search/genetic_options.hpp"
@@ -12,6 +13,7 @@ namespace jointid::search {
 
 /// Makes the individuals of a run. Every draw is a function of (seed, trial, generation,
 /// individual), where individuals are numbered through all islands: `offset` is an island's first.
+/// One a thread: it keeps its buffers, so that a generation allocates nothing.
 class Breeder {
  public:
   Breeder(const GaOptions& options, std::uint64_t seed, std::uint32_t trial)
@@ -23,20 +25,29 @@ class Breeder {
   /// One island's children; `generation` is theirs, at least 1.
   void next(int generation, const Probabilities& probabilities, const Selector& select,
             const Eigen::Ref<const Eigen::MatrixXd>& parents, Eigen::Index offset,
-            Eigen::Ref<Eigen::MatrixXd> children) const;
+            Eigen::Ref<Eigen::MatrixXd> children);
 
  private:
-  using Genes = Eigen::Ref<Eigen::VectorXd>;
+  /// A gene that a pair of children will cross, once its spread factor is known.
+  struct Crossing {
+    double* one;
+    double* two;
+  };
 
-  void cross(base::Random& random, Genes one, Genes two) const;
-  void cross_bits(base::Random& random, Genes one, Genes two) const;
-  void mutate(base::Random& random, double probability, double progress, Genes genes) const;
+  void cross(base::Random& random, double* one, double* two, Eigen::Index genes);
+  void cross_bits(base::Random& random, double* one, double* two, Eigen::Index genes) const;
+  void finish_crossings();
+  void mutate(base::Random& random, double probability, double progress, double* genes,
+              Eigen::Index count) const;
   [[nodiscard]] double mutated(base::Random& random, double gene, double progress) const;
-  void flip_bits(base::Random& random, double probability, Genes genes) const;
+  void flip_bits(base::Random& random, double probability, double* genes, Eigen::Index count) const;
 
   GaOptions options_;
   std::uint64_t seed_;
   std::uint32_t trial_;
+  Eigen::VectorXd spare_;            ///< the second child of an odd last pair
+  std::vector<Crossing> crossings_;  ///< of the generation
+  std::vector<double> spreads_;      ///< theirs: draws, then factors
 };
 
 }  // namespace jointid::search

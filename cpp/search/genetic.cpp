@@ -12,16 +12,18 @@ namespace jointid::search {
 
 namespace {
 
+// Individuals whose breeding takes longer than waking the threads.
+constexpr Eigen::Index kWorthThreads = 2000;
+
 class Run {
  public:
   Run(const Objective& objective, const Domain& domain, const GaOptions& options,
       std::uint64_t seed, std::uint32_t trial, base::Pool& pool)
       : objective_(objective),
         pool_(pool),
-        breeder_(options, seed, trial),
         population_(domain, individuals(options)),
         children_(population_.genes.rows(), population_.genes.cols()),
-        islands_(static_cast<std::size_t>(options.islands)) {
+        islands_(static_cast<std::size_t>(options.islands), Island(options, seed, trial)) {
     state_.options = options;
     state_.seed = seed;
     state_.trial = trial;
@@ -29,7 +31,7 @@ class Run {
   }
 
   void start() {
-    breeder_.first(population_.genes);
+    islands_.front().breeder.first(population_.genes);
     evaluate();
     record();
   }
@@ -46,12 +48,12 @@ class Run {
     migrate();
     ++state_.generation;
     each_island([&](Eigen::Index island) {
-      const auto& now = islands_[static_cast<std::size_t>(island)];
+      auto& now = islands_[static_cast<std::size_t>(island)];
       const Eigen::Index offset = island * state_.options.population;
-      const Selector select(state_.options, of(population_.penalties, island));
-      breeder_.next(state_.generation, now.probabilities, select,
-                    population_.genes.middleCols(offset, state_.options.population), offset,
-                    children_.middleCols(offset, state_.options.population));
+      now.select.prepare(of(population_.penalties, island));
+      now.breeder.next(state_.generation, now.probabilities, now.select,
+                       population_.genes.middleCols(offset, state_.options.population), offset,
+                       children_.middleCols(offset, state_.options.population));
     });
     population_.genes.swap(children_);
     evaluate();
@@ -76,8 +78,13 @@ class Run {
 
  private:
   struct Island {
-    double diversity;
-    Probabilities probabilities;
+    Island(const GaOptions& options, std::uint64_t seed, std::uint32_t trial)
+        : select(options), breeder(options, seed, trial) {}
+
+    Selector select;
+    Breeder breeder;
+    double diversity = 0.0;
+    Probabilities probabilities{};
   };
 
   static Eigen::Index individuals(const GaOptions& options) {
@@ -88,11 +95,13 @@ class Run {
     return penalties.segment(island * state_.options.population, state_.options.population);
   }
 
-  /// On the calling thread when there is but one; no bit depends on that.
+  /// On the calling thread when there is little to do; no bit depends on that.
   template <class Work>
   void each_island(const Work& work) {
-    if (islands_.size() == 1) {
-      work(0);
+    if (islands_.size() == 1 || individuals(state_.options) < kWorthThreads) {
+      for (std::size_t island = 0; island < islands_.size(); ++island) {
+        work(static_cast<Eigen::Index>(island));
+      }
       return;
     }
     pool_.for_each(islands_.size(), [&](std::size_t begin, std::size_t end) {
@@ -179,7 +188,6 @@ class Run {
 
   const Objective& objective_;
   base::Pool& pool_;
-  Breeder breeder_;
   Population population_;
   Eigen::MatrixXd children_;
   std::vector<Island> islands_;

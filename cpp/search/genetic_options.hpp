@@ -21,8 +21,8 @@ enum class MutationUnit { gene, individual };
 enum class Diversity { penalty, fitness };
 
 struct GaOptions {
-  int population = 60;    ///< individuals of an island, at least 4
-  int generations = 120;  ///< at most, after the first population
+  int population = 24;   ///< individuals of an island, at least 4
+  int generations = 40;  ///< at most, after the first population
   Coding coding = Coding::real;
   int bits = 16;  ///< of a gene (binary coding)
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/clones.hpp"
 #include "base/elementary.hpp"
 
 namespace jointid::search {
@@ -14,13 +15,26 @@ double towards(double gene, bool upper, double share) {
 
 }  // namespace
 
-std::pair<double, double> simulated_binary_crossover(double first, double second, double u,
-                                                     double eta) {
+JOINTID_CLONES void spread_factors(double* draws, std::size_t count, double eta) {
   const double power = 1.0 / (eta + 1.0);
-  const double spread = u <= 0.5 ? base::pow(2.0 * u, power) : base::pow(2.0 - 2.0 * u, -power);
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool contracting = draws[i] <= 0.5;
+    const double argument = contracting ? 2.0 * draws[i] : 2.0 - 2.0 * draws[i];
+    const double exponent = contracting ? power : -power;
+    draws[i] = base::exp(exponent * base::log_normal(argument));
+  }
+}
+
+std::pair<double, double> spread_children(double first, double second, double spread) {
   const double middle = 0.5 * (first + second);
   const double half = 0.5 * spread * (second - first);
   return {std::clamp(middle - half, 0.0, 1.0), std::clamp(middle + half, 0.0, 1.0)};
+}
+
+std::pair<double, double> simulated_binary_crossover(double first, double second, double u,
+                                                     double eta) {
+  spread_factors(&u, 1, eta);
+  return spread_children(first, second, u);
 }
 
 std::pair<double, double> blend_crossover(double first, double second, double u, double v,

@@ -3,6 +3,7 @@
 // distributions are then testable number by number, and the source of randomness is the caller's
 // business.
 
+#include <cstddef>
 #include <utility>
 
 namespace jointid::search {
@@ -12,6 +13,11 @@ namespace jointid::search {
 /// 2u)^(-1/(eta+1)). Clamped to [0, 1].
 std::pair<double, double> simulated_binary_crossover(double first, double second, double u,
                                                      double eta);
+
+/// The spread factors of many draws at once (u in, spread out), and the children for one: what
+/// simulated_binary_crossover does, in two steps.
+void spread_factors(double* draws, std::size_t count, double eta);
+std::pair<double, double> spread_children(double first, double second, double spread);
 
 /// Blend crossover of one gene, BLX-alpha (Eshelman and Schaffer 1993; thesis 3-1): a child is
 /// uniform over the parents' interval widened by alpha of its length at either end. Two draws, two

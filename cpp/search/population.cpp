@@ -7,19 +7,26 @@ namespace jointid::search {
 Population::Population(const Domain& domain, Eigen::Index count)
     : genes(static_cast<Eigen::Index>(domain.free().size()), count),
       penalties(count),
-      domain_(domain),
       free_(domain.free()),
-      candidates_(domain.lower.replicate(1, count)) {}
+      candidates_(domain.lower.replicate(1, count)) {
+  for (const auto parameter : free_) {
+    lower_.push_back(domain.lower[parameter]);
+    upper_.push_back(domain.upper[parameter]);
+  }
+}
 
 void Population::evaluate(const Objective& objective, base::Pool& pool) {
-  for (Eigen::Index j = 0; j < genes.rows(); ++j) {
-    const auto parameter = free_[static_cast<std::size_t>(j)];
-    const double low = domain_.lower[parameter];
-    const double high = domain_.upper[parameter];
-    // Convex form: stays inside the bounds to the last bit.
-    candidates_.row(parameter) = ((1.0 - genes.row(j).array()) * low + genes.row(j).array() * high)
-                                     .cwiseMax(low)
-                                     .cwiseMin(high);
+  const auto parameters = candidates_.rows();
+  for (Eigen::Index i = 0; i < genes.cols(); ++i) {
+    const double* gene = genes.data() + i * genes.rows();
+    double* candidate = candidates_.data() + i * parameters;
+    for (std::size_t j = 0; j < free_.size(); ++j) {
+      const double low = lower_[j];
+      const double high = upper_[j];
+      // Convex form: stays inside the bounds to the last bit.
+      const double value = (1.0 - gene[j]) * low + gene[j] * high;
+      candidate[free_[j]] = value < low ? low : (value > high ? high : value);
+    }
   }
   objective(candidates_, penalties, pool);
   // A penalty that is not a number must lose.

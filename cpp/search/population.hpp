@@ -28,8 +28,9 @@ class Population {
   }
 
  private:
-  Domain domain_;
   std::vector<Eigen::Index> free_;
+  std::vector<double> lower_;  ///< of the free parameters
+  std::vector<double> upper_;
   Eigen::MatrixXd candidates_;
 };
 

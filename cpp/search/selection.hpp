@@ -31,19 +31,38 @@ struct Probabilities {
 /// Linear between diversity_low and diversity_high, constant outside; constant when not adaptive.
 Probabilities adapted(const GaOptions& options, double diversity);
 
-/// Draws parents from one evaluated population.
+/// Draws parents from an evaluated population. Kept from one generation to the next, it allocates
+/// nothing after the first.
 class Selector {
  public:
-  Selector(const GaOptions& options, const Penalties& penalties);
+  explicit Selector(const GaOptions& options) : options_(options) {}
+  Selector(const GaOptions& options, const Penalties& penalties) : Selector(options) {
+    prepare(penalties);
+  }
+
+  /// Turns to a population; its penalties must outlive the draws.
+  void prepare(const Penalties& penalties);
   /// An individual's number.
   [[nodiscard]] Eigen::Index operator()(base::Random& random) const;
-  [[nodiscard]] const std::vector<Eigen::Index>& order() const { return order_; }
+  /// The best individuals, as many as the options' elite, best first.
+  [[nodiscard]] const std::vector<Eigen::Index>& elite() const { return elite_; }
 
  private:
-  Selection selection_;
-  int tournament_;
-  std::vector<Eigen::Index> order_;
-  std::vector<double> shares_;  ///< running sums: by individual (roulette) or by rank
+  [[nodiscard]] bool better(Eigen::Index one, Eigen::Index other) const {
+    const double a = penalties_[one];
+    const double b = penalties_[other];
+    return a < b || (a == b && one < other);
+  }
+  void find_elite();
+  void index_shares();
+
+  GaOptions options_;
+  const double* penalties_ = nullptr;
+  Eigen::Index count_ = 0;
+  std::vector<Eigen::Index> elite_;
+  std::vector<Eigen::Index> order_;   ///< by rank (rank selection)
+  std::vector<double> shares_;        ///< running sums: by individual (roulette) or by rank
+  std::vector<std::uint32_t> guide_;  ///< for each of `count` equal parts, where its shares begin
 };
 
 }  // namespace jointid::search

@@ -8,7 +8,7 @@ namespace jointid::tests {
 /// One generation on, with the options' probabilities.
 inline Eigen::MatrixXd children_of(const search::GaOptions& options, const Eigen::MatrixXd& parents,
                                    const Eigen::VectorXd& penalties, int generation = 1) {
-  const search::Breeder breeder(options, 5, 0);
+  search::Breeder breeder(options, 5, 0);
   Eigen::MatrixXd children(parents.rows(), parents.cols());
   breeder.next(generation, {options.crossover_probability, options.mutation_probability},
                search::Selector(options, penalties), parents, 0, children);

@@ -131,6 +131,7 @@ CHECK_CASE(
   GaOptions options;
   options.coding = Coding::binary;
   options.bits = 10;
+  options.population = 60;
   options.generations = 300;
   // 0.2 is code 409.2 = 0110011001; from 383 = 0101111111 no single flip leads nearer.
   for (std::uint64_t seed = 0; seed < 5; ++seed) {

@@ -1,8 +1,7 @@
-// Philox-4x32-10 against the known answers of its authors' distribution, and what the draws
+// SplitMix64 against its known answers, and what the draws
 // promise: uniform, open at both ends, and the same in whatever order individuals are made.
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <stdexcept>
 #include <vector>
@@ -13,7 +12,6 @@
 namespace jointid::tests {
 namespace {
 
-using Block = std::array<std::uint32_t, 4>;
 using base::Random;
 
 std::vector<double> draws(Random random, int count) {
@@ -31,29 +29,26 @@ double chi_square(const std::vector<int>& counts) {
   return sum;
 }
 
-CHECK_CASE("random: Philox-4x32-10 gives the published blocks") {
-  const std::uint32_t ones = 0xffffffffU;
-  CHECK((base::philox({0, 0, 0, 0}, {0, 0}) ==
-         Block{0x6627e8d5U, 0xe169c58dU, 0xbc57ac4cU, 0x9b00dbd8U}));
-  CHECK((base::philox({ones, ones, ones, ones}, {ones, ones}) ==
-         Block{0x408f276dU, 0x41c83b0eU, 0xa20bc7c6U, 0x6d5451fdU}));
-  CHECK((base::philox({0x243f6a88U, 0x85a308d3U, 0x13198a2eU, 0x03707344U},
-                      {0xa4093822U, 0x299f31d0U}) ==
-         Block{0xd16cfe09U, 0x94fdccebU, 0x5001e420U, 0x24126ea1U}));
+CHECK_CASE("random: SplitMix64 gives its known sequence") {
+  // Of seed 1234567, as other implementations print it.
+  std::uint64_t state = 1234567;
+  for (const std::uint64_t expected :
+       {6457827717110365317ULL, 3203168211198807973ULL, 9817491932198370423ULL,
+        4593380528125082431ULL, 16408922859458223821ULL}) {
+    CHECK(base::mixed(state += base::kSplitMixStep) == expected);
+  }
 }
 
-CHECK_CASE("random: a draw is the block's bits at (seed, stream, generation, individual)") {
-  const std::uint64_t seed = 0x0123456789abcdefULL;
-  const Block first = base::philox({0, 5, 4, 3}, {0x89abcdefU, 0x01234567U});
-  const Block second = base::philox({1, 5, 4, 3}, {0x89abcdefU, 0x01234567U});
-  const auto unit = [](std::uint32_t high, std::uint32_t low) {
-    return (high * 0x1p21 + static_cast<double>(low >> 11U) + 0.5) * 0x1p-53;
-  };
-  const auto values = draws(Random(seed, 3, 4, 5), 4);
-  CHECK(values[0] == unit(first[0], first[1]));
-  CHECK(values[1] == unit(first[2], first[3]));
-  CHECK(values[2] == unit(second[0], second[1]));
-  CHECK(values[3] == unit(second[2], second[3]));
+CHECK_CASE("random: a draw is the key's sequence at (individual, draw)") {
+  const std::uint64_t key = Random::key(0x0123456789abcdefULL, 3, 4);
+  const auto values = draws(Random(0x0123456789abcdefULL, 3, 4, 5), 4);
+  const auto later = draws(Random(key, 5, 2), 2);
+  for (std::uint64_t n = 0; n < 4; ++n) {
+    const std::uint64_t bits =
+        base::mixed(key + base::kSplitMixStep * ((std::uint64_t{5} << 20U) + n + 1));
+    CHECK(values[n] == (static_cast<double>(bits >> 11U) + 0.5) * 0x1p-53);
+    if (n >= 2) CHECK(values[n] == later[n - 2]);
+  }
 }
 
 CHECK_CASE("random: uniform draws stay off 0 and 1") {

@@ -11,6 +11,7 @@ import numpy.typing
 import typing
 
 __all__: list[str] = [
+    "CompressedPenalty",
     "GaOptions",
     "GaResult",
     "GaState",
@@ -18,6 +19,7 @@ __all__: list[str] = [
     "Hold",
     "Model",
     "Penalty",
+    "PenaltyFunction",
     "PolishResult",
     "Recording",
     "Residual",
@@ -35,6 +37,7 @@ __all__: list[str] = [
     "models",
     "parameter_names",
     "polish",
+    "refine_separable",
     "shapes",
     "term",
     "terms",
@@ -201,16 +204,59 @@ class Residual(enum.Enum):
     sensor = ...
     torque = ...
 
-class Penalty:
+class PenaltyFunction:
     """
-    The integral penalty of recordings and terms, by the direct sum.
+    What every form of the penalty offers to a search.
     """
     def __call__(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> float:
         """
-        Sum of squared window residuals, by the direct sum.
+        Sum of squared residuals.
         """
+    def columns(
+        self, shapes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Columns of all coefficients, shape (rows, coefficients).
+        """
+    def evaluate(
+        self,
+        candidates: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        *,
+        threads: typing.SupportsInt | typing.SupportsIndex = 0,
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Penalties of many candidates, one a column, shape (parameters, count).
+        """
+    def jacobian(
+        self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Derivatives of the residuals, shape (rows, parameters).
+        """
+    def residuals(
+        self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Residuals, one a row.
+        """
+    @property
+    def coefficients(self) -> int: ...
+    @property
+    def names(self) -> list[str]: ...
+    @property
+    def residual(self) -> Residual: ...
+    @property
+    def target(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        What the columns add up to [N m s], one a row.
+        """
+
+class Penalty(PenaltyFunction):
+    """
+    The integral penalty of recordings and terms, by the direct sum; a row is a window.
+    """
     def __init__(
         self,
         *,
@@ -222,30 +268,8 @@ class Penalty:
         gear_ratio: typing.SupportsFloat | typing.SupportsIndex = 1.0,
         per_recording: collections.abc.Sequence[str] = [],
     ) -> None: ...
-    def columns(
-        self, shapes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        Window integrals of all terms, shape (window_count, coefficients).
-        """
-    def jacobian(
-        self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
-        """
-        Derivatives of the window residuals, shape (window_count, parameters).
-        """
-    def residuals(
-        self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Window residuals, length `window_count`.
-        """
-    @property
-    def coefficients(self) -> int: ...
     @property
     def cumulative(self) -> bool: ...
-    @property
-    def names(self) -> list[str]: ...
     @property
     def noise_limited(self) -> bool: ...
     @property
@@ -256,14 +280,7 @@ class Penalty:
         Which recording each window belongs to.
         """
     @property
-    def residual(self) -> Residual: ...
-    @property
     def standing_samples(self) -> int: ...
-    @property
-    def target(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Window integrals of the torque [N m s].
-        """
     @property
     def terms(self) -> list[Term]:
         """
@@ -288,6 +305,39 @@ class Penalty:
         First and last sample of each window, shape (window_count, 2).
         """
 
+class CompressedPenalty(PenaltyFunction):
+    """
+    The same penalty within bounds, at a cost that does not depend on the recording's length.
+    """
+    def __init__(
+        self,
+        penalty: Penalty,
+        lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        *,
+        threads: typing.SupportsInt | typing.SupportsIndex = 0,
+    ) -> None: ...
+    @property
+    def error(self) -> float:
+        """
+        Largest error found between those, of the columns' squared size.
+        """
+    @property
+    def exact(self) -> bool:
+        """
+        Whether it meets the tolerance; else use the direct sum.
+        """
+    @property
+    def passes(self) -> int:
+        """
+        Shapes at which the samples were summed.
+        """
+    @property
+    def reason(self) -> str:
+        """
+        Why not; empty if it does.
+        """
+
 class Stop(enum.Enum):
     """
     Why a search ended.
@@ -303,9 +353,9 @@ class GaOptions:
 
     Parameters
     ----------
-    population : default 60
+    population : default 24
         Individuals of an island, at least 4.
-    generations : default 120
+    generations : default 40
         Generations at most, after the first population.
     coding : default 'real'
         "real", or "binary": the comparison, whose genes are codes of `bits` bits.
@@ -394,8 +444,8 @@ class GaOptions:
     def __init__(
         self,
         *,
-        population: int = 60,
-        generations: int = 120,
+        population: int = 24,
+        generations: int = 40,
         coding: str = "real",
         bits: int = 16,
         selection: str = "tournament",
@@ -772,7 +822,7 @@ def is_parameter(name: str) -> bool:
     """
 
 def minimise_genetic(
-    penalty: Penalty,
+    penalty: PenaltyFunction,
     lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     *,
@@ -790,7 +840,7 @@ def minimise_genetic(
     """
 
 def minimise_random(
-    penalty: Penalty,
+    penalty: PenaltyFunction,
     lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     *,
@@ -805,7 +855,7 @@ def minimise_random(
     """
 
 def minimise_separable(
-    penalty: Penalty,
+    penalty: PenaltyFunction,
     lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     *,
@@ -823,13 +873,26 @@ def parameter_names() -> tuple[typing.Any, ...]:
     """
 
 def polish(
-    penalty: Penalty,
+    penalty: PenaltyFunction,
     lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     *,
     iterations: typing.SupportsInt | typing.SupportsIndex = 200,
 ) -> PolishResult: ...
+def refine_separable(
+    penalty: PenaltyFunction,
+    lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    *,
+    everywhere: bool = True,
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> SeparableResult:
+    """
+    The local optimum near a start; `everywhere` also searches one free shape's whole range.
+    """
+
 def shapes() -> list[Shape]:
     """
     All shape parameters.

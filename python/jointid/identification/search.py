@@ -14,6 +14,7 @@ from jointid import _core
 from jointid.errors import InputError
 from jointid.estimate.findings import Convergence
 from jointid.files import write_whole
+from jointid.identification.engine import Engine, Outcome
 from jointid.identification.search_domain import SearchDomain
 
 Array = NDArray[np.float64]
@@ -21,16 +22,6 @@ Callback = Callable[[_core.Generation], bool | None]
 StatePath = str | os.PathLike[str]
 
 METHODS = ("ga", "separable", "random")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Outcome:
-    """Where a search ended, and how."""
-
-    best: Array
-    convergence: Convergence | None
-    status: str
-    message: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,31 +71,37 @@ class Search:
         KeyboardInterrupt
             Ctrl-C.
         """
+        engine = Engine.of(penalty, domain, self.threads, self.method)
         if self.method == "separable":
             found = _core.minimise_separable(
-                penalty, domain.lower, domain.upper, threads=self.threads
+                engine.form, domain.lower, domain.upper, threads=self.threads
             )
             told = f"separable optimum after {found.evaluations} shapes"
-            return Outcome(best=found.best, convergence=None, status="converged", message=told)
-        if self.method == "random":
-            result = _core.minimise_random(
-                penalty,
-                domain.lower,
-                domain.upper,
-                options=self.options,
-                seed=self.seed,
-                threads=self.threads,
-                callback=self.callback,
-            )
+            best, convergence, status = found.best, None, "converged"
         else:
-            result = self._genetic(penalty, domain)
-        return self._outcome(penalty, domain, result)
+            result = (self._random if self.method == "random" else self._genetic)(engine, domain)
+            convergence = _convergence(result)
+            best, status, told = self._finished(engine, domain, result, convergence)
+        return engine.verified(
+            Outcome(best=best, convergence=convergence, status=status, message=told), domain
+        )
 
-    def _genetic(self, penalty: _core.Penalty, domain: SearchDomain) -> _core.GaResult:
+    def _random(self, engine: Engine, domain: SearchDomain) -> _core.GaResult:
+        return _core.minimise_random(
+            engine.form,
+            domain.lower,
+            domain.upper,
+            options=self.options,
+            seed=self.seed,
+            threads=self.threads,
+            callback=self.callback,
+        )
+
+    def _genetic(self, engine: Engine, domain: SearchDomain) -> _core.GaResult:
         state = None if self.resume is None else _read_state(Path(self.resume))
         try:
             result = _core.minimise_genetic(
-                penalty,
+                engine.form,
                 domain.lower,
                 domain.upper,
                 options=self.options,
@@ -124,24 +121,27 @@ class Search:
         if self.checkpoint is not None:
             write_whole(Path(self.checkpoint), state.to_bytes())
 
-    def _outcome(
-        self, penalty: _core.Penalty, domain: SearchDomain, result: _core.GaResult
-    ) -> Outcome:
-        convergence = _convergence(result)
+    def _finished(
+        self,
+        engine: Engine,
+        domain: SearchDomain,
+        result: _core.GaResult,
+        convergence: Convergence,
+    ) -> tuple[Array, str, str]:
+        """Best parameters, status and message after the polish, if there is one."""
         told = f"{convergence.generation[-1]} generations, {result.evaluations} penalties"
-        best, status = result.best, "converged"
         polish = self.options.polish and self.method == "ga"
         if result.stop == _core.Stop.observer:
-            status, told = "stopped", f"stopped by the callback after {told}"
-        elif result.stop == _core.Stop.generations and not polish:
-            status, told = "stopped", f"used up its {told} without a polish"
-        elif polish:
-            polished = _core.polish(penalty, domain.lower, domain.upper, best)
-            best = polished.best
-            told = f"{told}, then {polished.iterations} polish steps"
-            if not polished.converged:
-                status, told = "stopped", f"the polish did not settle after {told}"
-        return Outcome(best=best, convergence=convergence, status=status, message=told)
+            return result.best, "stopped", f"stopped by the callback after {told}"
+        if polish:
+            best, steps, settled = engine.polished(domain, result.best)
+            told = f"{told}, then {steps} polish steps"
+            if not settled:
+                return best, "stopped", f"the polish did not settle after {told}"
+            return best, "converged", told
+        if result.stop == _core.Stop.generations:
+            return result.best, "stopped", f"used up its {told} without a polish"
+        return result.best, "converged", told
 
 
 def _convergence(result: _core.GaResult) -> Convergence:

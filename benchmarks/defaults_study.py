@@ -1,0 +1,85 @@
+"""How few candidates suffice: seeds of 100 that reach the separable optimum, by population and generations. Markdown.
+
+Reached means a penalty within 1e-6 of the optimum's, relative. "alone" leaves out the scan over the shape's whole range
+with which the polish ends: what the genetic algorithm and the local polish do by themselves.
+"""
+
+import argparse
+
+import jointid as jid
+from jointid import _core
+from jointid.demo import data_folder
+from jointid.identification.engine import Engine
+from jointid.identification.model_terms import Request, choose_terms
+from jointid.identification.problem import Problem
+from jointid.identification.search_domain import SearchDomain, domain_for
+
+SIZES = ((10, 10), (16, 10), (20, 20), (20, 40), (24, 40), (30, 60), (40, 80), (60, 120))
+CLOSE = 1e-6
+
+
+def problem(
+    recording: jid.Recording, joint: jid.Joint | None, **model: object
+) -> tuple[_core.Penalty, SearchDomain]:
+    """The penalty and its domain as `identify` makes them."""
+    wanted: dict[str, object] = dict.fromkeys(
+        ("model", "residual", "asymmetric", "ripple", "harmonics", "load_friction")
+    )
+    request = Request(**{**wanted, "per_recording": (), **model})  # type: ignore[arg-type]
+    choice = choose_terms((recording,), joint, request)
+    whole = Problem(
+        recordings=(recording,), joint=joint, choice=choice, torque_hold=None, mask_standstill=True
+    )
+    penalty = whole.penalty(None)
+    return penalty, domain_for(penalty, joint, None, whole.peak_speed)
+
+
+def reached(
+    penalty: _core.Penalty, domain: SearchDomain, options: _core.GaOptions, seeds: int
+) -> tuple[int, int]:
+    """Seeds that reach the optimum with the whole polish, and alone."""
+    engine = Engine.of(penalty, domain, 0, "ga")
+    low, high = domain.lower, domain.upper
+    best = _core.minimise_separable(engine.form, low, high).best
+    best_penalty = _core.polish(penalty, low, high, best).penalty
+    whole = alone = 0
+    for seed in range(seeds):
+        found = _core.minimise_genetic(
+            engine.form, low, high, options=options, seed=seed, threads=1
+        )
+        polished, _, _ = engine.polished(domain, found.best)
+        near = _core.refine_separable(engine.form, low, high, found.best, everywhere=False)
+        whole += penalty(polished) <= best_penalty * (1.0 + CLOSE)
+        alone += near.penalty <= best_penalty * (1.0 + CLOSE)
+    return whole, alone
+
+
+def main(seeds: int) -> None:
+    """Print the table."""
+    excited = jid.load(data_folder() / "well_excited.csv.gz")
+    industrial = jid.load(data_folder() / "kr300_joint1.csv.gz")
+    thesis, robot = jid.thesis_joint(), jid.Joint.load(data_folder() / "kr300_joint1.toml")
+    problems = {
+        "well_excited, sensor": problem(excited, thesis),
+        "well_excited, torque": problem(excited, thesis, residual="torque"),
+        "well_excited, no joint": problem(excited, None, model="stribeck"),
+        "well_excited, two shapes": problem(excited, thesis, model="stribeck_general"),
+        "KR300": problem(industrial, robot),
+        "KR300, Stribeck (too rich)": problem(industrial, robot, model="stribeck"),
+    }
+    print("| population x generations | candidates | " + " | ".join(problems) + " |")
+    print("|---|---|" + "---|" * len(problems))
+    for population, generations in SIZES:
+        options = _core.GaOptions(population=population, generations=generations)
+        cells = [
+            "{} (alone {})".format(*reached(penalty, domain, options, seeds))
+            for penalty, domain in problems.values()
+        ]
+        candidates = population * (generations + 1)
+        print(f"| {population} x {generations} | {candidates} | " + " | ".join(cells) + " |")
+
+
+if __name__ == "__main__":
+    arguments = argparse.ArgumentParser(description=__doc__)
+    arguments.add_argument("--seeds", type=int, default=100)
+    main(arguments.parse_args().seeds)

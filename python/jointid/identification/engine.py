@@ -1,0 +1,91 @@
+"""Which form of the penalty a search works on, and the direct sum's word on its answer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.estimate.findings import Convergence
+from jointid.identification.search_domain import SearchDomain
+
+Array = NDArray[np.float64]
+
+# Beyond, the compressed penalty is not what it says: of the penalty, and of the target's square.
+_RELATIVE, _ABSOLUTE = 1e-9, 1e-13
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outcome:
+    """Where a search ended, and how."""
+
+    best: Array
+    convergence: Convergence | None
+    status: str
+    message: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Engine:
+    """The penalty to search on: compressed where that is exact, else the direct sum.
+
+    Attributes
+    ----------
+    direct : Penalty
+        The sum over all samples, which has the last word.
+    form : PenaltyFunction
+        What the search evaluates.
+    reason : str
+        Why compression failed; empty otherwise.
+    """
+
+    direct: _core.Penalty
+    form: _core.PenaltyFunction
+    reason: str
+
+    @classmethod
+    def of(cls, penalty: _core.Penalty, domain: SearchDomain, threads: int, method: str) -> Engine:
+        """Compress the penalty within the domain's shapes, if that pays and can be done to rounding."""
+        if method == "separable" and _free_shapes(penalty, domain) > 1:
+            # A few hundred sums over the samples; the table of two shapes takes thousands.
+            return cls(direct=penalty, form=penalty, reason="")
+        compressed = _core.CompressedPenalty(penalty, domain.lower, domain.upper, threads=threads)
+        if compressed.exact:
+            return cls(direct=penalty, form=compressed, reason="")
+        return cls(direct=penalty, form=penalty, reason=compressed.reason)
+
+    def polished(self, domain: SearchDomain, start: Array) -> tuple[Array, int, bool]:
+        """The local optimum near a start, the steps it took, and whether it settled."""
+        if self.form is self.direct:
+            found = _core.polish(self.direct, domain.lower, domain.upper, start)
+            return found.best, found.iterations, found.converged
+        near = _core.refine_separable(self.form, domain.lower, domain.upper, start)
+        if _free_shapes(self.direct, domain) < 2:
+            return near.best, near.evaluations, True
+        # In several shapes the compressed residuals bend too much for the last digits.
+        last = _core.polish(self.direct, domain.lower, domain.upper, near.best)
+        return last.best, near.evaluations + last.iterations, last.converged
+
+    def verified(self, outcome: Outcome, domain: SearchDomain) -> Outcome:
+        """The outcome if the direct sum agrees with it, else a polish by the direct sum that says so."""
+        if self.form is self.direct:
+            because = f", by the direct sum because {self.reason}" if self.reason else ""
+            return replace(outcome, message=outcome.message + because)
+        best, direct = outcome.best, self.direct
+        gain = 1.0
+        if direct.residual == _core.Residual.sensor:
+            gain = float(best[direct.names.index("sensor_gain")])
+        expected = direct(best)
+        size = float(direct.target @ direct.target) / gain**2
+        if abs(self.form(best) - expected) <= _RELATIVE * expected + _ABSOLUTE * size:
+            return outcome
+        found = _core.polish(direct, domain.lower, domain.upper, best)
+        told = f"{outcome.message}, and a polish by the direct sum, which did not agree"
+        return replace(outcome, best=found.best, message=told)
+
+
+def _free_shapes(penalty: _core.Penalty, domain: SearchDomain) -> int:
+    shapes = slice(penalty.coefficients, None)
+    return int(np.sum(domain.lower[shapes] < domain.upper[shapes]))
