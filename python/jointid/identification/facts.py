@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.estimate.findings import ParameterEstimate, ResidualStatistics, WindowTable
+from jointid.identification.inspection import Inspected
 from jointid.identification.problem import Problem
 from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
@@ -33,6 +34,8 @@ class Facts:
         The part of each standard error that chance explains.
     torque_level : float
         Root mean square of the drive's torque [N·m or N].
+    inspections : tuple of Inspected
+        What each recording shows by itself.
     correlations : mapping
         Of each pair of free parameters, offsets centred.
     """
@@ -48,6 +51,7 @@ class Facts:
     status: str
     message: str
     bounds_from_data: tuple[str, ...]
+    inspections: tuple[Inspected, ...]
     correlations: Mapping[tuple[str, str], float]
 
     @property

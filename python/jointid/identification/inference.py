@@ -20,6 +20,7 @@ from jointid.estimate.student import quantile
 from jointid.identification.covariance import Covariance, parameter_covariance, widened
 from jointid.identification.diagnosis import diagnose
 from jointid.identification.facts import Facts
+from jointid.identification.inspection import inspect
 from jointid.identification.problem import Problem
 from jointid.identification.search_domain import SearchDomain
 from jointid.identification.systematic import systematic_errors
@@ -91,6 +92,7 @@ def infer(
             status=status,
             message=message,
             bounds_from_data=domain.from_data,
+            inspections=tuple(inspect(run, problem.threads) for run in problem.recordings),
             correlations={
                 (domain.names[free[i]], domain.names[free[j]]): float(spread.correlation[i, j])
                 for i in range(len(free))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 import numbers
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,12 +22,14 @@ Array = NDArray[np.float64]
 
 Windows = int | float | str | _core.WindowOptions | None
 
+Made = TypeVar("Made", _core.Penalty, _core.PenaltyParts)
+
 _MOST_GAPS = 0.1  # of the intervals; beyond, the median period is not the period
 
 _HOLDS = {"zoh": _core.Hold.zero_order, "linear": _core.Hold.linear}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Problem:
     """What is identified from what; how finely it is cut into windows is left open.
 
@@ -44,6 +48,7 @@ class Problem:
     choice: TermChoice
     torque_hold: str | None
     mask_standstill: bool
+    threads: int = 0
 
     def penalty(self, windows: Windows) -> _core.Penalty:
         """The penalty over these windows: an int is their number, a float their duration [s].
@@ -53,16 +58,30 @@ class Problem:
         InputError
             Windows that cannot be cut.
         """
+        return self._cut(_core.Penalty, windows)
+
+    def parts(self, windows: Windows) -> _core.PenaltyParts:
+        """The same, summed part by part: for what needs its windows once or twice.
+
+        Raises
+        ------
+        InputError
+            Windows that cannot be cut.
+        """
+        return self._cut(_core.PenaltyParts, windows)
+
+    def _cut(self, made: type[Made], windows: Windows) -> Made:
         options = self.window_options(windows)
         try:
-            return _core.Penalty(
-                recordings=[self.in_core(recording) for recording in self.recordings],
+            return made(
+                recordings=self.in_core,
                 terms=list(self.choice.terms),
                 windows=options,
                 residual=_core.Residual[self.choice.residual],
                 mask_standstill=self.mask_standstill,
                 gear_ratio=self.choice.gear_ratio,
                 per_recording=list(self.choice.per_recording),
+                threads=self.threads,
             )
         except ValueError as error:
             raise InputError(str(error)) from error
@@ -130,8 +149,12 @@ class Problem:
             friction=friction / penalty.usable_duration,
         )
 
-    def in_core(self, recording: Recording) -> _core.Recording:
-        """The recording as the core takes it."""
+    @functools.cached_property
+    def in_core(self) -> list[_core.Recording]:
+        """The recordings as the core takes them: their arrays, not copies; each finds its mask once."""
+        return [self._in_core(recording) for recording in self.recordings]
+
+    def _in_core(self, recording: Recording) -> _core.Recording:
         hold = self.torque_hold or recording.torque_hold
         if hold is None:
             hold = (self.joint.torque_hold if self.joint is not None else None) or "linear"

@@ -63,7 +63,7 @@ def _of_sampling(problem: Problem, penalty: _core.Penalty, best: Array, jacobian
         first, last = bounds[mine, 0], bounds[mine, 1]
         accelerated[mine] = recording.velocity[last] - recording.velocity[first]
         angle[mine] = 0.5 * (recording.position[first] + recording.position[last])
-        core = problem.in_core(recording)
+        core = problem.in_core[number]
         usable = np.asarray(_core.usable_intervals(core, problem.mask_standstill), dtype=np.bool_)
         steps = np.where(usable, np.diff(output_torque(recording, problem.joint)), 0.0)
         risen = np.concatenate([[0.0], np.cumsum(steps)])
