@@ -74,6 +74,18 @@ void bind_penalty(py::module_& m) {
           py::arg("theta"),
           "Derivatives of the window residuals, shape (window_count, parameters).")
       .def(
+          "linearised",
+          [](const Penalty& p, const Eigen::VectorXd& theta) {
+            Eigen::VectorXd residual;
+            Eigen::MatrixXd jacobian;
+            {
+              const py::gil_scoped_release nogil;
+              p.residuals(theta, residual, &jacobian);
+            }
+            return py::make_tuple(residual.squaredNorm(), std::move(residual), std::move(jacobian));
+          },
+          py::arg("theta"), "Penalty, window residuals and their derivatives, in one pass.")
+      .def(
           "columns",
           [](const Penalty& p, const Eigen::VectorXd& shapes) {
             Eigen::MatrixXd columns;
@@ -81,6 +93,28 @@ void bind_penalty(py::module_& m) {
             return columns;
           },
           py::arg("shapes"), "Window integrals of all terms, shape (window_count, coefficients).")
+      .def(
+          "torque_steps",
+          [](const Penalty& p, const Recordings& recordings, bool mask_standstill) {
+            const py::gil_scoped_release nogil;
+            Eigen::VectorXd steps(p.window_count());
+            const auto& windows = p.windows();
+            const auto& run = p.recording_of();
+            for (std::size_t from = 0; from < windows.size();) {
+              std::size_t to = from;
+              while (to < windows.size() && run[to] == run[from]) ++to;
+              auto& recording = *recordings.at(static_cast<std::size_t>(run[from]));
+              const auto masked = recording.masked(mask_standstill, nullptr);
+              identify::sum_torque_steps(recording.view(), masked->usable(),
+                                         std::span(windows).subspan(from, to - from),
+                                         steps.segment(static_cast<Eigen::Index>(from),
+                                                       static_cast<Eigen::Index>(to - from)));
+              from = to;
+            }
+            return steps;
+          },
+          py::arg("recordings"), py::arg("mask_standstill"),
+          "How far the torque rises over each window's usable intervals.")
       .def_property_readonly("target", &Penalty::target, "Window integrals of the torque [N m s].")
       .def_property_readonly("names", &Penalty::names)
       .def_property_readonly("terms", &Penalty::terms, "The term of each coefficient.")

@@ -80,7 +80,8 @@ void bind_recording(py::module_& m) {
             return recording.masked(mask_standstill, pool);
           });
         }();
-        return masked->usable();
+        const auto& flags = masked->usable();
+        return py::array_t<std::uint8_t>(static_cast<py::ssize_t>(flags.size()), flags.data());
       },
       py::arg("recording"), py::arg("mask_standstill") = true,
       "One flag per sample interval: 1 where the joint moves and the recording has no gap.");

@@ -35,7 +35,7 @@ SensorLag sensor_lag(const Signal& time, const Signal& position, const Signal& v
 /// recording longer than 2^18 samples, as many are looked at, in stretches spread over all of it.
 struct TimingErrors {
   double as_stamped = 0.0;
-  double as_uniform = 0.0;
+  double as_uniform = 0.0;  ///< looked for only where the stamps are off
 };
 TimingErrors timing_errors(const Signal& time, const Signal& position, double period,
                            const base::Cancel* cancel);

@@ -1,6 +1,7 @@
 #include "diagnose/ripple.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -30,31 +31,47 @@ Sums sums_of(const identify::PenaltyParts& parts, std::size_t index, const Eigen
       part.residual() == identify::Residual::sensor ? theta[part.gain_index()] : 1.0;
   Sums sums;
   sums.circle.setZero(halves, 4);
+  constexpr std::size_t kLanes = 8;  // side by side: one turn after the other would wait for itself
+  std::array<double, kLanes> mean{};
+  std::array<double, kLanes> cosine{};
+  std::array<double, kLanes> sine{};
+  std::size_t lane = 0;
+  const auto turn = [&] {
+    std::array<double, kLanes> real = cosine;
+    std::array<double, kLanes> imaginary = sine;
+    for (int h = 0; h < halves; ++h) {
+      std::array<double, 4> sum{};
+      for (std::size_t j = 0; j < lane; ++j) {
+        sum[0] += mean[j] * real[j];
+        sum[1] += mean[j] * imaginary[j];
+        sum[2] += real[j];
+        sum[3] += imaginary[j];
+      }
+      for (int i = 0; i < 4; ++i) sums.circle(h, i) += sum[static_cast<std::size_t>(i)];
+      for (std::size_t j = 0; j < kLanes; ++j) {
+        const double turned = real[j] * cosine[j] - imaginary[j] * sine[j];
+        imaginary[j] = real[j] * sine[j] + imaginary[j] * cosine[j];
+        real[j] = turned;
+      }
+    }
+    lane = 0;
+  };
   for (std::size_t w = 0; w < part.windows().size(); ++w) {
     const auto row = static_cast<Eigen::Index>(w);
     const auto& position = parts.recording(part.recording_of()[w]).position;
     const double from = position[part.windows()[w].begin];
     const double to = position[part.windows()[w].end];
     if (!(std::fabs(to - from) * gear_ratio * 0.5 * halves < 4.0 * kPi)) continue;
-    const double mean = scale * residual[row] / part.usable_duration()[row];
     const double angle = 0.5 * gear_ratio * 0.5 * (from + to);
-    const double c = base::cos(angle);
-    const double s = base::sin(angle);
+    mean[lane] = scale * residual[row] / part.usable_duration()[row];
+    cosine[lane] = base::cos(angle);
+    sine[lane] = base::sin(angle);
     ++sums.windows;
-    sums.residual += mean;
-    sums.square += mean * mean;
-    double real = 1.0;
-    double imaginary = 0.0;
-    for (int h = 0; h < halves; ++h) {
-      const double turned = real * c - imaginary * s;
-      imaginary = real * s + imaginary * c;
-      real = turned;
-      sums.circle(h, 0) += mean * real;
-      sums.circle(h, 1) += mean * imaginary;
-      sums.circle(h, 2) += real;
-      sums.circle(h, 3) += imaginary;
-    }
+    sums.residual += mean[lane];
+    sums.square += mean[lane] * mean[lane];
+    if (++lane == kLanes) turn();
   }
+  turn();
   return sums;
 }
 

@@ -43,6 +43,14 @@ double median(const std::vector<double>& values) {
   });
 }
 
+bool median_exceeds(const std::vector<double>& values, double limit) {
+  const auto above = static_cast<std::size_t>(
+      std::count_if(values.begin(), values.end(), [limit](double value) { return value > limit; }));
+  const std::size_t below = values.size() - above;
+  if (below <= (values.size() - 1) / 2) return true;
+  return below <= values.size() / 2 && median(values) > limit;
+}
+
 }  // namespace
 
 TimingErrors timing_errors(const Signal& time, const Signal& position, double period,
@@ -105,12 +113,13 @@ TimingErrors timing_errors(const Signal& time, const Signal& position, double pe
     }
     if (fast.size() < kFewest) return 0.0;
     const double error = kNormal * median(of_time) / std::sqrt(kThird);
+    // Two of four medians need only be held against a limit, which counting does.
+    if (!median_exceeds(speeds, smallest / error)) return 0.0;
     const double floor = slow.size() > kFewest ? median(slow) : 0.0;
-    const bool seen = error * median(speeds) > smallest;
-    const bool grows = median(fast) > 3.0 * floor;
-    return seen && grows ? error : 0.0;
+    return median_exceeds(fast, 3.0 * floor) ? error : 0.0;
   };
-  return {error_of(1.0), error_of(0.0)};
+  const double stamped = error_of(1.0);
+  return {stamped, stamped > 0.0 ? error_of(0.0) : 0.0};
 }
 
 }  // namespace jointid::diagnose

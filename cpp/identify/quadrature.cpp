@@ -169,6 +169,11 @@ void integrate_torque(const RecordingView& r, const std::vector<std::uint8_t>& u
   }
 }
 
+void sum_torque_steps(const RecordingView& r, const std::vector<std::uint8_t>& usable,
+                      std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
+  sum_changes(r.torque, usable, windows, result);
+}
+
 void append_nodes(const RecordingView& r, const std::vector<std::uint8_t>& usable,
                   std::span<const Window> windows, FrictionNodes& nodes) {
   std::vector<double> speeds;
@@ -262,7 +267,11 @@ void sum_nodes(const FrictionNodes& nodes, const base::Cancel* cancel,
 void integrate_friction(const Term& term, const FrictionNodes& nodes, const double* shapes,
                         int which, const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) {
   using model::SpeedBasis;
-  if (which != kValue) {
+  if (which != kValue && term.basis == SpeedBasis::stribeck) {  // spelt out: it must vectorise
+    const double shape = shapes[0];
+    sum_nodes(nodes, cancel, column,
+              [shape](double v) { return model::basis_slope(SpeedBasis::stribeck, v, &shape, 0); });
+  } else if (which != kValue) {
     sum_nodes(nodes, cancel, column,
               [&](double v) { return model::basis_slope(term.basis, v, shapes, which); });
   } else if (term.basis == SpeedBasis::stribeck) {  // spelt out: this loop must vectorise

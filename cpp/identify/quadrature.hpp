@@ -40,6 +40,10 @@ void integrate(const Term& term, double gear_ratio, const RecordingView& recordi
 void integrate_torque(const RecordingView& recording, const std::vector<std::uint8_t>& usable,
                       std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result);
 
+/// How far the torque rises over each window's usable intervals.
+void sum_torque_steps(const RecordingView& recording, const std::vector<std::uint8_t>& usable,
+                      std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result);
+
 /// What integrate_friction fills: the column of a friction term, or its derivative by a shape.
 constexpr int kValue = -1;
 

@@ -43,9 +43,11 @@ __all__: list[str] = [
     "models",
     "parameter_names",
     "polish",
+    "robust_variance",
     "shapes",
     "term",
     "terms",
+    "triangle",
     "usable_intervals",
 ]
 
@@ -243,11 +245,27 @@ class Penalty:
         """
         Derivatives of the window residuals, shape (window_count, parameters).
         """
+    def linearised(
+        self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> tuple[
+        float,
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    ]:
+        """
+        Penalty, window residuals and their derivatives, in one pass.
+        """
     def residuals(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
         Window residuals, length `window_count`.
+        """
+    def torque_steps(
+        self, recordings: collections.abc.Sequence[Recording], mask_standstill: bool
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        How far the torque rises over each window's usable intervals.
         """
     @property
     def coefficients(self) -> int: ...
@@ -1031,6 +1049,18 @@ def polish(
     *,
     iterations: typing.SupportsInt | typing.SupportsIndex = 200,
 ) -> PolishResult: ...
+def robust_variance(
+    jacobian: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    residual: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    weights: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    *,
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    """
+    Prewhitened Newey-West variance of weighted sums of the scores.
+    """
+
 def shapes() -> list[Shape]:
     """
     All shape parameters.
@@ -1046,7 +1076,18 @@ def terms() -> list[Term]:
     All terms, in canonical order.
     """
 
-def usable_intervals(recording: Recording, mask_standstill: bool = True) -> list[int]:
+def triangle(
+    matrix: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    *,
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    """
+    R of the QR decomposition of a tall matrix.
+    """
+
+def usable_intervals(
+    recording: Recording, mask_standstill: bool = True
+) -> numpy.typing.NDArray[numpy.uint8]:
     """
     One flag per sample interval: 1 where the joint moves and the recording has no gap.
     """

@@ -108,13 +108,22 @@ class Problem:
             return _core.WindowOptions(duration=period, cumulative=True)
         return _options(windows)
 
-    def table(self, penalty: _core.Penalty, theta: Array) -> WindowTable:
-        """The penalty's windows at a parameter vector; each for itself even if the penalty accumulates."""
+    def table(
+        self,
+        penalty: _core.Penalty,
+        theta: Array,
+        known: tuple[Array, Array] | None = None,
+    ) -> WindowTable:
+        """The penalty's windows at a parameter vector; each for itself even if the penalty accumulates.
+
+        `known` are its residuals and columns there, if somebody has them.
+        """
         if penalty.cumulative:
             apart = _core.WindowOptions(duration=penalty.window_duration)
-            penalty = self.penalty(apart)
-        residual = penalty.residuals(theta)
-        columns = penalty.columns(theta[penalty.coefficients :])
+            penalty, known = self.penalty(apart), None
+        if known is None:
+            known = penalty.residuals(theta), penalty.columns(theta[penalty.coefficients :])
+        residual, columns = known
         names = penalty.names[: penalty.coefficients]
         bounds = penalty.windows
         run = np.asarray(penalty.recording_of, dtype=np.int64)
@@ -122,7 +131,7 @@ class Problem:
         stop = np.empty(len(run))
         travel = np.empty(len(run))
         for number, recording in enumerate(self.recordings):
-            mine = run == number
+            mine = slice(*np.searchsorted(run, (number, number + 1)))
             first, last = bounds[mine, 0], bounds[mine, 1]
             start[mine], stop[mine] = recording.time[first], recording.time[last]
             travel[mine] = recording.position[last] - recording.position[first]
@@ -138,15 +147,16 @@ class Problem:
         for index, term in enumerate(penalty.terms):
             if term.friction:
                 friction += theta[index] * columns[:, index]
+        duration = np.asarray(penalty.usable_duration)
         return WindowTable(
             recording=run,
             start=start,
             stop=stop,
-            duration=np.asarray(penalty.usable_duration),
+            duration=duration,
             measured=measured,
             fitted=fitted,
             velocity=travel / (stop - start),
-            friction=friction / penalty.usable_duration,
+            friction=friction / duration,
         )
 
     @functools.cached_property
