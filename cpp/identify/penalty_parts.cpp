@@ -34,6 +34,8 @@ PenaltyParts::PenaltyParts(const Penalty::Masked& recordings, const std::vector<
   whole.columns_.setZero(0, static_cast<Eigen::Index>(whole.terms_.size()));
   whole.own_columns(per_recording, recordings.size());
   names_ = whole.parameters();
+  coefficients_ = whole.coefficients();
+  if (residual == Residual::sensor) divisor_ = whole.gain_index();
 }
 
 Penalty PenaltyParts::part(std::size_t index) const {

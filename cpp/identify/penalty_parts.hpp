@@ -24,6 +24,10 @@ class PenaltyParts {
   }
   [[nodiscard]] Eigen::Index parameters() const { return names_; }
   [[nodiscard]] std::int64_t samples() const { return frame_.total_samples(); }
+  /// Whether the residuals are not linear in this parameter: a shape, or a gain that divides them.
+  [[nodiscard]] bool bends(Eigen::Index parameter) const {
+    return parameter >= coefficients_ || parameter == divisor_;
+  }
   /// The penalty over the windows of one part.
   [[nodiscard]] Penalty part(std::size_t index) const;
   [[nodiscard]] const RecordingView& recording(int index) const {
@@ -38,6 +42,8 @@ class PenaltyParts {
   std::vector<Window> windows_;
   std::vector<int> recording_of_;
   Eigen::Index names_ = 0;
+  Eigen::Index coefficients_ = 0;
+  Eigen::Index divisor_ = -1;
   std::vector<std::size_t> first_;  ///< windows first_[i] .. first_[i + 1] - 1 are part i
 };
 

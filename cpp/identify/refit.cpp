@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kMostSteps = 60;
 constexpr double kNear = 2e-5;    // standard errors left to go
+constexpr double kEnough = 1e-3;  // of an expected miss; the last step need not be checked then
 constexpr double kFloor = 1e-13;  // damping that never disturbs, and keeps the equations solvable
 constexpr std::int64_t kKept = 1 << 20;  // samples up to which the parts are kept between steps
 
@@ -92,6 +93,17 @@ Eigen::VectorXd step_from(const Sums& sums, const search::Domain& domain,
   return step;
 }
 
+/// The largest relative change of what the residuals are not linear in.
+double bend(const PenaltyParts& parts, const Eigen::VectorXd& at, const Eigen::VectorXd& moved) {
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < at.size(); ++i) {
+    if (!parts.bends(i) || moved[i] == 0.0) continue;
+    largest = std::max(largest, std::fabs(moved[i]) /
+                                    std::max(std::fabs(at[i]), std::numeric_limits<double>::min()));
+  }
+  return largest;
+}
+
 }  // namespace
 
 Eigen::VectorXd refit(const PenaltyParts& parts, const search::Domain& domain,
@@ -108,12 +120,15 @@ Eigen::VectorXd refit(const PenaltyParts& parts, const search::Domain& domain,
     const Eigen::VectorXd step = step_from(sums, domain, best, damping);
     const Eigen::VectorXd trial = (best + step).cwiseMax(domain.lower).cwiseMin(domain.upper);
     const Eigen::VectorXd moved = trial - best;
+    const bool cut = trial != best + step;  // by a bound: what is left will move otherwise
     // In standard errors: the length in the metric of the penalty.
     const double way = std::sqrt(std::max(0.0, moved.dot(sums.square * moved)) * freedom /
                                  std::max(sums.penalty, std::numeric_limits<double>::min()));
-    // Each step is shorter by about as much as the one before was.
-    const double left = std::isfinite(before) && way < before ? way * (way / before) : way;
-    if (way < kNear || (damping == kFloor && left < 0.1 * kNear)) return trial;
+    // Each step is shorter by about as much as the one before was; the first one misses by what the
+    // residuals bend over it.
+    const double shrunk = std::isfinite(before) ? way / before : bend(parts, best, moved);
+    const double left = way * std::min(1.0, shrunk);
+    if (way < kNear || (damping == kFloor && !cut && left < 0.1 * kEnough)) return trial;
     const Sums there = windows.at(trial);
     if (there.penalty <= sums.penalty * (1.0 + 1e-12)) {
       best = trial;
