@@ -19,8 +19,9 @@ ROOMS: dict[str, set[str]] = {
     "simulate": {"base", "model"},
     "search": {"base"},
     "identify": {"base", "model", "search"},
-    "bind": {"base", "model", "simulate", "search", "identify"},
-    "tests": {"base", "model", "simulate", "search", "identify"},
+    "diagnose": {"base", "model", "identify"},
+    "bind": {"base", "model", "simulate", "search", "identify", "diagnose"},
+    "tests": {"base", "model", "simulate", "search", "identify", "diagnose"},
 }
 PRINTING = {"iostream", "cstdio", "stdio.h", "print"}
 

@@ -1,16 +1,36 @@
 #include "identify/penalty.hpp"
-#include "identify/compressed_penalty.hpp"
 
-#include "bind/bind.hpp"
+#include "bind/recording.hpp"
+#include "diagnose/ripple.hpp"
+#include "identify/compressed_penalty.hpp"
+#include "identify/refit.hpp"
 
 namespace jointid::bind {
 
 using identify::CompressedPenalty;
 using identify::Penalty;
 using identify::PenaltyFunction;
-using identify::Recording;
 using identify::Residual;
 using identify::WindowOptions;
+
+namespace {
+
+using Recordings = std::vector<std::shared_ptr<SharedRecording>>;
+
+std::int64_t samples_of(const Recordings& recordings) {
+  std::int64_t samples = 0;
+  for (const auto& recording : recordings) samples += recording->samples();
+  return samples;
+}
+
+Penalty::Masked all_masked(const Recordings& recordings, bool mask_standstill, base::Pool* pool) {
+  Penalty::Masked masked;
+  for (const auto& recording : recordings)
+    masked.push_back(recording->masked(mask_standstill, pool));
+  return masked;
+}
+
+}  // namespace
 
 void bind_penalty(py::module_& m) {
   py::native_enum<Residual>(m, "Residual", "enum.Enum",
@@ -73,16 +93,54 @@ void bind_penalty(py::module_& m) {
   py::class_<Penalty, PenaltyFunction>(
       m, "Penalty",
       "The integral penalty of recordings and terms, by the direct sum; a row is a window.")
-      .def(py::init([](std::vector<Recording> recordings, const std::vector<std::string>& terms,
+      .def(py::init([](const Recordings& recordings, const std::vector<std::string>& terms,
                        const WindowOptions& windows, Residual residual, bool mask_standstill,
-                       double gear_ratio, const std::vector<std::string>& per_recording) {
+                       double gear_ratio, const std::vector<std::string>& per_recording,
+                       int threads) {
              const py::gil_scoped_release nogil;
-             return Penalty(std::move(recordings), terms, windows, residual, mask_standstill,
-                            gear_ratio, per_recording);
+             return with_pool(samples_of(recordings), threads, [&](base::Pool* pool) {
+               const auto masked = all_masked(recordings, mask_standstill, pool);
+               return std::make_unique<Penalty>(masked, terms, windows, residual, gear_ratio,
+                                                per_recording, pool);
+             });
            }),
            py::kw_only(), py::arg("recordings"), py::arg("terms"), py::arg("windows"),
            py::arg("residual"), py::arg("mask_standstill") = true, py::arg("gear_ratio") = 1.0,
-           py::arg("per_recording") = std::vector<std::string>{})
+           py::arg("per_recording") = std::vector<std::string>{}, py::arg("threads") = 0)
+      .def(
+          "linearised",
+          [](const Penalty& p, const Eigen::VectorXd& theta) {
+            Eigen::VectorXd residual;
+            Eigen::MatrixXd jacobian;
+            {
+              const py::gil_scoped_release nogil;
+              p.residuals(theta, residual, &jacobian);
+            }
+            return py::make_tuple(residual.squaredNorm(), std::move(residual), std::move(jacobian));
+          },
+          py::arg("theta"), "Penalty, window residuals and their derivatives, in one pass.")
+      .def(
+          "torque_steps",
+          [](const Penalty& p, const Recordings& recordings, bool mask_standstill) {
+            const py::gil_scoped_release nogil;
+            Eigen::VectorXd steps(p.window_count());
+            const auto& windows = p.windows();
+            const auto& run = p.recording_of();
+            for (std::size_t from = 0; from < windows.size();) {
+              std::size_t to = from;
+              while (to < windows.size() && run[to] == run[from]) ++to;
+              auto& recording = *recordings.at(static_cast<std::size_t>(run[from]));
+              const auto masked = recording.masked(mask_standstill, nullptr);
+              identify::sum_torque_steps(recording.view(), masked->usable(),
+                                         std::span(windows).subspan(from, to - from),
+                                         steps.segment(static_cast<Eigen::Index>(from),
+                                                       static_cast<Eigen::Index>(to - from)));
+              from = to;
+            }
+            return steps;
+          },
+          py::arg("recordings"), py::arg("mask_standstill"),
+          "How far the torque rises over each window's usable intervals.")
       .def_property_readonly("terms", &Penalty::terms, "The term of each coefficient.")
       .def_property_readonly("cumulative", &Penalty::cumulative)
       .def_property_readonly("window_count", &Penalty::window_count)
@@ -129,6 +187,52 @@ void bind_penalty(py::module_& m) {
                              "Shapes at which the samples were summed.")
       .def_property_readonly("error", &CompressedPenalty::error,
                              "Largest error found between those, of the columns' squared size.");
+  using identify::PenaltyParts;
+  py::class_<PenaltyParts>(
+      m, "PenaltyParts", "A penalty that is summed part by part, for what needs it once or twice.")
+      .def(py::init([](const Recordings& recordings, const std::vector<std::string>& terms,
+                       const WindowOptions& windows, Residual residual, bool mask_standstill,
+                       double gear_ratio, const std::vector<std::string>& per_recording,
+                       int threads) {
+             const py::gil_scoped_release nogil;
+             return with_pool(samples_of(recordings), threads, [&](base::Pool* pool) {
+               return std::make_unique<PenaltyParts>(all_masked(recordings, mask_standstill, pool),
+                                                     terms, windows, residual, gear_ratio,
+                                                     per_recording);
+             });
+           }),
+           py::kw_only(), py::arg("recordings"), py::arg("terms"), py::arg("windows"),
+           py::arg("residual"), py::arg("mask_standstill") = true, py::arg("gear_ratio") = 1.0,
+           py::arg("per_recording") = std::vector<std::string>{}, py::arg("threads") = 0)
+      .def_property_readonly("window_count", &PenaltyParts::window_count)
+      .def(
+          "refit",
+          [](const PenaltyParts& parts, Eigen::VectorXd lower, Eigen::VectorXd upper,
+             const Eigen::VectorXd& start, int threads) {
+            const search::Domain domain{std::move(lower), std::move(upper)};
+            const py::gil_scoped_release nogil;
+            return with_pool(parts.samples(), threads, [&](base::Pool* pool) {
+              return identify::refit(parts, domain, start, pool);
+            });
+          },
+          py::arg("lower"), py::arg("upper"), py::arg("start"), py::kw_only(),
+          py::arg("threads") = 0, "The minimum within bounds near a start.")
+      .def(
+          "ripple",
+          [](const PenaltyParts& parts, const Eigen::VectorXd& theta, double gear_ratio, int halves,
+             int threads) {
+            const auto spectrum = [&] {
+              const py::gil_scoped_release nogil;
+              return with_pool(parts.samples(), threads, [&](base::Pool* pool) {
+                return diagnose::ripple_spectrum(parts, theta, gear_ratio, halves, pool);
+              });
+            }();
+            return py::make_tuple(spectrum.windows, spectrum.power, spectrum.multiple);
+          },
+          py::arg("theta"), py::kw_only(), py::arg("gear_ratio"), py::arg("halves"),
+          py::arg("threads") = 0,
+          "Number of windows, sum of squared mean residuals, and the magnitude of their sum over "
+          "each half multiple of the motor's angle.");
 }
 
 }  // namespace jointid::bind

@@ -1,37 +1,87 @@
-#include "identify/recording.hpp"
+#include "bind/recording.hpp"
 
-#include "bind/bind.hpp"
+#include <stdexcept>
+
 #include "identify/windows.hpp"
 
 namespace jointid::bind {
 
 using identify::Hold;
-using identify::Recording;
+using identify::MaskedRecording;
+using identify::RecordingView;
 using identify::WindowOptions;
+
+namespace {
+
+RecordingView::Signal signal(const SharedRecording::Array& array) {
+  if (array.ndim() != 1) throw std::invalid_argument("a signal must have one dimension");
+  return {array.data(), static_cast<Eigen::Index>(array.size())};
+}
+
+RecordingView view_of(const std::vector<SharedRecording::Array>& s, Hold hold,
+                      std::vector<std::int64_t> gaps) {
+  const RecordingView::Signal none(nullptr, 0);
+  return {
+      signal(s[0]), signal(s[1]),   signal(s[2]), signal(s[3]), s.size() > 4 ? signal(s[4]) : none,
+      hold,         std::move(gaps)};
+}
+
+}  // namespace
+
+SharedRecording::SharedRecording(std::vector<Array> signals, Hold hold,
+                                 std::vector<std::int64_t> gaps)
+    : signals_(std::move(signals)), view_(view_of(signals_, hold, std::move(gaps))) {
+  view_.validate();
+}
+
+std::shared_ptr<const MaskedRecording> SharedRecording::masked(bool mask_standstill,
+                                                               base::Pool* pool) {
+  const std::lock_guard lock(mutex_);
+  auto& known = masked_[mask_standstill ? 1 : 0];
+  if (known != nullptr) return known;
+  const auto find = [&](const base::Cancel* cancel) {
+    known = std::make_shared<const MaskedRecording>(
+        view_, identify::usable_intervals(view_, mask_standstill, cancel), cancel);
+  };
+  if (pool == nullptr) {
+    find(nullptr);
+  } else {
+    pool->for_each(1, [&](std::size_t, std::size_t) { find(&pool->cancel()); });
+  }
+  return known;
+}
 
 void bind_recording(py::module_& m) {
   py::native_enum<Hold>(m, "Hold", "enum.Enum", "How the torque signal lives between samples.")
       .value("zero_order", Hold::zero_order)
       .value("linear", Hold::linear)
       .finalize();
-  py::class_<Recording>(m, "Recording", "Signals of one run, as the core keeps them (copied in).")
-      .def(py::init([](Eigen::VectorXd time, Eigen::VectorXd position, Eigen::VectorXd velocity,
-                       Eigen::VectorXd torque, std::optional<Eigen::VectorXd> sensor,
-                       Hold torque_hold, std::vector<std::int64_t> gap_after) {
-             Recording recording{
-                 std::move(time), std::move(position), std::move(velocity), std::move(torque), {},
-                 torque_hold,     std::move(gap_after)};
-             if (sensor) recording.sensor = std::move(*sensor);
-             recording.validate();
-             return recording;
+  using Array = SharedRecording::Array;
+  py::class_<SharedRecording, std::shared_ptr<SharedRecording>>(
+      m, "Recording", "Signals of one run; arrays of floats are kept, not copied.")
+      .def(py::init([](Array time, Array position, Array velocity, Array torque,
+                       std::optional<Array> sensor, Hold torque_hold,
+                       std::vector<std::int64_t> gap_after) {
+             std::vector<Array> signals{std::move(time), std::move(position), std::move(velocity),
+                                        std::move(torque)};
+             if (sensor) signals.push_back(std::move(*sensor));
+             return std::make_shared<SharedRecording>(std::move(signals), torque_hold,
+                                                      std::move(gap_after));
            }),
            py::kw_only(), py::arg("time"), py::arg("position"), py::arg("velocity"),
            py::arg("torque"), py::arg("sensor"), py::arg("torque_hold"), py::arg("gap_after"))
-      .def_property_readonly("samples", &Recording::samples);
+      .def_property_readonly("samples", &SharedRecording::samples);
   m.def(
       "usable_intervals",
-      [](const Recording& recording, bool mask_standstill) {
-        return identify::usable_intervals(recording, mask_standstill).usable;
+      [](SharedRecording& recording, bool mask_standstill) {
+        const auto masked = [&] {
+          const py::gil_scoped_release nogil;
+          return with_pool(recording.samples(), 1, [&](base::Pool* pool) {
+            return recording.masked(mask_standstill, pool);
+          });
+        }();
+        const auto& flags = masked->usable();
+        return py::array_t<std::uint8_t>(static_cast<py::ssize_t>(flags.size()), flags.data());
       },
       py::arg("recording"), py::arg("mask_standstill") = true,
       "One flag per sample interval: 1 where the joint moves and the recording has no gap.");

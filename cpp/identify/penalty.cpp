@@ -28,42 +28,76 @@ void Penalty::add_term(const std::string& key) {
   terms_.push_back(term);
 }
 
+namespace {
+
+std::vector<std::shared_ptr<const MaskedRecording>> masked(const std::vector<Recording>& recordings,
+                                                           bool mask_standstill) {
+  std::vector<std::shared_ptr<const MaskedRecording>> result;
+  for (const auto& recording : recordings) {
+    recording.validate();
+    result.push_back(std::make_shared<const MaskedRecording>(
+        recording, usable_intervals(recording, mask_standstill)));
+  }
+  return result;
+}
+
+}  // namespace
+
 Penalty::Penalty(std::vector<Recording> recordings, const std::vector<std::string>& terms,
                  const WindowOptions& options, Residual residual, bool mask_standstill,
                  double gear_ratio, const std::vector<std::string>& per_recording)
-    : cumulative_(options.cumulative), residual_(residual) {
+    : Penalty(masked(recordings, mask_standstill), terms, options, residual, gear_ratio,
+              per_recording) {}
+
+Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms, Residual residual,
+                 double gear_ratio)
+    : residual_(residual) {
   if (recordings.empty()) throw std::invalid_argument("a penalty needs at least one recording");
   if (terms.empty()) throw std::invalid_argument("a penalty needs at least one term");
   if (!std::isfinite(gear_ratio) || gear_ratio == 0.0) {
     throw std::invalid_argument("gear_ratio must be finite and not 0");
   }
-  options.validate();
   for (const auto& key : terms) add_term(key);
   if (residual == Residual::sensor && gain_index_ < 0) {
     throw std::invalid_argument("residual 'sensor' needs the term sensor_gain");
   }
-
-  std::vector<UsableIntervals> usable;
   for (const auto& recording : recordings) {
-    recording.validate();
-    if (gain_index_ >= 0 && !recording.has_sensor()) {
+    if (gain_index_ >= 0 && !recording->recording().has_sensor()) {
       throw std::invalid_argument("the term sensor_gain needs a recording with a sensor signal");
     }
-    usable.push_back(usable_intervals(recording, mask_standstill));
-    standing_ += usable.back().standing;
-    total_ += recording.samples();
-    unusable_ +=
-        std::count(usable.back().usable.begin(), usable.back().usable.end(), std::uint8_t{0});
+    standing_ += recording->standing();
+    total_ += recording->recording().samples();
+    unusable_ += recording->unusable_count();
   }
-  WindowOptions wanted = options;
-  if (options.count > 0) wanted.duration = duration_for(recordings, options.count);
-  std::vector<std::vector<Window>> cut;
+}
+
+Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms,
+                 const WindowOptions& options, Residual residual, double gear_ratio,
+                 const std::vector<std::string>& per_recording, base::Pool* pool)
+    : Penalty(recordings, terms, residual, gear_ratio) {
+  options.validate();
+  cumulative_ = options.cumulative;
+  cut(recordings, options);
+  integrate_all(recordings, gear_ratio, pool);
+  own_columns(per_recording, recordings.size());
+  if (cumulative_) {
+    accumulate(target_);
+    for (Eigen::Index j = 0; j < columns_.cols(); ++j) accumulate(columns_.col(j));
+  }
+}
+
+void Penalty::cut(const Masked& recordings, WindowOptions wanted) {
+  if (wanted.count > 0) {
+    std::vector<RecordingView> views;
+    for (const auto& recording : recordings) views.push_back(recording->recording());
+    wanted.duration = duration_for(views, wanted.count);
+  }
   std::vector<double> lengths;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
-    const auto& time = recordings[i].time;
+    const auto& time = recordings[i]->recording().time;
     // Each recording by its own noise and rate: a coarse one must not lengthen the windows of a
     // fine one.
-    const auto choice = choose_window(recordings[i], usable[i].usable, parameters(), wanted);
+    const auto choice = choose_window(*recordings[i], parameters(), wanted);
     const double length = time[time.size() - 1] - time[0];
     if (choice.duration > length) {
       throw std::invalid_argument("windows: duration " + std::to_string(choice.duration) +
@@ -72,10 +106,11 @@ Penalty::Penalty(std::vector<Recording> recordings, const std::vector<std::strin
     }
     choice_.noise_share = std::max(choice_.noise_share, choice.noise_share);
     choice_.noise_limited = choice_.noise_limited || choice.noise_limited;
-    cut.push_back(cut_windows(recordings[i], usable[i].usable, choice.duration));
-    windows_.insert(windows_.end(), cut.back().begin(), cut.back().end());
-    recording_of_.insert(recording_of_.end(), cut.back().size(), static_cast<int>(i));
-    for (const auto& window : cut.back()) lengths.push_back(time[window.end] - time[window.begin]);
+    const auto windows =
+        cut_windows(recordings[i]->recording(), recordings[i]->usable(), choice.duration);
+    windows_.insert(windows_.end(), windows.begin(), windows.end());
+    recording_of_.insert(recording_of_.end(), windows.size(), static_cast<int>(i));
+    for (const auto& window : windows) lengths.push_back(time[window.end] - time[window.begin]);
   }
   if (!lengths.empty()) {
     const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
@@ -91,32 +126,86 @@ Penalty::Penalty(std::vector<Recording> recordings, const std::vector<std::strin
         "windows: " + std::to_string(rows) + " windows with motion cannot determine " +
         std::to_string(parameters()) + " parameters; use more or shorter windows");
   }
+}
+
+void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::Pool* pool) {
+  const auto rows = static_cast<Eigen::Index>(windows_.size());
   columns_.setZero(rows, static_cast<Eigen::Index>(terms_.size()));
   target_.resize(rows);
   usable_duration_.resize(rows);
-  Eigen::Index row = 0;
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    const auto count = static_cast<Eigen::Index>(cut[i].size());
-    integrate_torque(recordings[i], usable[i].usable, cut[i], target_.segment(row, count));
-    integrate(find_term("torque_offset"), gear_ratio, recordings[i], usable[i].usable, cut[i],
-              usable_duration_.segment(row, count));
+  struct Block {  // windows of one recording
+    std::size_t begin;
+    std::size_t end;
+  };
+  constexpr std::size_t kWindows = 4096;
+  std::vector<Block> blocks;
+  for (std::size_t w = 0; w < windows_.size();) {
+    std::size_t end = w;
+    while (end < windows_.size() && end - w < kWindows && recording_of_[end] == recording_of_[w])
+      ++end;
+    blocks.push_back({w, end});
+    w = end;
+  }
+  const Term duration = find_term("torque_offset");
+  const base::Cancel* cancel = pool != nullptr ? &pool->cancel() : nullptr;
+  const auto linear = [&](const Block& block) {
+    if (cancel != nullptr) cancel->check();
+    const auto& masked = *recordings[static_cast<std::size_t>(recording_of_[block.begin])];
+    const auto& r = masked.recording();
+    const auto windows = std::span(windows_).subspan(block.begin, block.end - block.begin);
+    const auto first = static_cast<Eigen::Index>(block.begin);
+    const auto count = static_cast<Eigen::Index>(windows.size());
+    integrate_torque(r, masked.usable(), windows, target_.segment(first, count));
+    integrate(duration, gear_ratio, r, masked.usable(), windows,
+              usable_duration_.segment(first, count));
     for (std::size_t j = 0; j < terms_.size(); ++j) {
       if (!terms_[j].shapes.empty()) continue;
-      integrate(terms_[j], gear_ratio, recordings[i], usable[i].usable, cut[i],
-                columns_.col(static_cast<Eigen::Index>(j)).segment(row, count));
+      integrate(terms_[j], gear_ratio, r, masked.usable(), windows,
+                columns_.col(static_cast<Eigen::Index>(j)).segment(first, count));
     }
-    if (!shaped_.empty()) append_nodes(recordings[i], usable[i].usable, cut[i], nodes_[0]);
-    row += count;
+  };
+  if (pool == nullptr) {
+    for (const auto& block : blocks) linear(block);
+    collect_nodes(recordings, cancel);
+  } else {  // the nodes are one task, the longest: it goes first
+    pool->for_each(blocks.size() + 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (i == 0) {
+          collect_nodes(recordings, cancel);
+        } else {
+          linear(blocks[i - 1]);
+        }
+      }
+    });
   }
+}
+
+void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel) {
+  if (shaped_.empty()) return;
+  auto& all = nodes_[0];
+  std::size_t samples = windows_.size();
+  for (const auto& window : windows_)
+    samples += static_cast<std::size_t>(window.end - window.begin);
+  all.speed.reserve(samples + samples / 64 + 64);
+  all.weight.reserve(samples + samples / 64 + 64);
+  all.first.reserve(windows_.size() + 1);
+  constexpr std::size_t kWindows = 4096;  // between two looks at the cancel flag
+  for (std::size_t w = 0; w < windows_.size();) {
+    if (cancel != nullptr) cancel->check();
+    std::size_t end = w;
+    while (end < windows_.size() && end - w < kWindows && recording_of_[end] == recording_of_[w])
+      ++end;
+    const auto& masked = *recordings[static_cast<std::size_t>(recording_of_[w])];
+    append_nodes(masked.recording(), masked.usable(), std::span(windows_).subspan(w, end - w), all);
+    w = end;
+  }
+  bool both = false;
   for (const auto& shaped : shaped_) {
     auto& nodes = nodes_[static_cast<std::size_t>(shaped.term.direction)];
     if (nodes.first.size() == 1) nodes = nodes_of(shaped.term.direction, nodes_[0]);
+    both = both || shaped.term.direction == model::Direction::both;
   }
-  own_columns(per_recording, recordings.size());
-  if (cumulative_) {
-    accumulate(target_);
-    for (Eigen::Index j = 0; j < columns_.cols(); ++j) accumulate(columns_.col(j));
-  }
+  if (!both) nodes_[0] = {};
 }
 
 void Penalty::own_columns(const std::vector<std::string>& per_recording, std::size_t recordings) {

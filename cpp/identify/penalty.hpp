@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,15 @@ namespace jointid::identify {
 /// With cumulative windows r is the running sum of the windows' residuals, within each recording.
 class Penalty final : public PenaltyFunction {
  public:
+  using Masked = std::vector<std::shared_ptr<const MaskedRecording>>;
   Penalty(std::vector<Recording> recordings, const std::vector<std::string>& terms,
           const WindowOptions& windows, Residual residual, bool mask_standstill,
           double gear_ratio = 1.0, const std::vector<std::string>& per_recording = {});
+  /// The same from recordings whose mask is known; they are not kept. With a pool its workers
+  /// integrate.
+  Penalty(const Masked& recordings, const std::vector<std::string>& terms,
+          const WindowOptions& windows, Residual residual, double gear_ratio = 1.0,
+          const std::vector<std::string>& per_recording = {}, base::Pool* pool = nullptr);
 
   /// A term whose column depends on shapes.
   struct Shaped {
@@ -73,6 +80,12 @@ class Penalty final : public PenaltyFunction {
 
  private:
   void add_term(const std::string& key);
+  friend class PenaltyParts;
+  Penalty(const Masked& recordings, const std::vector<std::string>& terms, Residual residual,
+          double gear_ratio);  ///< terms only; no windows yet
+  void cut(const Masked& recordings, WindowOptions options);
+  void integrate_all(const Masked& recordings, double gear_ratio, base::Pool* pool);
+  void collect_nodes(const Masked& recordings, const base::Cancel* cancel);
   void own_columns(const std::vector<std::string>& per_recording, std::size_t recordings);
   /// A shaped term's column, or its derivative by the term's shape number `which`.
   void shaped_column(const Shaped& shaped, const double* shapes, int which,

@@ -10,23 +10,62 @@ namespace {
 
 constexpr std::size_t kBlock = 2048;  // nodes: two buffers stay in the first-level cache
 
+/// Whether every interval of a window is usable.
+bool whole(const std::vector<std::uint8_t>& usable, const Window& window) {
+  std::uint8_t all = 1;
+  for (auto k = window.begin; k < window.end; ++k) all &= usable[static_cast<std::size_t>(k)];
+  return all != 0;
+}
+
 /// Sum over a window's usable intervals of value(k), k the interval k -> k+1.
 template <class Value>
-void sum_intervals(const std::vector<std::uint8_t>& usable, const std::vector<Window>& windows,
+void sum_intervals(const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
                    Eigen::Ref<Eigen::VectorXd> result, Value value) {
   for (std::size_t w = 0; w < windows.size(); ++w) {
     double sum = 0.0;
-    for (auto k = windows[w].begin; k < windows[w].end; ++k) {
-      if (usable[static_cast<std::size_t>(k)] != 0) sum += value(k);
+    if (whole(usable, windows[w])) {
+      for (auto k = windows[w].begin; k < windows[w].end; ++k) sum += value(k);
+    } else {
+      for (auto k = windows[w].begin; k < windows[w].end; ++k) {
+        if (usable[static_cast<std::size_t>(k)] != 0) sum += value(k);
+      }
     }
     result[static_cast<Eigen::Index>(w)] = sum;
   }
 }
 
+/// The change of a signal over each window's usable intervals.
+void sum_changes(const RecordingView::Signal& signal, const std::vector<std::uint8_t>& usable,
+                 std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    const auto [begin, end] = windows[w];
+    double sum = 0.0;
+    if (whole(usable, windows[w])) {
+      sum = signal[end] - signal[begin];
+    } else {
+      for (auto k = begin; k < end; ++k) {
+        if (usable[static_cast<std::size_t>(k)] != 0) sum += signal[k + 1] - signal[k];
+      }
+    }
+    result[static_cast<Eigen::Index>(w)] = sum;
+  }
+}
+
+/// 1 or -1 if all velocities of a window have that sign, else 0.
+double common_sign(const RecordingView::Signal& velocity, const Window& window) {
+  Eigen::Index positive = 0;
+  Eigen::Index negative = 0;
+  for (auto k = window.begin; k <= window.end; ++k) {
+    positive += velocity[k] > 0.0 ? 1 : 0;
+    negative += velocity[k] < 0.0 ? 1 : 0;
+  }
+  const Eigen::Index all = window.end - window.begin + 1;
+  return positive == all ? 1.0 : (negative == all ? -1.0 : 0.0);
+}
+
 template <class Sample>
-void trapezoid(const Recording& r, const std::vector<std::uint8_t>& usable,
-               const std::vector<Window>& windows, Eigen::Ref<Eigen::VectorXd> result,
-               Sample sample) {
+void trapezoid(const RecordingView& r, const std::vector<std::uint8_t>& usable,
+               std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result, Sample sample) {
   sum_intervals(usable, windows, result, [&](Eigen::Index k) {
     return 0.5 * (sample(k) + sample(k + 1)) * (r.time[k + 1] - r.time[k]);
   });
@@ -48,24 +87,42 @@ Shares shares(double v0, double v1) {
   return {sign(v0) * before, sign(v1) * (1.0 - before)};
 }
 
+/// Coulomb friction of windows none of which is cut or holds a reversal: the time it acts, signed.
+/// False where that is not so.
+bool steady(const Term& term, const RecordingView& r, const std::vector<std::uint8_t>& usable,
+            std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    const double direction = common_sign(r.velocity, windows[w]);
+    if (direction == 0.0 || !whole(usable, windows[w])) return false;
+    const bool acts = term.direction == model::Direction::both ||
+                      (term.direction == model::Direction::positive) == (direction > 0.0);
+    const double time = r.time[windows[w].end] - r.time[windows[w].begin];
+    result[static_cast<Eigen::Index>(w)] = acts ? direction * time : 0.0;
+  }
+  return true;
+}
+
 }  // namespace
 
-void integrate(const Term& term, double gear_ratio, const Recording& r,
-               const std::vector<std::uint8_t>& usable, const std::vector<Window>& windows,
+void FrictionNodes::clear() {
+  speed.clear();
+  weight.clear();
+  first.assign(1, 0);
+}
+
+void integrate(const Term& term, double gear_ratio, const RecordingView& r,
+               const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
                Eigen::Ref<Eigen::VectorXd> result) {
   const double frequency = term.order * (term.harmonic == Harmonic::motor ? gear_ratio : 1.0);
   switch (term.integral) {
     case Integral::velocity_change:
-      sum_intervals(usable, windows, result,
-                    [&](Eigen::Index k) { return r.velocity[k + 1] - r.velocity[k]; });
+      sum_changes(r.velocity, usable, windows, result);
       return;
     case Integral::displacement:
-      sum_intervals(usable, windows, result,
-                    [&](Eigen::Index k) { return r.position[k + 1] - r.position[k]; });
+      sum_changes(r.position, usable, windows, result);
       return;
     case Integral::duration:
-      sum_intervals(usable, windows, result,
-                    [&](Eigen::Index k) { return r.time[k + 1] - r.time[k]; });
+      sum_changes(r.time, usable, windows, result);
       return;
     case Integral::cosine:
       trapezoid(r, usable, windows, result,
@@ -88,14 +145,22 @@ void integrate(const Term& term, double gear_ratio, const Recording& r,
     case Integral::friction:
       break;
   }
-  FrictionNodes all;
-  append_nodes(r, usable, windows, all);
-  const FrictionNodes nodes = nodes_of(term.direction, all);
-  integrate_friction(term, nodes, nullptr, kValue, nullptr, result);
+  // A few windows at a time: their nodes stay in the cache.
+  constexpr std::size_t kWindows = 64;
+  FrictionNodes nodes;
+  for (std::size_t w = 0; w < windows.size(); w += kWindows) {
+    const auto part = windows.subspan(w, std::min(kWindows, windows.size() - w));
+    const auto rows =
+        result.segment(static_cast<Eigen::Index>(w), static_cast<Eigen::Index>(part.size()));
+    if (term.basis == model::SpeedBasis::one && steady(term, r, usable, part, rows)) continue;
+    nodes.clear();
+    append_nodes(r, usable, part, nodes);
+    integrate_friction(term, nodes_of(term.direction, nodes), nullptr, kValue, nullptr, rows);
+  }
 }
 
-void integrate_torque(const Recording& r, const std::vector<std::uint8_t>& usable,
-                      const std::vector<Window>& windows, Eigen::Ref<Eigen::VectorXd> result) {
+void integrate_torque(const RecordingView& r, const std::vector<std::uint8_t>& usable,
+                      std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
   if (r.torque_hold == Hold::linear) {
     trapezoid(r, usable, windows, result, [&](Eigen::Index k) { return r.torque[k]; });
   } else {
@@ -104,9 +169,36 @@ void integrate_torque(const Recording& r, const std::vector<std::uint8_t>& usabl
   }
 }
 
-void append_nodes(const Recording& r, const std::vector<std::uint8_t>& usable,
-                  const std::vector<Window>& windows, FrictionNodes& nodes) {
+void sum_torque_steps(const RecordingView& r, const std::vector<std::uint8_t>& usable,
+                      std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
+  sum_changes(r.torque, usable, windows, result);
+}
+
+void append_nodes(const RecordingView& r, const std::vector<std::uint8_t>& usable,
+                  std::span<const Window> windows, FrictionNodes& nodes) {
+  std::vector<double> speeds;
+  std::vector<double> weights;
   for (const auto& window : windows) {
+    const double direction = common_sign(r.velocity, window);
+    if (direction != 0.0 && whole(usable, window)) {  // the same without a question a sample
+      const auto count = static_cast<std::size_t>(window.end - window.begin);
+      speeds.resize(count + 1);
+      weights.resize(count + 1);
+      double left = 0.0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto k = window.begin + static_cast<Eigen::Index>(i);
+        const double half = 0.5 * (r.time[k + 1] - r.time[k]) * direction;
+        speeds[i] = std::fabs(r.velocity[k]);
+        weights[i] = left + half;
+        left = half;
+      }
+      speeds[count] = std::fabs(r.velocity[window.end]);
+      weights[count] = left;
+      nodes.speed.insert(nodes.speed.end(), speeds.begin(), speeds.end());
+      nodes.weight.insert(nodes.weight.end(), weights.begin(), weights.end());
+      nodes.first.push_back(nodes.speed.size());
+      continue;
+    }
     double carried = 0.0;  // weight that the previous interval left on this interval's first sample
     const auto push = [&](double speed, double weight) {
       if (weight == 0.0) return;
@@ -175,7 +267,11 @@ void sum_nodes(const FrictionNodes& nodes, const base::Cancel* cancel,
 void integrate_friction(const Term& term, const FrictionNodes& nodes, const double* shapes,
                         int which, const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) {
   using model::SpeedBasis;
-  if (which != kValue) {
+  if (which != kValue && term.basis == SpeedBasis::stribeck) {  // spelt out: it must vectorise
+    const double shape = shapes[0];
+    sum_nodes(nodes, cancel, column,
+              [shape](double v) { return model::basis_slope(SpeedBasis::stribeck, v, &shape, 0); });
+  } else if (which != kValue) {
     sum_nodes(nodes, cancel, column,
               [&](double v) { return model::basis_slope(term.basis, v, shapes, which); });
   } else if (term.basis == SpeedBasis::stribeck) {  // spelt out: this loop must vectorise

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "base/cancel.hpp"
@@ -21,22 +22,27 @@ struct FrictionNodes {
   std::vector<double> speed;
   std::vector<double> weight;
   std::vector<std::size_t> first{0};
+  void clear();
 };
 
 /// Appends the nodes of a recording's windows.
-void append_nodes(const Recording& recording, const std::vector<std::uint8_t>& usable,
-                  const std::vector<Window>& windows, FrictionNodes& nodes);
+void append_nodes(const RecordingView& recording, const std::vector<std::uint8_t>& usable,
+                  std::span<const Window> windows, FrictionNodes& nodes);
 
 /// The nodes at which the joint moves in one direction.
 FrictionNodes nodes_of(model::Direction direction, const FrictionNodes& nodes);
 
 /// One integral a window, for every term without a shape and for the torque. A harmonic of the
 /// motor counts turns in front of the gear.
-void integrate(const Term& term, double gear_ratio, const Recording& recording,
-               const std::vector<std::uint8_t>& usable, const std::vector<Window>& windows,
+void integrate(const Term& term, double gear_ratio, const RecordingView& recording,
+               const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
                Eigen::Ref<Eigen::VectorXd> result);
-void integrate_torque(const Recording& recording, const std::vector<std::uint8_t>& usable,
-                      const std::vector<Window>& windows, Eigen::Ref<Eigen::VectorXd> result);
+void integrate_torque(const RecordingView& recording, const std::vector<std::uint8_t>& usable,
+                      std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result);
+
+/// How far the torque rises over each window's usable intervals.
+void sum_torque_steps(const RecordingView& recording, const std::vector<std::uint8_t>& usable,
+                      std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result);
 
 /// What integrate_friction fills: the column of a friction term, or its derivative by a shape.
 constexpr int kValue = -1;

@@ -1,6 +1,7 @@
 #include "identify/recording.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -18,11 +19,17 @@ constexpr double kStandingOfPeriod =
 constexpr double kResolved =
     0.005;  // of the peak speed: a motion slower than this per quantum looks stuck
 
-void check_signal(const Eigen::VectorXd& signal, const char* name, Eigen::Index samples) {
+void check_signal(const RecordingView::Signal& signal, const char* name, Eigen::Index samples) {
   if (signal.size() != samples) {
     throw std::invalid_argument(std::string(name) + " has " + std::to_string(signal.size()) +
                                 " samples, time has " + std::to_string(samples));
   }
+  constexpr std::uint64_t kExponent = 0x7ff0000000000000ULL;  // all ones: infinite, or no number
+  std::uint64_t bad = 0;
+  for (Eigen::Index k = 0; k < samples; ++k) {
+    bad |= (std::bit_cast<std::uint64_t>(signal[k]) & kExponent) == kExponent ? 1U : 0U;
+  }
+  if (bad == 0) return;
   for (Eigen::Index k = 0; k < samples; ++k) {
     if (!std::isfinite(signal[k])) {
       throw std::invalid_argument(std::string(name) + " is not finite at sample " +
@@ -31,11 +38,12 @@ void check_signal(const Eigen::VectorXd& signal, const char* name, Eigen::Index 
   }
 }
 
-double smallest_positive(const Eigen::VectorXd& signal, bool differences) {
+template <class Value>
+double smallest_positive(Eigen::Index from, Eigen::Index to, Value value) {
   double smallest = std::numeric_limits<double>::infinity();
-  for (Eigen::Index k = 1; k < signal.size(); ++k) {
-    const double step = std::fabs(differences ? signal[k] - signal[k - 1] : signal[k]);
-    if (step > 0.0 && step < smallest) smallest = step;
+  for (Eigen::Index k = from; k < to; ++k) {
+    const double size = std::fabs(value(k));
+    smallest = size > 0.0 && size < smallest ? size : smallest;
   }
   return smallest;
 }
@@ -59,22 +67,29 @@ void mark_runs(Eigen::Index count, std::vector<std::uint8_t>& mark, Same same,
   }
 }
 
-void mark_sticking(const Recording& r, double peak, const std::vector<std::uint8_t>& after_gap,
+void mark_sticking(const RecordingView& r, double peak, const std::vector<std::uint8_t>& after_gap,
                    std::vector<std::uint8_t>& standing) {
-  const double quantum = smallest_positive(r.position, true);
+  const double quantum = smallest_positive(
+      1, r.samples(), [&](Eigen::Index k) { return r.position[k] - r.position[k - 1]; });
+  bool any = false;
   const auto unchanged = [&](Eigen::Index k) {  // the interval k-1 -> k, told by its end
     return k > 0 && after_gap[static_cast<std::size_t>(k)] == 0 &&
            r.position[k] == r.position[k - 1];
   };
   mark_runs(r.samples(), standing, unchanged, [&](Eigen::Index first, Eigen::Index last) {
-    return last - first >= 2 && r.time[last] - r.time[first - 1] >= quantum / (kResolved * peak);
+    const bool stuck =
+        last - first >= 2 && r.time[last] - r.time[first - 1] >= quantum / (kResolved * peak);
+    any = any || stuck;
+    return stuck;
   });
-  for (Eigen::Index k = r.samples() - 1; k > 0;
+  for (Eigen::Index k = r.samples() - 1; any && k > 0;
        --k) {  // a run's first sample is the one before its first interval
     if (standing[static_cast<std::size_t>(k)] != 0 && unchanged(k))
       standing[static_cast<std::size_t>(k - 1)] = 1;
   }
-  if (smallest_positive(r.velocity, false) < kResolved * peak) {
+  const double finest =
+      smallest_positive(1, r.samples(), [&](Eigen::Index k) { return r.velocity[k]; });
+  if (finest < kResolved * peak) {
     mark_runs(
         r.samples(), standing, [&](Eigen::Index k) { return r.velocity[k] == 0.0; },
         [](Eigen::Index first, Eigen::Index last) { return last > first; });
@@ -83,8 +98,8 @@ void mark_sticking(const Recording& r, double peak, const std::vector<std::uint8
 
 /// Twice the duration over the number of direction changes: the motion's period, as far as one can
 /// tell.
-double motion_period(const Recording& r) {
-  const double hysteresis = 0.01 * (r.position.maxCoeff() - r.position.minCoeff());
+double motion_period(const RecordingView& r, double reach) {
+  const double hysteresis = 0.01 * reach;
   int changes = 0;
   int direction = 0;  // not known before the first clear move
   double extreme = r.position[0];
@@ -101,45 +116,97 @@ double motion_period(const Recording& r) {
   return 2.0 * (r.time[r.samples() - 1] - r.time[0]) / std::max(1, changes);
 }
 
-void mark_standing(const Recording& r, double peak, const std::vector<std::uint8_t>& after_gap,
+/// Samples begin .. end - 1 near which the joint may have stood still.
+struct Region {
+  Eigen::Index begin;
+  Eigen::Index end;
+};
+
+/// A stretch of `span` that stays within `reach` holds a whole block that does (or one that lasts
+/// very long), and reaches no farther than into the blocks beside such blocks.
+std::vector<Region> quiet_regions(const RecordingView& r, double span, double reach) {
+  const Eigen::Index n = r.samples();
+  const double usual = (r.time[n - 1] - r.time[0]) / static_cast<double>(n - 1);
+  const auto length =
+      static_cast<Eigen::Index>(std::clamp(0.25 * span / usual, 4.0, static_cast<double>(n)));
+  std::vector<Region> regions;
+  for (Eigen::Index begin = 0; begin < n; begin += length) {
+    const Eigen::Index end = std::min(n, begin + length);
+    double low = r.position[begin];
+    double high = low;
+    for (Eigen::Index k = begin + 1; k < end; ++k) {
+      low = std::min(low, r.position[k]);
+      high = std::max(high, r.position[k]);
+    }
+    const double lasting =
+        r.time[std::min(n - 1, end)] - r.time[std::max<Eigen::Index>(0, begin - 1)];
+    if (high - low > reach && lasting < 0.5 * span) continue;
+    const Region region{std::max<Eigen::Index>(0, begin - length), std::min(n, end + length)};
+    if (!regions.empty() && regions.back().end >= region.begin) {
+      regions.back().end = region.end;
+    } else {
+      regions.push_back(region);
+    }
+  }
+  return regions;
+}
+
+void mark_standing(const RecordingView& r, double peak, double travelled,
+                   const std::vector<std::uint8_t>& after_gap,
                    std::vector<std::uint8_t>& standing) {
-  const double span = std::max(kShortestStanding, kStandingOfPeriod * motion_period(r));
+  const double span = std::max(kShortestStanding, kStandingOfPeriod * motion_period(r, travelled));
   const double reach = kSlow * peak * span;
   std::deque<Eigen::Index> highest;
   std::deque<Eigen::Index> lowest;
-  Eigen::Index first = 0;
-  Eigen::Index marked = 0;  // samples before this one are settled
-  for (Eigen::Index k = 0; k < r.samples(); ++k) {
-    if (after_gap[static_cast<std::size_t>(k)] != 0) {  // nobody saw what happened meanwhile
-      first = k;
-      highest.clear();
-      lowest.clear();
-    }
-    while (!highest.empty() && r.position[highest.back()] <= r.position[k]) highest.pop_back();
-    while (!lowest.empty() && r.position[lowest.back()] >= r.position[k]) lowest.pop_back();
-    highest.push_back(k);
-    lowest.push_back(k);
-    // The longest stretch ending at k that stays within reach: the joint stood still if it lasts
-    // long enough.
-    while (r.position[highest.front()] - r.position[lowest.front()] > reach) {
-      ++first;
-      if (highest.front() < first) highest.pop_front();
-      if (lowest.front() < first) lowest.pop_front();
-    }
-    if (r.time[k] - r.time[first] >= span) {
-      // Only as much of it as is as slow as `span` says: the last span's worth and what joins it.
-      Eigen::Index from = k;
-      while (from > first && r.time[k] - r.time[from - 1] <= span) --from;
-      from = std::max(from, marked);
-      std::fill(standing.begin() + from, standing.begin() + k + 1, std::uint8_t{1});
-      marked = k + 1;
+  for (const auto& region : quiet_regions(r, span, reach)) {
+    Eigen::Index first = region.begin;
+    Eigen::Index marked = region.begin;  // samples before this one are settled
+    highest.clear();
+    lowest.clear();
+    for (Eigen::Index k = region.begin; k < region.end; ++k) {
+      if (after_gap[static_cast<std::size_t>(k)] != 0) {  // nobody saw what happened meanwhile
+        first = k;
+        highest.clear();
+        lowest.clear();
+      }
+      while (!highest.empty() && r.position[highest.back()] <= r.position[k]) highest.pop_back();
+      while (!lowest.empty() && r.position[lowest.back()] >= r.position[k]) lowest.pop_back();
+      highest.push_back(k);
+      lowest.push_back(k);
+      // The longest stretch ending at k that stays within reach: the joint stood still if it lasts
+      // long enough.
+      while (r.position[highest.front()] - r.position[lowest.front()] > reach) {
+        ++first;
+        if (highest.front() < first) highest.pop_front();
+        if (lowest.front() < first) lowest.pop_front();
+      }
+      if (r.time[k] - r.time[first] >= span) {
+        // Only as much of it as is as slow as `span` says: the last span's worth and what joins it.
+        Eigen::Index from = k;
+        while (from > first && from > marked && r.time[k] - r.time[from - 1] <= span) --from;
+        std::fill(standing.begin() + from, standing.begin() + k + 1, std::uint8_t{1});
+        marked = k + 1;
+      }
     }
   }
 }
 
 }  // namespace
 
+RecordingView::RecordingView(const Recording& r)
+    : time(r.time.data(), r.time.size()),
+      position(r.position.data(), r.position.size()),
+      velocity(r.velocity.data(), r.velocity.size()),
+      torque(r.torque.data(), r.torque.size()),
+      sensor(r.sensor.data(), r.sensor.size()),
+      torque_hold(r.torque_hold),
+      gap_after(r.gap_after) {}
+
 void Recording::validate() const {
+  RecordingView(*this).validate();
+}
+
+void RecordingView::validate() const {
   const Eigen::Index n = samples();
   if (n < 8)
     throw std::invalid_argument("a recording needs at least 8 samples, got " + std::to_string(n));
@@ -159,11 +226,20 @@ void Recording::validate() const {
   }
 }
 
-UsableIntervals usable_intervals(const Recording& r, bool mask_standstill) {
-  const double peak = r.velocity.cwiseAbs().maxCoeff();
-  if (!(peak > 0.0) || r.position.maxCoeff() == r.position.minCoeff()) {
+UsableIntervals usable_intervals(const RecordingView& r, bool mask_standstill,
+                                 const base::Cancel* cancel) {
+  double peak = 0.0;
+  double low = r.position[0];
+  double high = low;
+  for (Eigen::Index k = 0; k < r.samples(); ++k) {
+    peak = std::max(peak, std::fabs(r.velocity[k]));
+    low = std::min(low, r.position[k]);
+    high = std::max(high, r.position[k]);
+  }
+  if (!(peak > 0.0) || low == high) {
     throw std::invalid_argument("the joint never moves: there is no friction to identify");
   }
+  if (cancel != nullptr) cancel->check();
   const auto n = static_cast<std::size_t>(r.samples());
   UsableIntervals result{std::vector<std::uint8_t>(n - 1, 1), 0};
   if (mask_standstill) {
@@ -171,12 +247,14 @@ UsableIntervals usable_intervals(const Recording& r, bool mask_standstill) {
     std::vector<std::uint8_t> after_gap(n, 0);
     for (const auto gap : r.gap_after) after_gap[static_cast<std::size_t>(gap) + 1] = 1;
     mark_sticking(r, peak, after_gap, standing);
-    mark_standing(r, peak, after_gap, standing);
+    if (cancel != nullptr) cancel->check();
+    mark_standing(r, peak, high - low, after_gap, standing);
+    if (cancel != nullptr) cancel->check();
     result.standing = std::count(standing.begin(), standing.end(), std::uint8_t{1});
     // The interval that touches a stuck sample holds a break-away or a stop; the one beside it has
     // a derived velocity that saw the stop, and friction that changes too fast for the trapezoid.
     constexpr std::size_t reach = 2;
-    for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t k = 0; result.standing > 0 && k < n; ++k) {
       if (standing[k] == 0) continue;
       const std::size_t from = k >= reach ? k - reach : 0;
       const std::size_t to = std::min(n - 1, k + reach);

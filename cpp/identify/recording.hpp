@@ -4,7 +4,10 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <utility>
 #include <vector>
+
+#include "base/cancel.hpp"
 
 namespace jointid::identify {
 
@@ -28,6 +31,33 @@ struct Recording {
   void validate() const;
 };
 
+/// The same signals where they lie: nothing is copied, and whoever owns them outlives the view.
+struct RecordingView {
+  using Signal = Eigen::Map<const Eigen::VectorXd>;
+  Signal time;
+  Signal position;
+  Signal velocity;
+  Signal torque;
+  Signal sensor;
+  Hold torque_hold;
+  std::vector<std::int64_t> gap_after;
+
+  RecordingView(const Recording& r);  // implicit: a recording is its own view
+  RecordingView(Signal time_, Signal position_, Signal velocity_, Signal torque_, Signal sensor_,
+                Hold hold, std::vector<std::int64_t> gaps)
+      : time(time_),
+        position(position_),
+        velocity(velocity_),
+        torque(torque_),
+        sensor(sensor_),
+        torque_hold(hold),
+        gap_after(std::move(gaps)) {}
+  [[nodiscard]] Eigen::Index samples() const { return time.size(); }
+  [[nodiscard]] bool has_sensor() const { return sensor.size() > 0; }
+  /// As `Recording::validate`.
+  void validate() const;
+};
+
 /// One flag per sample interval k -> k+1: 1 where the joint moves and the record has no gap.
 ///
 /// Left out are, narrowly: gaps; runs in which the joint truly sticks (position unchanged, or
@@ -39,6 +69,7 @@ struct UsableIntervals {
   std::vector<std::uint8_t> usable;
   std::int64_t standing = 0;  ///< samples found sticking or standing still
 };
-UsableIntervals usable_intervals(const Recording& recording, bool mask_standstill);
+UsableIntervals usable_intervals(const RecordingView& recording, bool mask_standstill,
+                                 const base::Cancel* cancel = nullptr);
 
 }  // namespace jointid::identify

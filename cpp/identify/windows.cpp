@@ -17,35 +17,12 @@ constexpr Eigen::Index kFewest =
     5;  // samples, when the record is so short that 10 leave too few windows
 constexpr std::int64_t kWindowsEach = 20;  // windows a parameter, at least
 
-double structure_function(const Recording& r, const std::vector<std::int64_t>& broken,
-                          Eigen::Index lag) {
-  double sum = 0.0;
-  Eigen::Index count = 0;
-  for (Eigen::Index k = 0; k + lag < r.samples(); ++k) {
-    // broken[k] counts unusable intervals before sample k
-    if (broken[static_cast<std::size_t>(k + lag)] != broken[static_cast<std::size_t>(k)]) continue;
-    const double change = r.velocity[k + lag] - r.velocity[k];
-    sum += change * change;
-    ++count;
-  }
-  return count > 0 ? sum / static_cast<double>(count) : 0.0;
-}
-
-double median_period(const Recording& r) {
-  std::vector<double> periods(static_cast<std::size_t>(r.samples() - 1));
-  for (Eigen::Index k = 0; k + 1 < r.samples(); ++k)
-    periods[static_cast<std::size_t>(k)] = r.time[k + 1] - r.time[k];
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::nth_element(periods.begin(), middle, periods.end());
-  return *middle;
-}
-
 struct Stretch {
   std::int64_t begin;
   std::int64_t end;
 };
 
-std::vector<Stretch> stretches(const Recording& r) {
+std::vector<Stretch> stretches(const RecordingView& r) {
   std::vector<std::int64_t> gaps = r.gap_after;
   std::sort(gaps.begin(), gaps.end());
   std::vector<Stretch> result;
@@ -58,7 +35,7 @@ std::vector<Stretch> stretches(const Recording& r) {
   return result;
 }
 
-double covered(const Recording& r) {
+double covered(const RecordingView& r) {
   double sum = 0.0;
   for (const auto& s : stretches(r)) sum += r.time[s.end] - r.time[s.begin];
   return sum;
@@ -80,42 +57,36 @@ void WindowOptions::validate() const {
     throw std::invalid_argument("windows: give count or duration, not both");
 }
 
-WindowChoice choose_window(const Recording& r, const std::vector<std::uint8_t>& usable,
+WindowChoice choose_window(const RecordingView& r, const std::vector<std::uint8_t>& usable,
                            std::int64_t parameters, const WindowOptions& options) {
-  std::vector<std::int64_t> broken(static_cast<std::size_t>(r.samples()), 0);
-  for (std::size_t k = 0; k < usable.size(); ++k)
-    broken[k + 1] = broken[k] + (usable[k] == 0 ? 1 : 0);
-  const auto usable_count = static_cast<std::int64_t>(usable.size()) - broken.back();
-  const double period = median_period(r);
-  double noise = 0.0;
-  for (const Eigen::Index lag : {1, 2}) {
-    const double once = structure_function(r, broken, lag);
-    const double twice = structure_function(r, broken, 2 * lag);
-    noise = std::max(noise, (4.0 * once - twice) / 3.0);
-  }
+  return choose_window(MaskedRecording(r, {usable, 0}), parameters, options);
+}
+
+WindowChoice choose_window(const MaskedRecording& r, std::int64_t parameters,
+                           const WindowOptions& options) {
   const auto share = [&](Eigen::Index lag) {
-    const double change = structure_function(r, broken, lag);
-    return change > 0.0 ? noise / change : 1.0;
+    const double change = r.structure(lag);
+    return change > 0.0 ? r.noise() / change : 1.0;
   };
   WindowChoice choice;
   choice.duration = options.duration;
   if (choice.duration == 0.0) {
     const Eigen::Index longest = std::max<Eigen::Index>(
-        kFewest, usable_count / std::max<std::int64_t>(1, kWindowsEach * parameters));
+        kFewest, r.usable_count() / std::max<std::int64_t>(1, kWindowsEach * parameters));
     Eigen::Index lag = std::min(kShortest, longest);
     while (share(lag) > kNoiseShare && lag < longest) lag = std::min(longest, lag + 1 + lag / 8);
-    choice.duration = static_cast<double>(lag) * period;
+    choice.duration = static_cast<double>(lag) * r.period();
   }
   choice.duration *= options.factor;
   // What the windows used leave of the noise, whoever chose them.
-  const double lag = std::round(choice.duration / period);
-  choice.noise_share =
-      share(static_cast<Eigen::Index>(std::clamp(lag, 1.0, static_cast<double>(r.samples() - 1))));
+  const double lag = std::round(choice.duration / r.period());
+  choice.noise_share = share(static_cast<Eigen::Index>(
+      std::clamp(lag, 1.0, static_cast<double>(r.recording().samples() - 1))));
   choice.noise_limited = choice.noise_share > kNoiseLimit;
   return choice;
 }
 
-std::vector<Window> cut_windows(const Recording& r, const std::vector<std::uint8_t>& usable,
+std::vector<Window> cut_windows(const RecordingView& r, const std::vector<std::uint8_t>& usable,
                                 double duration) {
   if (!(duration > 0.0)) throw std::invalid_argument("windows: duration must be positive");
   std::vector<Window> windows;
@@ -136,7 +107,7 @@ std::vector<Window> cut_windows(const Recording& r, const std::vector<std::uint8
   return windows;
 }
 
-double duration_for(const std::vector<Recording>& recordings, std::int64_t count) {
+double duration_for(const std::vector<RecordingView>& recordings, std::int64_t count) {
   std::int64_t intervals = 0;
   double time = 0.0;
   for (const auto& recording : recordings) {

@@ -3,8 +3,10 @@
 // recording's edge or a gap.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "identify/masked_recording.hpp"
 #include "identify/recording.hpp"
 
 namespace jointid::identify {
@@ -38,14 +40,16 @@ struct WindowChoice {
 /// term in L^2 for small L. The window is the shortest of at least 10 samples with noise / D <=
 /// 0.001 that leaves at least 20 windows a parameter (on a record too short for that, at least 5
 /// samples). A given duration is kept, and its noise told all the same.
-WindowChoice choose_window(const Recording& recording, const std::vector<std::uint8_t>& usable,
+WindowChoice choose_window(const MaskedRecording& recording, std::int64_t parameters,
+                           const WindowOptions& options = {});
+WindowChoice choose_window(const RecordingView& recording, const std::vector<std::uint8_t>& usable,
                            std::int64_t parameters, const WindowOptions& options = {});
 
 /// Equal windows over each gap-free stretch; those without a usable interval are left out.
-std::vector<Window> cut_windows(const Recording& recording, const std::vector<std::uint8_t>& usable,
-                                double duration);
+std::vector<Window> cut_windows(const RecordingView& recording,
+                                const std::vector<std::uint8_t>& usable, double duration);
 
 /// The duration that gives about `count` windows over the gap-free stretches of all recordings.
-double duration_for(const std::vector<Recording>& recordings, std::int64_t count);
+double duration_for(const std::vector<RecordingView>& recordings, std::int64_t count);
 
 }  // namespace jointid::identify

@@ -11,24 +11,32 @@ import numpy.typing
 import typing
 
 __all__: list[str] = [
+    "Agreement",
     "CompressedPenalty",
     "GaOptions",
     "GaResult",
     "GaState",
     "Generation",
     "Hold",
+    "Inspection",
+    "Limit",
     "Model",
     "Penalty",
     "PenaltyFunction",
+    "PenaltyParts",
     "PolishResult",
     "Recording",
     "Residual",
     "SeparableResult",
     "Shape",
+    "SignalFacts",
+    "Spike",
+    "SpikeRule",
     "Stop",
     "Term",
     "WindowOptions",
     "friction_basis",
+    "inspect",
     "is_parameter",
     "minimise_genetic",
     "minimise_random",
@@ -38,9 +46,11 @@ __all__: list[str] = [
     "parameter_names",
     "polish",
     "refine_separable",
+    "robust_variance",
     "shapes",
     "term",
     "terms",
+    "triangle",
     "usable_intervals",
 ]
 
@@ -116,16 +126,16 @@ class Hold(enum.Enum):
 
 class Recording:
     """
-    Signals of one run, as the core keeps them (copied in).
+    Signals of one run; arrays of floats are kept, not copied.
     """
     def __init__(
         self,
         *,
-        time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-        position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-        velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-        torque: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-        sensor: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"] | None,
+        time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        torque: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        sensor: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None,
         torque_hold: Hold,
         gap_after: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
     ) -> None: ...
@@ -267,7 +277,24 @@ class Penalty(PenaltyFunction):
         mask_standstill: bool = True,
         gear_ratio: typing.SupportsFloat | typing.SupportsIndex = 1.0,
         per_recording: collections.abc.Sequence[str] = [],
+        threads: typing.SupportsInt | typing.SupportsIndex = 0,
     ) -> None: ...
+    def linearised(
+        self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> tuple[
+        float,
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    ]:
+        """
+        Penalty, window residuals and their derivatives, in one pass.
+        """
+    def torque_steps(
+        self, recordings: collections.abc.Sequence[Recording], mask_standstill: bool
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        How far the torque rises over each window's usable intervals.
+        """
     @property
     def cumulative(self) -> bool: ...
     @property
@@ -337,6 +364,47 @@ class CompressedPenalty(PenaltyFunction):
         """
         Why not; empty if it does.
         """
+
+class PenaltyParts:
+    """
+    A penalty that is summed part by part, for what needs it once or twice.
+    """
+    def __init__(
+        self,
+        *,
+        recordings: collections.abc.Sequence[Recording],
+        terms: collections.abc.Sequence[str],
+        windows: WindowOptions,
+        residual: Residual,
+        mask_standstill: bool = True,
+        gear_ratio: typing.SupportsFloat | typing.SupportsIndex = 1.0,
+        per_recording: collections.abc.Sequence[str] = [],
+        threads: typing.SupportsInt | typing.SupportsIndex = 0,
+    ) -> None: ...
+    def refit(
+        self,
+        lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        *,
+        threads: typing.SupportsInt | typing.SupportsIndex = 0,
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        The minimum within bounds near a start.
+        """
+    def ripple(
+        self,
+        theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        *,
+        gear_ratio: typing.SupportsFloat | typing.SupportsIndex,
+        halves: typing.SupportsInt | typing.SupportsIndex,
+        threads: typing.SupportsInt | typing.SupportsIndex = 0,
+    ) -> tuple[int, float, typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]]:
+        """
+        Number of windows, sum of squared mean residuals, and the magnitude of their sum over each half multiple of the motor's angle.
+        """
+    @property
+    def window_count(self) -> int: ...
 
 class Stop(enum.Enum):
     """
@@ -807,6 +875,140 @@ class PolishResult:
     @property
     def penalty(self) -> float: ...
 
+class SpikeRule(enum.Enum):
+    """
+    What a spike of a signal is held against.
+    """
+
+    command = ...
+    other = ...
+    position = ...
+
+class Limit:
+    """
+    Samples at one of a signal's extremes.
+    """
+    @property
+    def moving(self) -> int:
+        """
+        On it while the joint moves.
+        """
+    @property
+    def near(self) -> int:
+        """
+        Within 1 % of the range, those on it too.
+        """
+    @property
+    def there(self) -> int:
+        """
+        On it.
+        """
+
+class SignalFacts:
+    """
+    What a single signal shows by itself.
+    """
+    @property
+    def changes(self) -> int:
+        """
+        Steps that are not zero.
+        """
+    @property
+    def fine(self) -> bool:
+        """
+        The usual step is at least 30 smallest ones.
+        """
+    @property
+    def frozen(self) -> int:
+        """
+        Of those: in long runs.
+        """
+    @property
+    def highest(self) -> float: ...
+    @property
+    def lower(self) -> Limit: ...
+    @property
+    def lowest(self) -> float: ...
+    @property
+    def moving(self) -> int:
+        """
+        Intervals at a fair speed.
+        """
+    @property
+    def stale(self) -> int:
+        """
+        Of those: no step, and not on a limit.
+        """
+    @property
+    def upper(self) -> Limit: ...
+
+class Spike:
+    """
+    The largest spike of a signal.
+    """
+    @property
+    def count(self) -> int:
+        """
+        0: none.
+        """
+    @property
+    def height(self) -> float: ...
+    @property
+    def index(self) -> int: ...
+
+class Agreement:
+    """
+    position change = scale * integrated velocity + lag * velocity change.
+    """
+    @property
+    def lag(self) -> float:
+        """
+        [s]
+        """
+    @property
+    def lag_error(self) -> float:
+        """
+        [s]
+        """
+    @property
+    def scale(self) -> float: ...
+
+class Inspection:
+    """
+    What a recording shows by itself.
+    """
+    @property
+    def agreement(self) -> Agreement | None: ...
+    @property
+    def facts(self) -> list[SignalFacts]:
+        """
+        One a channel.
+        """
+    @property
+    def jump(self) -> int:
+        """
+        The sample before a jump of the position; -1: none.
+        """
+    @property
+    def peak_speed(self) -> float: ...
+    @property
+    def sensor_lag(self) -> tuple[float, float]:
+        """
+        How late the sensor is, and the error of that [s].
+        """
+    @property
+    def spikes(self) -> list[Spike]:
+        """
+        One a channel.
+        """
+    @property
+    def swing(self) -> float: ...
+    @property
+    def timing_errors(self) -> tuple[float, float]:
+        """
+        Scatter of the samples' times about the stamps and about an even grid [s].
+        """
+
 def friction_basis(
     key: str,
     velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -814,6 +1016,23 @@ def friction_basis(
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
     """
     The friction term's basis at each velocity [rad/s or m/s]: what its coefficient multiplies.
+    """
+
+def inspect(
+    *,
+    time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    velocity_derived: bool,
+    sensor: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None,
+    period: typing.SupportsFloat | typing.SupportsIndex,
+    channels: collections.abc.Sequence[
+        tuple[typing.Annotated[numpy.typing.ArrayLike, numpy.float64], SpikeRule, bool]
+    ],
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> Inspection:
+    """
+    Look at a recording's signals; a channel is a signal, its rule, and whether to look for spikes.
     """
 
 def is_parameter(name: str) -> bool:
@@ -893,6 +1112,18 @@ def refine_separable(
     The local optimum near a start; `everywhere` also searches one free shape's whole range.
     """
 
+def robust_variance(
+    jacobian: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    residual: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    weights: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    *,
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    """
+    Prewhitened Newey-West variance of weighted sums of the scores.
+    """
+
 def shapes() -> list[Shape]:
     """
     All shape parameters.
@@ -908,7 +1139,18 @@ def terms() -> list[Term]:
     All terms, in canonical order.
     """
 
-def usable_intervals(recording: Recording, mask_standstill: bool = True) -> list[int]:
+def triangle(
+    matrix: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    *,
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    """
+    R of the QR decomposition of a tall matrix.
+    """
+
+def usable_intervals(
+    recording: Recording, mask_standstill: bool = True
+) -> numpy.typing.NDArray[numpy.uint8]:
     """
     One flag per sample interval: 1 where the joint moves and the recording has no gap.
     """

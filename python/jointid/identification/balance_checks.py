@@ -36,7 +36,7 @@ class _Free:
 
 def _unbounded(facts: Facts) -> _Free | None:
     """The best of the shape found and a few others: bounds may have bent the shape, too."""
-    found = _unbounded_at(facts, facts.best)
+    found = _unbounded_at(facts, None)
     shapes = [i for i, name in enumerate(facts.penalty.names) if name == "stribeck"]
     if found is None or not shapes or found.relative < _EXPLAINED:
         return found
@@ -49,23 +49,23 @@ def _unbounded(facts: Facts) -> _Free | None:
     return found
 
 
-def _unbounded_at(facts: Facts, best: Array) -> _Free | None:
-    columns = facts.columns(best)
-    names = [name for name, column in columns.items() if np.any(column != 0.0)]
-    rows = np.column_stack([columns[name] for name in names])
-    target = np.asarray(facts.penalty.target)
-    if rows.shape[0] < 2 * len(names) or not np.any(target):
+def _unbounded_at(facts: Facts, best: Array | None) -> _Free | None:
+    regressor = facts.regressor(best)
+    names = [name for name in regressor.names if regressor.norm(name) > 0.0]
+    windows = facts.penalty.window_count
+    if windows < 2 * len(names) or regressor.target == 0.0:
         return None
+    kept = [regressor.names.index(name) for name in names]
+    found, missed = regressor.triangle.solve(kept, len(regressor.names), rcond=1e-10)
+    rows = regressor.triangle.matrix[:, kept]
     scale = np.linalg.norm(rows, axis=0)
-    found, *_ = np.linalg.lstsq(rows / scale, target, rcond=1e-10)
-    miss = target - rows / scale @ found
-    variance = float(miss @ miss) / (rows.shape[0] - len(names))
     gram = (rows / scale).T @ (rows / scale)
+    variance = missed**2 / (windows - len(names))
     errors = np.sqrt(variance * np.abs(np.diag(np.linalg.pinv(gram, hermitian=True))))
     return _Free(
-        values=dict(zip(names, (found / scale).tolist(), strict=True)),
+        values=dict(zip(names, found.tolist(), strict=True)),
         errors=dict(zip(names, (errors / scale).tolist(), strict=True)),
-        relative=float(np.linalg.norm(miss) / np.linalg.norm(target)),
+        relative=missed / regressor.target,
     )
 
 

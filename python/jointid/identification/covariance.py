@@ -5,6 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid import _core
+
 Array = NDArray[np.float64]
 
 
@@ -34,40 +36,34 @@ class Covariance:
     weakest: Array
 
 
-# Scores are hardly ever more persistent; beyond, recolouring would amplify its own error.
-_MOST_PERSISTENT = 0.97
+class Triangle:
+    """All that least squares asks of a tall matrix: R of its QR decomposition, at the cost of one pass.
 
-
-def _autocovariance_robust(scores: Array) -> Array:
-    """Covariance of a sum of autocorrelated scores, prewhitened (Andrews and Monahan 1992).
-
-    Each column is first stripped of its first-order persistence, then Newey and West's (1987) sum is
-    taken, then the persistence is put back: a fixed number of lags alone is far too small when
-    neighbouring windows miss alike.
+    Parameters
+    ----------
+    matrix : ndarray, shape (rows, columns)
+    threads : int
+        0: all.
     """
-    rows = scores.shape[0]
-    if rows < 4:
-        return np.asarray(scores.T @ scores)
-    power = np.einsum("ij,ij->j", scores[:-1], scores[:-1])
-    lagged = np.einsum("ij,ij->j", scores[1:], scores[:-1])
-    persistence = lagged / np.where(power > 0.0, power, 1.0)
-    # The estimate of a persistence is biased down by about (1 + 3 rho) / n (Kendall 1954).
-    persistence += (1.0 + 3.0 * persistence) / rows
-    persistence = np.clip(persistence, 0.0, _MOST_PERSISTENT)
-    white = scores.copy()
-    white[1:] -= persistence * scores[:-1]
-    white[0] *= np.sqrt(1.0 - persistence**2)
-    lags = int(4.0 * (rows / 100.0) ** (2.0 / 9.0))
-    total = white.T @ white
-    for lag in range(1, min(lags, rows - 1) + 1):
-        cross = white[lag:].T @ white[:-lag]
-        total += (1.0 - lag / (lags + 1.0)) * (cross + cross.T)
-    recolour = 1.0 / (1.0 - persistence)
-    return np.asarray(total * np.outer(recolour, recolour))
+
+    def __init__(self, matrix: Array, threads: int = 0) -> None:
+        self.matrix: Array = _core.triangle(matrix, threads=threads)
+
+    def solve(self, columns: list[int], target: int, rcond: float) -> tuple[Array, float]:
+        """Coefficients of some columns, each scaled to unit norm, for another one; the norm of what is left."""
+        regressors, wanted = self.matrix[:, columns], self.matrix[:, target]
+        norms = np.linalg.norm(regressors, axis=0)
+        scale = np.where(norms > 0.0, norms, 1.0)
+        found = np.linalg.lstsq(regressors / scale, wanted, rcond=rcond)[0] / scale
+        return found, float(np.linalg.norm(wanted - regressors @ found))
 
 
 def parameter_covariance(
-    jacobian: Array, residual: Array, centre: tuple[int, int, float] | None
+    jacobian: Array,
+    residual: Array,
+    centre: tuple[int, int, float] | None,
+    triangle: Array | None = None,
+    threads: int = 0,
 ) -> Covariance:
     """Covariance of a least-squares estimate, robust to autocorrelated residuals.
 
@@ -79,6 +75,8 @@ def parameter_covariance(
         Residuals at the minimum.
     centre : (gain, offset, mean) or None
         Columns of a gain and of its offset, and the mean of the signal that the gain multiplies.
+    triangle : ndarray, shape (rows, p), optional
+        A triangle of the Jacobian, if it is known.
 
     Notes
     -----
@@ -97,32 +95,37 @@ def parameter_covariance(
             condition=1.0,
             weakest=np.zeros(0),
         )
-    norms = np.linalg.norm(jacobian, axis=0)
+    if triangle is None:
+        triangle = Triangle(jacobian, threads).matrix
+    norms = np.linalg.norm(triangle, axis=0)
     scale = np.where(norms > 0.0, norms, 1.0)
-    _, singular, directions = np.linalg.svd(jacobian / scale, full_matrices=False)
+    _, singular, directions = np.linalg.svd(triangle / scale, full_matrices=False)
     known = singular > 1e-10 * singular[0]
     inverse = np.where(known, 1.0 / np.where(known, singular, 1.0), 0.0)
     pseudo = (directions.T * inverse**2) @ directions
     freedom = max(1, rows - count)
     classical = pseudo * (residual @ residual) / freedom
-    scores = jacobian / scale * residual[:, None]
-    robust = pseudo @ _autocovariance_robust(scores) @ pseudo * rows / freedom
-    stretch = np.sqrt(np.maximum(np.diag(robust) / np.maximum(np.diag(classical), 1e-300), 1.0))
+    # Newey and West's variance of each parameter: of the scores, weighted with a column of `pseudo`.
+    robust = _core.robust_variance(jacobian, residual, 1.0 / scale, pseudo, threads=threads)
+    robust *= rows / freedom
+    stretch = np.sqrt(np.maximum(robust / np.maximum(np.diag(classical), 1e-300), 1.0))
     matrix = classical * np.outer(stretch, stretch) / np.outer(scale, scale)
     unknown = (norms == 0.0) | (np.abs(directions[~known]).max(axis=0, initial=0.0) > 1e-3)
     if rows <= count:  # nothing is left to tell noise from model
         unknown[:] = True
     matrix[unknown, unknown] = np.inf
 
-    centred = jacobian.copy()
+    centred = triangle.copy()
     if centre is not None:
         gain, offset, mean = centre
-        centred[:, gain] -= mean * jacobian[:, offset]
+        centred[:, gain] -= mean * triangle[:, offset]
     centred_norms = np.linalg.norm(centred, axis=0)
     centred /= np.where(centred_norms > 0.0, centred_norms, 1.0)
     _, values, vectors = np.linalg.svd(centred, full_matrices=False)
-    spread = np.linalg.pinv(centred.T @ centred, rcond=1e-20, hermitian=True)
-    deviation = np.sqrt(np.maximum(np.diag(spread), 1e-300))
+    # A floor, so that two columns that are one come out as fully correlated.
+    inverse = 1.0 / np.maximum(values, 1e-12 * values[0] + 1e-300)
+    spread = (vectors.T * inverse**2) @ vectors
+    deviation = np.sqrt(np.diag(spread))
     correlation = np.clip(spread / np.outer(deviation, deviation), -1.0, 1.0)
     np.fill_diagonal(correlation, 1.0)
     return Covariance(

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-import numpy as np
-
 from jointid import _core
 from jointid.estimate.findings import ParameterEstimate, Warned
 from jointid.estimate.wording import percent
@@ -186,21 +184,19 @@ def noise_width(facts: Facts) -> float:
     gain = facts.parameters.get("sensor_gain")
     if gain is None or not gain.vary:
         return 0.0
-    columns = facts.columns()
+    regressor = facts.at_best
     free = [
-        name
+        regressor.names.index(name)
         for name, p in facts.parameters.items()
-        if name in columns and p.vary and p.at_bound is None and name != "sensor_gain"
+        if name in regressor.names and p.vary and p.at_bound is None and name != "sensor_gain"
     ]
-    reading = columns["sensor_gain"]
-    own = reading
+    own = regressor.norm("sensor_gain")
     if free:
-        others = np.column_stack([columns[name] for name in free])
-        others = others / np.maximum(np.linalg.norm(others, axis=0), 1e-300)
-        own = reading - others @ np.linalg.lstsq(others, reading, rcond=1e-10)[0]
-    residual = np.asarray(facts.penalty.residuals(facts.best))
+        reading = regressor.names.index("sensor_gain")
+        own = regressor.triangle.solve(free, reading, rcond=1e-10)[1]
+    residual = facts.residual
     if facts.penalty.residual == _core.Residual.torque:
         residual = residual / (gain.value or 1e-300)
     freedom = max(1, residual.size - len(free) - 1)
     noise = float(residual @ residual) * residual.size / freedom
-    return noise / max(float(own @ own), 1e-300)
+    return noise / max(own**2, 1e-300)

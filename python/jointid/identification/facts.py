@@ -10,11 +10,37 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.estimate.findings import ParameterEstimate, ResidualStatistics, WindowTable
+from jointid.identification.covariance import Triangle
+from jointid.identification.inspection import Inspected
 from jointid.identification.problem import Problem
 from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Regressor:
+    """The window integrals of all terms, and behind them of the torque, as far as least squares cares.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Of the coefficients.
+    triangle : Triangle
+    """
+
+    names: tuple[str, ...]
+    triangle: Triangle
+
+    def norm(self, name: str) -> float:
+        """Norm of a term's integrals."""
+        return float(np.linalg.norm(self.triangle.matrix[:, self.names.index(name)]))
+
+    @property
+    def target(self) -> float:
+        """Norm of the torque's integrals."""
+        return float(np.linalg.norm(self.triangle.matrix[:, -1]))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,10 +55,16 @@ class Facts:
         Over the windows used.
     best : ndarray
         The parameters found, in the order of `penalty.names`.
+    residual : ndarray
+        The penalty's window residuals there.
     chance : mapping of str to float
         The part of each standard error that chance explains.
     torque_level : float
         Root mean square of the drive's torque [N·m or N].
+    inspections : tuple of Inspected
+        What each recording shows by itself.
+    at_best : Regressor
+        At the shapes found.
     correlations : mapping
         Of each pair of free parameters, offsets centred.
     """
@@ -40,6 +72,7 @@ class Facts:
     problem: Problem
     penalty: _core.Penalty
     best: Array
+    residual: Array
     table: WindowTable
     parameters: Mapping[str, ParameterEstimate]
     chance: Mapping[str, float]
@@ -48,6 +81,8 @@ class Facts:
     status: str
     message: str
     bounds_from_data: tuple[str, ...]
+    inspections: tuple[Inspected, ...]
+    at_best: Regressor
     correlations: Mapping[tuple[str, str], float]
 
     @property
@@ -65,8 +100,16 @@ class Facts:
         """Name of the friction model."""
         return self.problem.choice.model
 
-    def columns(self, best: Array | None = None) -> dict[str, Array]:
-        """Window integrals of every term, at the shapes found or others, by name [the term's unit · s]."""
+    def regressor(self, best: Array | None = None) -> Regressor:
+        """Every term's window integrals and the target's, at the shapes found or others [unit · s]."""
+        if best is None:
+            return self.at_best
         count = self.penalty.coefficients
-        found = self.penalty.columns((self.best if best is None else best)[count:])
-        return {name: found[:, i] for i, name in enumerate(self.penalty.names[:count])}
+        columns = self.penalty.columns(best[count:])
+        return regressor(self.penalty, columns, self.problem.threads)
+
+
+def regressor(penalty: _core.Penalty, columns: Array, threads: int) -> Regressor:
+    """The triangle of the penalty's columns and target."""
+    triangle = Triangle(np.column_stack([columns, penalty.target]), threads)
+    return Regressor(names=tuple(penalty.names[: penalty.coefficients]), triangle=triangle)

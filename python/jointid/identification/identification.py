@@ -152,6 +152,7 @@ def identify(
         choice=choice,
         torque_hold=torque_hold,
         mask_standstill=mask_standstill,
+        threads=threads,
     )
     penalty = problem.penalty(windows)
     domain = domain_for(penalty, joint, parameters, problem.peak_speed)
@@ -247,12 +248,13 @@ def _window_shifts(
     shifts: list[Array | None] = []
     for factor in (0.5, 2.0):
         try:
-            other = problem.penalty(options.replace(factor=options.factor * factor))
+            other = problem.parts(options.replace(factor=options.factor * factor))
         except InputError:  # fewer windows than parameters, or longer than the recording
             shifts.append(None)
             continue
         if other.window_count == penalty.window_count:
             shifts.append(None)
             continue
-        shifts.append(_core.polish(other, domain.lower, domain.upper, best).best - best)
+        found = other.refit(domain.lower, domain.upper, best, threads=problem.threads)
+        shifts.append(found - best)
     return shifts[0], shifts[1]

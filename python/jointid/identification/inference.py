@@ -19,7 +19,8 @@ from jointid.estimate.findings import (
 from jointid.estimate.student import quantile
 from jointid.identification.covariance import Covariance, parameter_covariance, widened
 from jointid.identification.diagnosis import diagnose
-from jointid.identification.facts import Facts
+from jointid.identification.facts import Facts, regressor
+from jointid.identification.inspection import inspect
 from jointid.identification.problem import Problem
 from jointid.identification.search_domain import SearchDomain
 from jointid.identification.systematic import systematic_errors
@@ -60,8 +61,9 @@ def infer(
     shifts : tuple of ndarray or None
         How each parameter moves when the windows are halved and doubled.
     """
-    residual = penalty.residuals(best)
-    jacobian = penalty.jacobian(best)
+    value, residual, jacobian = penalty.linearised(best)
+    columns = penalty.columns(best[penalty.coefficients :])
+    threads = problem.threads
     sizes = np.linalg.norm(jacobian, axis=0)
     noise = np.linalg.norm(residual) / np.sqrt(max(1, len(residual) - len(best)))
     alone = noise / np.where(
@@ -69,9 +71,11 @@ def infer(
     )  # each parameter's error if it were the only one
     freedom = _freedom(domain, best, jacobian.T @ residual, alone)
     free = list(freedom.indices)
-    table = problem.table(penalty, best)
-    by_chance = parameter_covariance(jacobian[:, free], residual, _centre(penalty, best, free))
-    systematic = systematic_errors(problem, penalty, best, free, jacobian[:, free], shifts)
+    table = problem.table(penalty, best, (residual, columns))
+    freely = jacobian[:, free]
+    centre = _centre(penalty, columns, free)
+    by_chance = parameter_covariance(freely, residual, centre, threads=threads)
+    systematic = systematic_errors(problem, penalty, best, free, freely, columns, shifts)
     spread = widened(by_chance, systematic)
     parameters = _parameters(problem, penalty, domain, best, freedom, spread, len(residual), shifts)
     statistics = _statistics(problem, penalty, table)
@@ -83,6 +87,7 @@ def infer(
             problem=problem,
             penalty=penalty,
             best=best,
+            residual=residual,
             table=table,
             parameters=parameters,
             chance=dict(zip((domain.names[i] for i in free), by_chance.stderr, strict=True)),
@@ -91,6 +96,8 @@ def infer(
             status=status,
             message=message,
             bounds_from_data=domain.from_data,
+            inspections=tuple(inspect(run, threads) for run in problem.recordings),
+            at_best=regressor(penalty, columns, threads),
             correlations={
                 (domain.names[free[i]], domain.names[free[j]]): float(spread.correlation[i, j])
                 for i in range(len(free))
@@ -103,7 +110,7 @@ def infer(
         free=tuple(domain.names[i] for i in free),
         status=status,
         message=message,
-        penalty=float(penalty(best)),
+        penalty=value,
         correlation=spread.correlation,
         condition=spread.condition,
         weakest=weakest,
@@ -159,11 +166,12 @@ def _freedom(domain: SearchDomain, best: Array, gradient: Array, alone: Array) -
     return _Freedom(indices=tuple(free), at_bound=tuple(at_bound))
 
 
-def _centre(penalty: _core.Penalty, best: Array, free: list[int]) -> tuple[int, int, float] | None:
+def _centre(
+    penalty: _core.Penalty, columns: Array, free: list[int]
+) -> tuple[int, int, float] | None:
     names = [penalty.names[i] for i in free]
     if not {"sensor_gain", "sensor_offset"} <= set(names):
         return None
-    columns = penalty.columns(best[penalty.coefficients :])
     reading = columns[:, penalty.names.index("sensor_gain")].sum()
     mean = float(reading / penalty.usable_duration.sum())
     return names.index("sensor_gain"), names.index("sensor_offset"), mean

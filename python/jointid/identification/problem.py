@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 import numbers
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,12 +22,14 @@ Array = NDArray[np.float64]
 
 Windows = int | float | str | _core.WindowOptions | None
 
+Made = TypeVar("Made", _core.Penalty, _core.PenaltyParts)
+
 _MOST_GAPS = 0.1  # of the intervals; beyond, the median period is not the period
 
 _HOLDS = {"zoh": _core.Hold.zero_order, "linear": _core.Hold.linear}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Problem:
     """What is identified from what; how finely it is cut into windows is left open.
 
@@ -44,6 +48,7 @@ class Problem:
     choice: TermChoice
     torque_hold: str | None
     mask_standstill: bool
+    threads: int = 0
 
     def penalty(self, windows: Windows) -> _core.Penalty:
         """The penalty over these windows: an int is their number, a float their duration [s].
@@ -53,16 +58,30 @@ class Problem:
         InputError
             Windows that cannot be cut.
         """
+        return self._cut(_core.Penalty, windows)
+
+    def parts(self, windows: Windows) -> _core.PenaltyParts:
+        """The same, summed part by part: for what needs its windows once or twice.
+
+        Raises
+        ------
+        InputError
+            Windows that cannot be cut.
+        """
+        return self._cut(_core.PenaltyParts, windows)
+
+    def _cut(self, made: type[Made], windows: Windows) -> Made:
         options = self.window_options(windows)
         try:
-            return _core.Penalty(
-                recordings=[self.in_core(recording) for recording in self.recordings],
+            return made(
+                recordings=self.in_core,
                 terms=list(self.choice.terms),
                 windows=options,
                 residual=_core.Residual[self.choice.residual],
                 mask_standstill=self.mask_standstill,
                 gear_ratio=self.choice.gear_ratio,
                 per_recording=list(self.choice.per_recording),
+                threads=self.threads,
             )
         except ValueError as error:
             raise InputError(str(error)) from error
@@ -89,13 +108,22 @@ class Problem:
             return _core.WindowOptions(duration=period, cumulative=True)
         return _options(windows)
 
-    def table(self, penalty: _core.Penalty, theta: Array) -> WindowTable:
-        """The penalty's windows at a parameter vector; each for itself even if the penalty accumulates."""
+    def table(
+        self,
+        penalty: _core.Penalty,
+        theta: Array,
+        known: tuple[Array, Array] | None = None,
+    ) -> WindowTable:
+        """The penalty's windows at a parameter vector; each for itself even if the penalty accumulates.
+
+        `known` are its residuals and columns there, if somebody has them.
+        """
         if penalty.cumulative:
             apart = _core.WindowOptions(duration=penalty.window_duration)
-            penalty = self.penalty(apart)
-        residual = penalty.residuals(theta)
-        columns = penalty.columns(theta[penalty.coefficients :])
+            penalty, known = self.penalty(apart), None
+        if known is None:
+            known = penalty.residuals(theta), penalty.columns(theta[penalty.coefficients :])
+        residual, columns = known
         names = penalty.names[: penalty.coefficients]
         bounds = penalty.windows
         run = np.asarray(penalty.recording_of, dtype=np.int64)
@@ -103,7 +131,7 @@ class Problem:
         stop = np.empty(len(run))
         travel = np.empty(len(run))
         for number, recording in enumerate(self.recordings):
-            mine = run == number
+            mine = slice(*np.searchsorted(run, (number, number + 1)))
             first, last = bounds[mine, 0], bounds[mine, 1]
             start[mine], stop[mine] = recording.time[first], recording.time[last]
             travel[mine] = recording.position[last] - recording.position[first]
@@ -119,19 +147,24 @@ class Problem:
         for index, term in enumerate(penalty.terms):
             if term.friction:
                 friction += theta[index] * columns[:, index]
+        duration = np.asarray(penalty.usable_duration)
         return WindowTable(
             recording=run,
             start=start,
             stop=stop,
-            duration=np.asarray(penalty.usable_duration),
+            duration=duration,
             measured=measured,
             fitted=fitted,
             velocity=travel / (stop - start),
-            friction=friction / penalty.usable_duration,
+            friction=friction / duration,
         )
 
-    def in_core(self, recording: Recording) -> _core.Recording:
-        """The recording as the core takes it."""
+    @functools.cached_property
+    def in_core(self) -> list[_core.Recording]:
+        """The recordings as the core takes them: their arrays, not copies; each finds its mask once."""
+        return [self._in_core(recording) for recording in self.recordings]
+
+    def _in_core(self, recording: Recording) -> _core.Recording:
         hold = self.torque_hold or recording.torque_hold
         if hold is None:
             hold = (self.joint.torque_hold if self.joint is not None else None) or "linear"

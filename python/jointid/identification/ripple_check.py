@@ -6,15 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from jointid import _core
 from jointid.errors import InputError
 from jointid.estimate.findings import Warned
 from jointid.estimate.wording import percent
 from jointid.identification.facts import Facts
-
-Array = NDArray[np.float64]
 
 _HALVES = 16  # multiples of half the motor's angle that are looked at: 0.5 to 8
 _SHARE = 0.05  # of the residual's variance
@@ -30,52 +26,29 @@ class _Peak:
     share: float
 
 
-def _fine_residual(facts: Facts) -> tuple[Array, Array, Array] | None:
-    """Mean residual over windows of two samples [N·m or N], angle and angle's step there [rad]."""
+def _highest_peak(facts: Facts, gear: float) -> _Peak | None:
+    """The multiple of the motor's angle that explains most of the residual over windows of two samples.
+
+    Windows of fast motion average the highest multiple away, and are left out.
+    """
     period = min(recording.sample_period for recording in facts.recordings)
     try:
-        fine = facts.problem.penalty(_FINE * period)
+        fine = facts.problem.parts(_FINE * period)
     except InputError:
         return None
-    if list(fine.names) != list(facts.penalty.names):
+    windows, power, sums = fine.ripple(
+        facts.best, gear_ratio=gear, halves=_HALVES, threads=facts.problem.threads
+    )
+    if windows < 50:
         return None
-    residual = np.asarray(fine.residuals(facts.best)) / fine.usable_duration
-    if fine.residual == _core.Residual.sensor:
-        residual = residual * facts.best[list(fine.names).index("sensor_gain")]
-    bounds = np.asarray(fine.windows)
-    run = np.asarray(fine.recording_of)
-    angle = np.empty(residual.size)
-    step = np.empty(residual.size)
-    for number, recording in enumerate(facts.recordings):
-        mine = run == number
-        start = recording.position[bounds[mine, 0]]
-        stop = recording.position[bounds[mine, 1]]
-        angle[mine], step[mine] = 0.5 * (start + stop), np.abs(stop - start)
-    return residual, angle, step
-
-
-def _highest_peak(residual: Array, angle: Array, step: Array, gear: float) -> _Peak | None:
-    """The multiple of the motor's angle that explains most of the residual."""
-    # Windows of fast motion average the highest multiple away, and would count against it.
-    kept = step * gear * 0.5 * _HALVES < 4.0 * np.pi
-    if np.count_nonzero(kept) < 50:
-        return None
-    residual = residual[kept] - residual[kept].mean()
-    turn = np.exp(0.5j * gear * angle[kept])
-    power = max(float(residual @ residual), 1e-300)
-    current = residual.astype(np.complex128)
-    sums = np.empty(_HALVES)
-    for half in range(_HALVES):
-        current = current * turn
-        sums[half] = abs(current.sum())
-    shares = 2.0 * sums**2 / (residual.size * power)
+    shares = 2.0 * sums**2 / (windows * max(power, 1e-300))
     highest = int(np.argmax(shares))
-    chance = 2.0 / residual.size
+    chance = 2.0 / windows
     if shares[highest] < max(_SHARE, _CHANCE * chance, _OUTSTANDING * float(np.median(shares))):
         return None
     return _Peak(
         multiple=0.5 * (highest + 1),
-        amplitude=float(2.0 * sums[highest] / residual.size),
+        amplitude=float(2.0 * sums[highest] / windows),
         share=float(shares[highest]),
     )
 
@@ -85,8 +58,7 @@ def ripple(facts: Facts) -> Iterator[Warned]:
     gear = abs(facts.joint.gear_ratio) if facts.joint is not None else 1.0
     if gear == 1.0 or facts.recordings[0].kind == "prismatic":
         return
-    fine = _fine_residual(facts)
-    peak = None if fine is None else _highest_peak(*fine, gear)
+    peak = _highest_peak(facts, gear)
     if peak is not None:
         multiple = f"{peak.multiple:g}"
         term = f"ripple=({multiple},)" if peak.multiple.is_integer() else "a ripple term"

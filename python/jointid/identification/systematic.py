@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.identification.problem import Problem, output_torque
+from jointid.identification.covariance import Triangle
+from jointid.identification.problem import Problem
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -18,6 +19,7 @@ def systematic_errors(
     best: Array,
     free: list[int],
     jacobian: Array,
+    columns: Array,
     shifts: tuple[Array | None, Array | None],
 ) -> Array:
     """Size of the errors that remain however long the recording is, as standard errors.
@@ -28,6 +30,8 @@ def systematic_errors(
         The parameters that were free, and the columns of `jacobian`.
     jacobian : ndarray, shape (windows, p)
         Derivatives of the residuals at `best`.
+    columns : ndarray, shape (windows, coefficients)
+        The penalty's columns at `best`.
     shifts : tuple of ndarray or None
         How each parameter moves when the windows are halved and doubled.
 
@@ -38,10 +42,12 @@ def systematic_errors(
     """
     moved = [shift[free] for shift in shifts if shift is not None]
     of_windows = np.sqrt(np.mean(np.square(moved), axis=0)) if moved else np.zeros(len(free))
-    return np.asarray(np.hypot(of_windows, _of_sampling(problem, penalty, best, jacobian)))
+    return np.asarray(np.hypot(of_windows, _of_sampling(problem, penalty, best, jacobian, columns)))
 
 
-def _of_sampling(problem: Problem, penalty: _core.Penalty, best: Array, jacobian: Array) -> Array:
+def _of_sampling(
+    problem: Problem, penalty: _core.Penalty, best: Array, jacobian: Array, columns: Array
+) -> Array:
     """Effect of not knowing on which side of a command's step the sensor was sampled.
 
     A held torque steps at the samples. Its step accelerates the drive and the link together, and the
@@ -55,35 +61,34 @@ def _of_sampling(problem: Problem, penalty: _core.Penalty, best: Array, jacobian
     bounds = np.asarray(penalty.windows)
     run = np.asarray(penalty.recording_of)
     duration = np.asarray(penalty.usable_duration)
+    steps = np.asarray(penalty.torque_steps(problem.in_core, problem.mask_standstill))
     accelerated, angle, stepped = np.zeros((3, run.size))
     for number, recording in enumerate(problem.recordings):
         if not _held(problem, recording):
             continue
-        mine = run == number
+        mine = slice(*np.searchsorted(run, (number, number + 1)))
         first, last = bounds[mine, 0], bounds[mine, 1]
         accelerated[mine] = recording.velocity[last] - recording.velocity[first]
         angle[mine] = 0.5 * (recording.position[first] + recording.position[last])
-        core = problem.in_core(recording)
-        usable = np.asarray(_core.usable_intervals(core, problem.mask_standstill), dtype=np.bool_)
-        steps = np.where(usable, np.diff(output_torque(recording, problem.joint)), 0.0)
-        risen = np.concatenate([[0.0], np.cumsum(steps)])
-        stepped[mine] = recording.sample_period * (risen[last] - risen[first])
+        stepped[mine] = recording.sample_period * steps[mine]
     if not np.any(stepped) or run.size < 50:
         return nothing
     gain = float(best[names.index("sensor_gain")])
-    reading = penalty.columns(best[penalty.coefficients :])[:, names.index("sensor_gain")]
+    reading = columns[:, names.index("sensor_gain")]
     link = np.column_stack(
-        [accelerated, duration * np.cos(angle), duration * np.sin(angle), duration]
+        [accelerated, duration * np.cos(angle), duration * np.sin(angle), duration, reading]
     )
-    share = float(np.linalg.lstsq(link, reading, rcond=1e-10)[0][0])  # the link's inertia / gain
+    # The link's inertia over the gain.
+    share = float(Triangle(link, problem.threads).solve([0, 1, 2, 3], 4, rcond=1e-10)[0][0])
     both = float(best[names.index("inertia")]) + share * gain
     if both <= 0.0 or share * gain <= 0.0:
         return nothing
     lacking = 0.5 * share / both * stepped
     if penalty.residual == _core.Residual.torque:
         lacking = lacking * gain
-    scale = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-300)
-    return np.asarray(np.abs(np.linalg.lstsq(jacobian / scale, lacking, rcond=1e-10)[0]) / scale)
+    count = jacobian.shape[1]
+    both_sides = Triangle(np.column_stack([jacobian, lacking]), problem.threads)
+    return np.abs(both_sides.solve(list(range(count)), count, rcond=1e-10)[0])
 
 
 def _held(problem: Problem, recording: Recording) -> bool:

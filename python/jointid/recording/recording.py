@@ -218,7 +218,7 @@ class Recording:
         digest = hashlib.sha256()
         for name in self.signals:
             digest.update(f"{name}:{len(self)};".encode())
-            digest.update(getattr(self, name).astype("<f8").tobytes())
+            digest.update(np.ascontiguousarray(getattr(self, name), dtype="<f8").data)
         return digest.hexdigest()[:16]
 
     def unit(self, signal: str) -> str:

@@ -1,0 +1,110 @@
+#pragma once
+// Exact quantiles without sorting or copying the whole: a sample tells where the wanted rank lies,
+// one pass counts what is below and keeps the few values near it.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "base/cancel.hpp"
+
+namespace jointid::base {
+
+namespace quantile_detail {
+
+constexpr std::size_t kSample = 1024;
+constexpr std::size_t kCopied = 4096;  // so few are copied and partitioned as they are
+constexpr double kMargin = 0.06;       // share of the sample either side of the wanted rank
+constexpr std::size_t kBlock = 65536;  // values between two looks at the cancel flag
+
+/// The values of rank `rank` and the next one (the same if there is none) of a scratch vector.
+inline void two_of(std::vector<double>& values, std::size_t rank, double& first, double& second) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::nth_element(values.begin(), middle, values.end());
+  first = *middle;
+  second = middle + 1 == values.end() ? first : *std::min_element(middle + 1, values.end());
+}
+
+inline double between(double first, double second, double share) {
+  return share == 0.0 ? first : first + share * (second - first);
+}
+
+}  // namespace quantile_detail
+
+/// The quantile `q` (0 to 1, linear between neighbours; 0.5 is the median) of the values that
+/// `value(i, out)` gives for i < count and for which it returns true; `kept` is their number. 0
+/// without any.
+template <class Value>
+double quantile(std::size_t count, std::size_t kept, double q, Value value,
+                const Cancel* cancel = nullptr) {
+  using namespace quantile_detail;
+  if (kept == 0) return 0.0;
+  const double position = q * static_cast<double>(kept - 1);
+  const auto rank = static_cast<std::size_t>(position);
+  const double share = position - static_cast<double>(rank);
+  double first = 0.0;
+  double second = 0.0;
+  double one = 0.0;
+  std::vector<double> near;
+  if (kept > kCopied) {
+    // Strides of changing length: a motion that repeats must not show the same phase each time.
+    const std::size_t stride = std::max<std::size_t>(1, count / (kSample * 2));
+    std::uint64_t state = 88172645463325252ULL;
+    for (std::size_t begin = 0; begin + stride <= count; begin += stride) {
+      state ^= state << 13U;
+      state ^= state >> 7U;
+      state ^= state << 17U;
+      if (value(begin + state % stride, one)) near.push_back(one);
+    }
+    if (near.size() >= kSample / 4) {
+      std::sort(near.begin(), near.end());
+      const auto last = static_cast<double>(near.size() - 1);
+      const double low = near[static_cast<std::size_t>(std::max(0.0, q - kMargin) * last)];
+      const double high = near[static_cast<std::size_t>(std::min(1.0, q + kMargin) * last)];
+      std::size_t below = 0;
+      std::size_t at_low = 0;
+      std::size_t at_high = 0;
+      near.clear();
+      for (std::size_t begin = 0; begin < count; begin += kBlock) {
+        if (cancel != nullptr) cancel->check();
+        const std::size_t end = std::min(count, begin + kBlock);
+        for (std::size_t i = begin; i < end; ++i) {
+          if (!value(i, one)) continue;
+          below += one < low ? 1U : 0U;
+          if (one < low || one > high) continue;
+          if (one == low) {
+            ++at_low;
+          } else if (one == high) {
+            ++at_high;
+          } else {
+            near.push_back(one);
+          }
+        }
+      }
+      const std::size_t reached = below + at_low + near.size() + at_high;
+      if (rank >= below && rank + 1 < reached) {
+        const std::size_t ends = below + at_low;  // values up to `low`
+        const std::size_t inner = near.size();
+        const auto at = [&](std::size_t wanted) {
+          if (wanted < ends) return low;
+          if (wanted >= ends + inner) return high;
+          const auto it = near.begin() + static_cast<std::ptrdiff_t>(wanted - ends);
+          std::nth_element(near.begin(), it, near.end());
+          return *it;
+        };
+        first = at(rank);
+        return between(first, share == 0.0 ? first : at(rank + 1), share);
+      }
+    }
+    near.clear();
+  }
+  near.reserve(kept);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (value(i, one)) near.push_back(one);
+  }
+  two_of(near, rank, first, second);
+  return between(first, second, share);
+}
+
+}  // namespace jointid::base

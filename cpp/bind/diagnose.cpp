@@ -1,0 +1,121 @@
+#include "bind/recording.hpp"
+#include "diagnose/inspection.hpp"
+#include "identify/regression.hpp"
+
+namespace jointid::bind {
+
+using diagnose::Inspection;
+using diagnose::Limit;
+using diagnose::SignalFacts;
+using diagnose::Spike;
+using diagnose::SpikeRule;
+
+namespace {
+
+using Array = SharedRecording::Array;
+
+diagnose::Signal signal(const Array& array) {
+  return {array.data(), static_cast<Eigen::Index>(array.size())};
+}
+
+}  // namespace
+
+void bind_diagnose(py::module_& m) {
+  py::native_enum<SpikeRule>(m, "SpikeRule", "enum.Enum",
+                             "What a spike of a signal is held against.")
+      .value("position", SpikeRule::position)
+      .value("command", SpikeRule::command)
+      .value("other", SpikeRule::other)
+      .finalize();
+  py::class_<Limit>(m, "Limit", "Samples at one of a signal's extremes.")
+      .def_readonly("there", &Limit::there, "On it.")
+      .def_readonly("moving", &Limit::moving, "On it while the joint moves.")
+      .def_readonly("near", &Limit::near, "Within 1 % of the range, those on it too.");
+  py::class_<SignalFacts>(m, "SignalFacts", "What a single signal shows by itself.")
+      .def_property_readonly("lowest", [](const SignalFacts& f) { return f.range.lowest; })
+      .def_property_readonly("highest", [](const SignalFacts& f) { return f.range.highest; })
+      .def_readonly("fine", &SignalFacts::fine, "The usual step is at least 30 smallest ones.")
+      .def_readonly("changes", &SignalFacts::changes, "Steps that are not zero.")
+      .def_readonly("lower", &SignalFacts::lower)
+      .def_readonly("upper", &SignalFacts::upper)
+      .def_readonly("moving", &SignalFacts::moving, "Intervals at a fair speed.")
+      .def_readonly("stale", &SignalFacts::stale, "Of those: no step, and not on a limit.")
+      .def_readonly("frozen", &SignalFacts::frozen, "Of those: in long runs.");
+  py::class_<Spike>(m, "Spike", "The largest spike of a signal.")
+      .def_readonly("height", &Spike::height)
+      .def_readonly("index", &Spike::index)
+      .def_readonly("count", &Spike::count, "0: none.");
+  py::class_<diagnose::Agreement>(
+      m, "Agreement", "position change = scale * integrated velocity + lag * velocity change.")
+      .def_readonly("scale", &diagnose::Agreement::scale)
+      .def_readonly("lag", &diagnose::Agreement::lag, "[s]")
+      .def_readonly("lag_error", &diagnose::Agreement::lag_error, "[s]");
+  py::class_<Inspection>(m, "Inspection", "What a recording shows by itself.")
+      .def_readonly("peak_speed", &Inspection::peak_speed)
+      .def_readonly("facts", &Inspection::facts, "One a channel.")
+      .def_readonly("spikes", &Inspection::spikes, "One a channel.")
+      .def_readonly("jump", &Inspection::jump,
+                    "The sample before a jump of the position; -1: none.")
+      .def_readonly("agreement", &Inspection::agreement)
+      .def_property_readonly(
+          "swing", [](const Inspection& i) { return i.position.highest - i.position.lowest; })
+      .def_property_readonly(
+          "sensor_lag",
+          [](const Inspection& i) { return std::make_pair(i.sensor.lag, i.sensor.error); },
+          "How late the sensor is, and the error of that [s].")
+      .def_property_readonly(
+          "timing_errors",
+          [](const Inspection& i) {
+            return std::make_pair(i.timing.as_stamped, i.timing.as_uniform);
+          },
+          "Scatter of the samples' times about the stamps and about an even grid [s].");
+  m.def(
+      "inspect",
+      [](const Array& time, const Array& position, const Array& velocity, bool velocity_derived,
+         const std::optional<Array>& sensor, double period,
+         const std::vector<std::tuple<Array, SpikeRule, bool>>& channels, int threads) {
+        diagnose::Subject subject{signal(time),
+                                  signal(position),
+                                  signal(velocity),
+                                  velocity_derived,
+                                  std::nullopt,
+                                  period,
+                                  {}};
+        if (sensor) subject.sensor.emplace(signal(*sensor));
+        for (const auto& [values, rule, spikes] : channels) {
+          subject.channels.push_back({signal(values), rule, spikes});
+        }
+        const py::gil_scoped_release nogil;
+        return with_pool(time.size(), threads,
+                         [&](base::Pool* pool) { return diagnose::inspect(subject, pool); });
+      },
+      py::kw_only(), py::arg("time"), py::arg("position"), py::arg("velocity"),
+      py::arg("velocity_derived"), py::arg("sensor"), py::arg("period"), py::arg("channels"),
+      py::arg("threads") = 0,
+      "Look at a recording's signals; a channel is a signal, its rule, and whether to look for "
+      "spikes.");
+  using Matrix = Eigen::Ref<const Eigen::MatrixXd>;
+  constexpr std::int64_t kSamplesEach = 10;  // a row is a window
+  m.def(
+      "triangle",
+      [](const Matrix& matrix, int threads) {
+        const py::gil_scoped_release nogil;
+        return with_pool(matrix.rows() * kSamplesEach, threads,
+                         [&](base::Pool* pool) { return identify::triangle(matrix, pool); });
+      },
+      py::arg("matrix"), py::kw_only(), py::arg("threads") = 0,
+      "R of the QR decomposition of a tall matrix.");
+  m.def(
+      "robust_variance",
+      [](const Matrix& jacobian, const Eigen::VectorXd& residual, const Eigen::VectorXd& scale,
+         const Eigen::MatrixXd& weights, int threads) {
+        const py::gil_scoped_release nogil;
+        return with_pool(jacobian.rows() * kSamplesEach, threads, [&](base::Pool* pool) {
+          return identify::robust_variance(jacobian, residual, scale, weights, pool);
+        });
+      },
+      py::arg("jacobian"), py::arg("residual"), py::arg("scale"), py::arg("weights"), py::kw_only(),
+      py::arg("threads") = 0, "Prewhitened Newey-West variance of weighted sums of the scores.");
+}
+
+}  // namespace jointid::bind

@@ -1,0 +1,47 @@
+#pragma once
+// A recording as Python hands it over: views of its arrays, which are kept alive, and the mask,
+// found when first asked for.
+
+#include <pybind11/numpy.h>
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "base/pool.hpp"
+#include "bind/bind.hpp"
+#include "identify/masked_recording.hpp"
+
+namespace jointid::bind {
+
+/// Below, a pool costs more than it saves, and Ctrl-C comes soon enough without.
+constexpr std::int64_t kManySamples = 200000;
+
+/// Calls work with a pool that looks for Ctrl-C where there are many samples, else with null.
+template <class Work>
+auto with_pool(std::int64_t samples, int threads, Work work) {
+  if (samples < kManySamples) return work(static_cast<base::Pool*>(nullptr));
+  base::Pool pool(threads, SignalPoll{});
+  return work(&pool);
+}
+
+class SharedRecording {
+ public:
+  using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+  SharedRecording(std::vector<Array> signals, identify::Hold hold, std::vector<std::int64_t> gaps);
+  [[nodiscard]] const identify::RecordingView& view() const { return view_; }
+  [[nodiscard]] std::int64_t samples() const { return view_.samples(); }
+  /// Found once for each choice; called without the GIL.
+  [[nodiscard]] std::shared_ptr<const identify::MaskedRecording> masked(bool mask_standstill,
+                                                                        base::Pool* pool);
+
+ private:
+  std::vector<Array> signals_;
+  identify::RecordingView view_;
+  std::mutex mutex_;
+  std::array<std::shared_ptr<const identify::MaskedRecording>, 2> masked_;
+};
+
+}  // namespace jointid::bind

@@ -1,0 +1,43 @@
+#pragma once
+// All checks of a recording by itself, as tasks of one pool.
+
+#include <optional>
+#include <vector>
+
+#include "base/pool.hpp"
+#include "diagnose/motion.hpp"
+#include "diagnose/spikes.hpp"
+
+namespace jointid::diagnose {
+
+/// A signal to look at.
+struct Channel {
+  Signal values;
+  SpikeRule rule;
+  bool look_for_spikes;
+};
+
+struct Subject {
+  Signal time;
+  Signal position;
+  Signal velocity;
+  bool velocity_derived;
+  std::optional<Signal> sensor;  ///< of a revolute joint
+  double period;                 ///< [s]
+  std::vector<Channel> channels;
+};
+
+struct Inspection {
+  double peak_speed = 0.0;
+  Extremes position;
+  std::vector<SignalFacts> facts;  ///< a channel
+  std::vector<Spike> spikes;       ///< a channel
+  std::int64_t jump = -1;
+  std::optional<Agreement> agreement;  ///< none also for a derived velocity
+  SensorLag sensor;
+  TimingErrors timing;
+};
+
+Inspection inspect(const Subject& subject, base::Pool* pool);
+
+}  // namespace jointid::diagnose

@@ -1,0 +1,142 @@
+#include "diagnose/spikes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/quantile.hpp"
+
+namespace jointid::diagnose {
+
+namespace {
+
+constexpr double kSpike = 25.0;         // usual changes over the spike's width
+constexpr double kPositionSpike = 8.0;  // usual changes
+constexpr double kOfRange = 0.1;        // of the range that holds 95 % of the samples
+constexpr double kOfCommand = 0.3;
+constexpr double kJump = 4.0;       // times the rate that 1 % of the intervals exceed
+constexpr double kClearly = 1e-12;  // rounding never decides
+constexpr Eigen::Index kBlock = 65536;
+
+/// Largest value(k), k < count, in four lanes.
+template <class Value>
+double largest(Eigen::Index count, const base::Cancel* cancel, Value value) {
+  std::array<double, 4> high{};
+  for (Eigen::Index begin = 0; begin < count; begin += kBlock) {
+    if (cancel != nullptr) cancel->check();
+    const Eigen::Index end = std::min(count, begin + kBlock);
+    Eigen::Index k = begin;
+    for (; k + 4 <= end; k += 4) {
+      for (std::size_t j = 0; j < 4; ++j) {
+        const double one = value(k + static_cast<Eigen::Index>(j));
+        high[j] = one > high[j] ? one : high[j];
+      }
+    }
+    for (; k < end; ++k) high[0] = std::max(high[0], value(k));
+  }
+  return *std::max_element(high.begin(), high.end());
+}
+
+template <class Value>
+std::int64_t first_at(Eigen::Index count, double wanted, Value value) {
+  for (Eigen::Index k = 0; k < count; ++k) {
+    if (value(k) == wanted) return k;
+  }
+  return 0;
+}
+
+double spread(const Signal& signal, const base::Cancel* cancel) {
+  const auto count = static_cast<std::size_t>(signal.size());
+  const auto value = [&](std::size_t k, double& out) {
+    out = signal[static_cast<Eigen::Index>(k)];
+    return true;
+  };
+  return base::quantile(count, count, 0.975, value, cancel) -
+         base::quantile(count, count, 0.025, value, cancel);
+}
+
+}  // namespace
+
+Spike largest_spike(const Signal& signal, SpikeRule rule, const base::Cancel* cancel) {
+  const double share = rule == SpikeRule::command ? kOfCommand : kOfRange;
+  const double times = rule == SpikeRule::position ? kPositionSpike : kSpike;
+  double range = -1.0;  // not known yet
+  for (const Eigen::Index width : {1, 3}) {
+    if (width > 1 && rule == SpikeRule::command) break;
+    const Eigen::Index changes = signal.size() - width;
+    const Eigen::Index places = changes - width;
+    if (places <= 0) break;
+    const auto size = [&](Eigen::Index k) { return std::fabs(signal[k + width] - signal[k]); };
+    const auto height = [&](Eigen::Index k) {
+      const double there = signal[k + width] - signal[k];
+      const double back = signal[k + width] - signal[k + 2 * width];
+      const double low = std::min(std::fabs(there), std::fabs(back));
+      return there * back > 0.0 ? low : 0.0;
+    };
+    const double highest = largest(places, cancel, height);
+    if (highest == 0.0) continue;
+    // More than half of the changes beyond this: so is the median, and the limit beyond `highest`.
+    const double enough = highest / times * (1.0 + kClearly);
+    std::int64_t positive = 0;
+    std::int64_t beyond = 0;
+    for (Eigen::Index k = 0; k < changes; ++k) {
+      positive += size(k) > 0.0 ? 1 : 0;
+      beyond += size(k) >= enough ? 1 : 0;
+    }
+    if (2 * beyond > positive + 1) continue;
+    if (rule != SpikeRule::position) {
+      if (range < 0.0) range = spread(signal, cancel);
+      if (highest <= share * std::sqrt(static_cast<double>(width)) * range) continue;
+    }
+    const double usual = base::quantile(
+        static_cast<std::size_t>(changes), static_cast<std::size_t>(positive), 0.5,
+        [&](std::size_t k, double& out) {
+          out = size(static_cast<Eigen::Index>(k));
+          return out > 0.0;
+        },
+        cancel);
+    const double limit =
+        rule == SpikeRule::position
+            ? times * usual
+            : std::max(times * usual, share * std::sqrt(static_cast<double>(width)) * range);
+    std::int64_t count = 0;
+    for (Eigen::Index k = 0; k < places; ++k) count += height(k) > limit ? 1 : 0;
+    if (count == 0) continue;
+    return {highest, first_at(places, highest, height) + width, (count + width - 1) / width};
+  }
+  return {};
+}
+
+std::int64_t largest_jump(const Signal& time, const Signal& position, const base::Cancel* cancel) {
+  const Eigen::Index count = position.size() - 1;
+  const auto rate = [&](Eigen::Index k) {
+    return std::fabs((position[k + 1] - position[k]) / (time[k + 1] - time[k]));
+  };
+  const double highest = largest(count, cancel, rate);
+  std::int64_t below = 0;
+  const double enough = highest / kJump * (1.0 + kClearly);
+  for (Eigen::Index k = 0; k < count; ++k) below += rate(k) < enough ? 1 : 0;
+  constexpr double kMost = 0.99;
+  if (static_cast<double>(below) <= std::floor(kMost * static_cast<double>(count - 1))) return -1;
+  const double usual = base::quantile(
+      static_cast<std::size_t>(count), static_cast<std::size_t>(count), kMost,
+      [&](std::size_t k, double& out) {
+        out = rate(static_cast<Eigen::Index>(k));
+        return true;
+      },
+      cancel);
+  const std::int64_t index = first_at(count, highest, rate);
+  if (highest < kJump * usual || index == 0 || index >= count - 1) return -1;
+  // A spike goes back; a jump stays.
+  const auto step = [&](Eigen::Index k) { return std::fabs(position[k + 1] - position[k]); };
+  const double beside = std::max(step(index - 1), step(index + 1));
+  double finest = std::numeric_limits<double>::infinity();
+  for (Eigen::Index k = 0; k < count; ++k) {
+    if (step(k) > 0.0) finest = std::min(finest, step(k));
+  }
+  const double half = 0.5 * step(index);
+  return beside < half && half > 4.0 * finest ? index : -1;
+}
+
+}  // namespace jointid::diagnose

@@ -1,0 +1,29 @@
+#pragma once
+// Single samples far off both neighbours, and positions that jump. Limits follow from the signal's
+// usual changes; where counting shows that the largest lies below its limit, no quantile is formed.
+
+#include <cstdint>
+
+#include "diagnose/signal_facts.hpp"
+
+namespace jointid::diagnose {
+
+enum class SpikeRule {
+  position,  ///< inertia makes it smooth
+  command,   ///< a controller may hit back hard
+  other,
+};
+
+struct Spike {
+  double height = 0.0;
+  std::int64_t index = 0;
+  std::int64_t count = 0;  ///< 0: none
+};
+
+Spike largest_spike(const Signal& signal, SpikeRule rule, const base::Cancel* cancel);
+
+/// The sample after which the position moves on faster than it ever does otherwise, and stays
+/// there; -1 without one.
+std::int64_t largest_jump(const Signal& time, const Signal& position, const base::Cancel* cancel);
+
+}  // namespace jointid::diagnose

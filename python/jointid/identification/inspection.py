@@ -1,0 +1,66 @@
+"""What a recording shows by itself: found in the core, in one go, for all checks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from jointid import _core
+from jointid.recording.recording import Recording
+
+DRIVE = ("torque", "motor_torque", "current")
+_CHANNELS = ("position", "velocity", *DRIVE, "sensor")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Inspected:
+    """A recording and what its signals show.
+
+    Attributes
+    ----------
+    recording : Recording
+    found : Inspection
+    channels : tuple of str
+        The signals looked at, in the order of `found.facts` and `found.spikes`.
+    """
+
+    recording: Recording
+    found: _core.Inspection
+    channels: tuple[str, ...]
+
+    def facts(self, name: str) -> _core.SignalFacts:
+        """Counts of one signal."""
+        return self.found.facts[self.channels.index(name)]
+
+    def spike(self, name: str) -> _core.Spike:
+        """The largest spike of one signal."""
+        return self.found.spikes[self.channels.index(name)]
+
+    def stale_share(self, name: str) -> float:
+        """Share of the moving samples at which a finely resolved signal does not change."""
+        facts = self.facts(name)
+        return facts.stale / facts.moving if facts.fine and facts.moving else 0.0
+
+
+def inspect(recording: Recording, threads: int = 0) -> Inspected:
+    """Look at all signals of a recording."""
+    signals = {
+        name: signal
+        for name in _CHANNELS
+        if (signal := getattr(recording, name)) is not None
+        and not (name == "velocity" and recording.velocity_derived)
+    }
+    rules = {"position": _core.SpikeRule.position} | dict.fromkeys(DRIVE, _core.SpikeRule.command)
+    found = _core.inspect(
+        time=recording.time,
+        position=recording.position,
+        velocity=recording.velocity,
+        velocity_derived=recording.velocity_derived,
+        sensor=recording.sensor if recording.kind == "revolute" else None,
+        period=recording.sample_period,
+        channels=[
+            (signal, rules.get(name, _core.SpikeRule.other), True)
+            for name, signal in signals.items()
+        ],
+        threads=threads,
+    )
+    return Inspected(recording=recording, found=found, channels=tuple(signals))
