@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "base/clones.hpp"
+
 namespace jointid::identify {
 
 namespace {
@@ -229,10 +231,24 @@ void append_nodes(const RecordingView& r, const std::vector<std::uint8_t>& usabl
 
 namespace {
 
-/// One loop for value and derivatives; the direction and the basis are settled outside it.
-template <class Basis>
+JOINTID_CLONES void stribeck_values(double shape, const double* speed, const double* weight,
+                                    std::size_t count, double* value) {
+  for (std::size_t i = 0; i < count; ++i) {
+    value[i] = weight[i] * model::basis_value(model::SpeedBasis::stribeck, speed[i], &shape);
+  }
+}
+
+JOINTID_CLONES void stribeck_slopes(double shape, const double* speed, const double* weight,
+                                    std::size_t count, double* value) {
+  for (std::size_t i = 0; i < count; ++i) {
+    value[i] = weight[i] * model::basis_slope(model::SpeedBasis::stribeck, speed[i], &shape, 0);
+  }
+}
+
+/// Sums a block's weighted values window by window; `fill` gives them.
+template <class Fill>
 void sum_nodes(const FrictionNodes& nodes, const base::Cancel* cancel,
-               Eigen::Ref<Eigen::VectorXd> column, Basis basis) {
+               Eigen::Ref<Eigen::VectorXd> column, Fill fill) {
   std::array<double, kBlock> value;
   const std::size_t windows = nodes.first.size() - 1;
   const std::size_t total = nodes.speed.size();
@@ -251,7 +267,7 @@ void sum_nodes(const FrictionNodes& nodes, const base::Cancel* cancel,
     const std::size_t count = std::min(kBlock, total - begin);
     const double* speed = nodes.speed.data() + begin;
     const double* weight = nodes.weight.data() + begin;
-    for (std::size_t i = 0; i < count; ++i) value[i] = weight[i] * basis(speed[i]);
+    fill(speed, weight, count, value.data());
     std::size_t i = 0;
     while (i < count) {
       const std::size_t stop = std::min(count, nodes.first[w + 1] - begin);
@@ -266,22 +282,23 @@ void sum_nodes(const FrictionNodes& nodes, const base::Cancel* cancel,
 
 void integrate_friction(const Term& term, const FrictionNodes& nodes, const double* shapes,
                         int which, const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) {
-  using model::SpeedBasis;
-  if (which != kValue && term.basis == SpeedBasis::stribeck) {  // spelt out: it must vectorise
-    const double shape = shapes[0];
+  if (term.basis == model::SpeedBasis::stribeck) {  // spelt out: these loops must vectorise
+    const auto values = which == kValue ? stribeck_values : stribeck_slopes;
     sum_nodes(nodes, cancel, column,
-              [shape](double v) { return model::basis_slope(SpeedBasis::stribeck, v, &shape, 0); });
-  } else if (which != kValue) {
-    sum_nodes(nodes, cancel, column,
-              [&](double v) { return model::basis_slope(term.basis, v, shapes, which); });
-  } else if (term.basis == SpeedBasis::stribeck) {  // spelt out: this loop must vectorise
-    const double shape = shapes[0];
-    sum_nodes(nodes, cancel, column,
-              [shape](double v) { return model::basis_value(SpeedBasis::stribeck, v, &shape); });
-  } else {
-    sum_nodes(nodes, cancel, column,
-              [&](double v) { return model::basis_value(term.basis, v, shapes); });
+              [&](const double* speed, const double* weight, std::size_t count, double* value) {
+                values(shapes[0], speed, weight, count, value);
+              });
+    return;
   }
+  sum_nodes(nodes, cancel, column,
+            [&](const double* speed, const double* weight, std::size_t count, double* value) {
+              for (std::size_t i = 0; i < count; ++i) {
+                value[i] =
+                    weight[i] * (which == kValue
+                                     ? model::basis_value(term.basis, speed[i], shapes)
+                                     : model::basis_slope(term.basis, speed[i], shapes, which));
+              }
+            });
 }
 
 FrictionNodes nodes_of(model::Direction direction, const FrictionNodes& nodes) {
