@@ -25,7 +25,9 @@ struct LugreObserver : Estimates {
     const double pulled =
         input.wanted.acceleration - 2.0 * bandwidth * error_rate - bandwidth * bandwidth * error;
     const double velocity = friction_speed(input);
+    const double model = inertia * pulled + viscous * velocity + link_torque(input);
     const double level = coulomb + static_excess * fading(velocity);
+    if (level <= 0.0) return model;  // no dry friction, no bristles
     // Exact over a period for the velocity at hand; the rate is that of the mean deflection.
     const double rate = bristle_stiffness * std::fabs(velocity) / level;
     const double inflow = velocity - observer_gain * r;
@@ -33,14 +35,12 @@ struct LugreObserver : Estimates {
     const double mean = x < 1e-9 ? 1.0 : (1.0 - base::exp(-x)) / x;
     const double change = mean * (inflow - rate * state.bristle);
     state.bristle += input.period * change;
-    return inertia * pulled + viscous * velocity + bristle_stiffness * state.bristle +
-           bristle_damping * change + link_torque(input);
+    return model + bristle_stiffness * state.bristle + bristle_damping * change;
   }
 
   void validate() const {
     const Requirement require("LugreObserver");
     validate_estimates(require);
-    require.above_zero("coulomb", coulomb);
     require.at_least_zero("bandwidth", bandwidth);
     require.above_zero("bristle_stiffness", bristle_stiffness);
     require.at_least_zero("bristle_damping", bristle_damping);

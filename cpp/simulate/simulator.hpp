@@ -16,11 +16,11 @@ namespace jointid::simulate {
 
 /// What all runs of a batch share.
 struct Scenario {
-  double duration = 0.0;
-  double control_period = 1e-3;      ///< the command is held so long
-  double integration_step = 2.5e-4;  ///< a whole number of them is a control period
-  int sample_every = 1;              ///< control periods a recorded sample
-  double settling = 0.0;             ///< left out of the tracking error [s]
+  double duration = 1.0;
+  double control_period = 1e-3;    ///< the command is held so long
+  double integration_step = 5e-4;  ///< a whole number of them is a control period
+  int sample_every = 1;            ///< control periods a recorded sample
+  double settling = 0.0;           ///< left out of the tracking error [s]
   Sensors sensors{};
 
   void validate() const;

@@ -1,0 +1,371 @@
+"""Simulate a joint in closed loop, once or many times."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, get_args
+
+import numpy as np
+
+from jointid import _core
+from jointid.errors import InputError
+from jointid.joint.joint import Joint
+from jointid.joint.link import Link
+from jointid.recording.signals import FloatArray
+from jointid.simulation.simulated_joint import Bristle, Values, simulated_joint
+from jointid.simulation.simulated_recording import SimulatedRecording
+from jointid.simulation.trajectory import Trajectory
+
+Controller = (
+    _core.OpenLoop
+    | _core.Pd
+    | _core.Pid
+    | _core.CompensatedPid
+    | _core.AdaptiveRobust
+    | _core.LugreObserver
+)
+
+_SUBSTEPS = 2  # integration steps a control period, unless told
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimulatedBatch:
+    """What came of many simulations, one entry each.
+
+    Parameters
+    ----------
+    error : ndarray, shape (n,)
+        Root mean square of the true tracking error after settling [rad].
+    peak_error : ndarray, shape (n,)
+        Its largest magnitude [rad].
+    saturations : ndarray, shape (n,)
+        Control periods in which the torque limit cut the command.
+    recordings : tuple of SimulatedRecording
+        Empty unless asked for.
+    """
+
+    error: FloatArray
+    peak_error: FloatArray
+    saturations: np.ndarray[Any, np.dtype[np.int64]]
+    recordings: tuple[SimulatedRecording, ...]
+
+
+def simulate(
+    joint: Joint,
+    controller: Controller,
+    trajectory: Trajectory,
+    *,
+    duration: float | None = None,
+    control_period: float = 1e-3,
+    sample_period: float | None = None,
+    integration_step: float | None = None,
+    sensors: _core.Sensors | None = None,
+    payload: Link | float = 0.0,
+    bristle: Bristle | None = None,
+    position: float | None = None,
+    velocity: float = 0.0,
+    seed: int = 0,
+    name: str = "",
+) -> SimulatedRecording:
+    """Simulate a joint that a controller moves along a trajectory.
+
+    Dry friction is set-valued at rest: below breakaway the joint does not move at all. The command
+    is held over each control period. Same arguments, same bits.
+
+    Parameters
+    ----------
+    joint : Joint
+        With a value for each parameter of its model: see `Joint.with_parameters`. Its link, if it
+        has a sensor and ``gravity="none"``, hangs behind the sensor; a link without inertia is a
+        point mass.
+    controller : OpenLoop, Pd, Pid, CompensatedPid, AdaptiveRobust or LugreObserver
+    trajectory : Trajectory
+        For `OpenLoop` it is the torque.
+    duration : float, optional
+        [s]. Default: the trajectory's.
+    control_period : float
+        Between commands [s]. Default 0.001.
+    sample_period : float, optional
+        Between recorded samples [s], a whole number of control periods. Default: one.
+    integration_step : float, optional
+        [s]; a whole number of them is a control period. Default: half of it.
+    sensors : Sensors, optional
+        Default: exact signals.
+    payload : Link or float
+        What hangs on the joint besides its own link, behind the sensor; a number is a constant
+        torque [N·m] against positive motion. Default 0.
+    bristle : Bristle, optional
+        Makes friction dynamic (Dahl, LuGre). Default: static.
+    position, velocity : float, optional
+        At the start [rad], [rad/s]. Default: the trajectory's position, at rest.
+    seed : int
+        Of the sensors' noise. Default 0.
+    name : str
+        Of the recording. Default ``""``.
+
+    Returns
+    -------
+    SimulatedRecording
+        Signals as the sensors saw them, the held torque, the reference; `truth` has the true
+        parameters, `truth.signals` the true signals. ``metadata["saturations"]`` counts the control
+        periods in which the torque limit cut the command.
+
+    Raises
+    ------
+    InputError
+        Anything that cannot be used, or a loop that is not stable, in one sentence.
+    KeyboardInterrupt
+        Ctrl-C, within 0.1 s.
+    """
+    batch = simulate_batch(
+        joint,
+        controller,
+        trajectory,
+        duration=duration,
+        control_period=control_period,
+        sample_period=sample_period,
+        integration_step=integration_step,
+        sensors=sensors,
+        payload=payload,
+        bristle=bristle,
+        position=position,
+        velocity=velocity,
+        seeds=seed,
+        recordings=True,
+        threads=1,
+        name=name,
+    )
+    return batch.recordings[0]
+
+
+def simulate_batch(
+    joints: Joint | Sequence[Joint],
+    controllers: Controller | Sequence[Controller],
+    trajectory: Trajectory,
+    *,
+    duration: float | None = None,
+    control_period: float = 1e-3,
+    sample_period: float | None = None,
+    integration_step: float | None = None,
+    sensors: _core.Sensors | None = None,
+    payload: Link | float = 0.0,
+    bristle: Bristle | None = None,
+    position: float | None = None,
+    velocity: float = 0.0,
+    seeds: int | Sequence[int] = 0,
+    settling: float | None = None,
+    recordings: bool = False,
+    threads: int = 0,
+    name: str = "",
+) -> SimulatedBatch:
+    """Simulate many joints, controllers or seeds along one trajectory, side by side.
+
+    Each is the same, bit for bit, as `simulate` alone.
+
+    Parameters
+    ----------
+    joints, controllers, seeds
+        One for all, or a sequence; sequences have one length.
+    settling : float, optional
+        Time at the start that the tracking error leaves out [s]. Default: a sixth of the duration.
+    recordings : bool
+        Whether to keep the signals, too. Default False.
+    threads : int
+        0 (default): all.
+    trajectory, duration, control_period, sample_period, integration_step, sensors, payload, \
+bristle, position, velocity, name
+        As in `simulate`.
+
+    Returns
+    -------
+    SimulatedBatch
+
+    Raises
+    ------
+    InputError
+        As in `simulate`, or sequences of different lengths.
+    """
+    if not isinstance(trajectory, Trajectory):
+        raise InputError(f"trajectory is {trajectory!r}; a jointid.Trajectory is expected")
+    joint_list, controller_list, seed_list = _side_by_side(joints, controllers, seeds)
+    if not isinstance(payload, Link):
+        payload = _finite("payload", payload)
+    if bristle is not None and not isinstance(bristle, Bristle):
+        raise InputError(f"bristle is {bristle!r}; a jointid.Bristle is expected")
+    period = _positive("control_period", control_period)
+    every = 1 if sample_period is None else _whole("sample_period", sample_period, period)
+    length = trajectory.duration if duration is None else _positive("duration", duration)
+    try:
+        scenario = _core.Scenario(
+            duration=length,
+            control_period=period,
+            integration_step=(
+                period / _SUBSTEPS
+                if integration_step is None
+                else _positive("integration_step", integration_step)
+            ),
+            sample_every=every,
+            settling=length / 6.0 if settling is None else _finite("settling", settling),
+            sensors=_core.Sensors() if sensors is None else sensors,
+        )
+        setups, truths = [], []
+        for joint, controller, seed in zip(joint_list, controller_list, seed_list, strict=True):
+            setup, truth = _setup(joint, controller, seed, payload, bristle, scenario)
+            start = (
+                trajectory.core.at(0.0)[0] if not isinstance(controller, _core.OpenLoop) else 0.0
+            )
+            setups.append(
+                setup.replace(
+                    position=start if position is None else _finite("position", position),
+                    velocity=_finite("velocity", velocity),
+                )
+            )
+            truths.append(truth)
+        outcomes = _core.simulate_runs(
+            scenario, trajectory.core, setups, signals=recordings, threads=threads
+        )
+    except (ValueError, TypeError, RuntimeError) as error:
+        raise InputError(str(error)) from None
+    made = (
+        _recording(outcome, joint, controller, truth, scenario, seed, name)
+        for outcome, joint, controller, truth, seed in zip(
+            outcomes, joint_list, controller_list, truths, seed_list, strict=True
+        )
+    )
+    return SimulatedBatch(
+        error=np.array([outcome.rms_error for outcome in outcomes]),
+        peak_error=np.array([outcome.peak_error for outcome in outcomes]),
+        saturations=np.array([outcome.saturations for outcome in outcomes], dtype=np.int64),
+        recordings=tuple(made) if recordings else (),
+    )
+
+
+def _setup(
+    joint: Joint,
+    controller: Controller,
+    seed: int,
+    payload: Link | float,
+    bristle: Bristle | None,
+    scenario: _core.Scenario,
+) -> tuple[_core.Setup, dict[str, float]]:
+    values = Values(joint)
+    plant = simulated_joint(joint, values, payload, bristle)
+    setup = _core.Setup(
+        joint=plant,
+        controller=controller,
+        gear_ratio=joint.gear_ratio,
+        sensor_gain=values.need("sensor_gain") if joint.sensor else 1.0,
+        sensor_offset=values.need("sensor_offset") if joint.sensor else 0.0,
+        seed=seed,
+    )
+    truth = dict(values.used)
+    if scenario.sensors.ripple > 0.0:
+        truth["sensor_ripple"] = scenario.sensors.ripple
+    return setup, truth
+
+
+def _recording(
+    outcome: _core.Outcome,
+    joint: Joint,
+    controller: Controller,
+    truth: dict[str, float],
+    scenario: _core.Scenario,
+    seed: int,
+    name: str,
+) -> SimulatedRecording:
+    signals = outcome.signals
+    count = len(signals["position"])
+    torque = signals["torque"]
+    exact = scenario.sensors.velocity == "exact"
+    return SimulatedRecording(
+        time=np.arange(count) * (scenario.control_period * scenario.sample_every),
+        position=signals["position"],
+        velocity=signals["velocity"],
+        torque=torque,
+        sensor=signals["reading"] if joint.sensor else None,
+        reference=None if isinstance(controller, _core.OpenLoop) else signals["reference"],
+        kind=joint.kind,
+        torque_hold="zoh",
+        velocity_derived=not exact,
+        name=name,
+        metadata={
+            "simulated": True,
+            "controller": repr(controller),
+            "sensors": scenario.sensors.asdict(),
+            "control_period": scenario.control_period,
+            "integration_step": scenario.integration_step,
+            "seed": seed,
+            "saturations": outcome.saturations,
+        },
+        truth=truth,
+        true_signals={
+            "position": signals["true_position"],
+            "velocity": signals["true_velocity"],
+            "acceleration": signals["true_acceleration"],
+            "friction": signals["friction"],
+            "link_torque": signals["link_torque"],
+            "motor_torque": torque / joint.gear_ratio,
+        },
+    )
+
+
+def _side_by_side(
+    joints: Any, controllers: Any, seeds: Any
+) -> tuple[list[Joint], list[Controller], list[int]]:
+    given = {"joints": joints, "controllers": controllers, "seeds": seeds}
+    known: dict[str, tuple[type, ...]] = {
+        "joints": (Joint,),
+        "controllers": get_args(Controller),
+        "seeds": (int, np.integer),
+    }
+    lists = {}
+    for what, value in given.items():
+        single = isinstance(value, known[what])
+        lists[what] = [value] if single or isinstance(value, str) else list(_iterable(what, value))
+        for entry in lists[what]:
+            if not isinstance(entry, known[what]) or isinstance(entry, bool):
+                names = ", ".join(kind.__name__ for kind in known[what])
+                raise InputError(f"{what}: {entry!r} is none of {names}")
+    count = max(len(entries) for entries in lists.values())
+    for what, entries in lists.items():
+        if len(entries) not in (1, count) or not entries:
+            raise InputError(
+                f"{what} has {len(entries)} entries where others have {count}; give one for all, or "
+                "as many"
+            )
+        lists[what] = entries if len(entries) == count else entries * count
+    for seed in lists["seeds"]:
+        if not 0 <= seed < 2**64:
+            raise InputError(f"seed is {seed}; a whole number from 0 to 2**64 - 1 is expected")
+    return lists["joints"], lists["controllers"], [int(seed) for seed in lists["seeds"]]
+
+
+def _iterable(what: str, value: Any) -> Any:
+    try:
+        return iter(value)
+    except TypeError:
+        raise InputError(f"{what} is {value!r}, which cannot be used") from None
+
+
+def _finite(what: str, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
+        raise InputError(f"{what} is {value!r}; a number is expected")
+    if not math.isfinite(value):
+        raise InputError(f"{what} is {value}; a finite number is expected")
+    return float(value)
+
+
+def _positive(what: str, value: Any) -> float:
+    number = _finite(what, value)
+    if number <= 0.0:
+        raise InputError(f"{what} is {number!r}; more than 0 is expected")
+    return number
+
+
+def _whole(what: str, value: Any, period: float) -> int:
+    ratio = _positive(what, value) / period
+    if round(ratio) < 1 or abs(ratio - round(ratio)) > 1e-6 * ratio:
+        raise InputError(
+            f"{what} is {value!r}; a whole number of control periods ({period!r} s) is expected"
+        )
+    return round(ratio)
