@@ -49,7 +49,7 @@ struct AdaptiveRobust : Estimates {
   }
 
   void validate() const {
-    const Requirement require("AdaptiveRobust");
+    const base::Requirement require("AdaptiveRobust");
     validate_estimates(require);
     require.at_least_zero("bandwidth", bandwidth);
     require.at_least_zero("robust_torque", robust_torque);
@@ -62,7 +62,7 @@ struct AdaptiveRobust : Estimates {
   static AdaptiveRobust from_motor_side(double gear_ratio, double bandwidth, double robust_torque,
                                         double boundary, double adaptation_gain) {
     const double ratio = std::fabs(gear_ratio);
-    Requirement("AdaptiveRobust").above_zero("gear_ratio", ratio);
+    base::Requirement("AdaptiveRobust").above_zero("gear_ratio", ratio);
     AdaptiveRobust law;
     law.bandwidth = bandwidth;
     law.robust_torque = robust_torque * ratio;

@@ -21,7 +21,7 @@ class ControlRun {
       : running_(std::visit([](const auto& law) -> Any { return begin(law); }, controller)),
         period_(period),
         torque_limit_(torque_limit) {
-    const Requirement require("controller");
+    const base::Requirement require("controller");
     require.above_zero("period", period);
     require.that(torque_limit > 0.0, "torque_limit", torque_limit, "above 0");
   }

@@ -7,7 +7,7 @@
 
 #include "base/choices.hpp"
 #include "base/elementary.hpp"
-#include "simulate/require.hpp"
+#include "base/require.hpp"
 #include "simulate/trajectory.hpp"
 
 namespace jointid::simulate {
@@ -48,7 +48,7 @@ struct Estimates {
   [[nodiscard]] double fading(double velocity) const {
     return base::exp(-(stribeck * velocity * velocity));
   }
-  void validate_estimates(const Requirement& require) const {
+  void validate_estimates(const base::Requirement& require) const {
     require.at_least_zero("inertia", inertia);
     require.at_least_zero("coulomb", coulomb);
     require.at_least_zero("static", static_excess);

@@ -39,7 +39,7 @@ struct LugreObserver : Estimates {
   }
 
   void validate() const {
-    const Requirement require("LugreObserver");
+    const base::Requirement require("LugreObserver");
     validate_estimates(require);
     require.at_least_zero("bandwidth", bandwidth);
     require.above_zero("bristle_stiffness", bristle_stiffness);

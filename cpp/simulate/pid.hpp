@@ -16,7 +16,7 @@ struct OpenLoop {
   [[nodiscard]] double law(State&, const ControlInput& input) const {
     return gain * input.wanted.position;
   }
-  void validate() const { Requirement("OpenLoop").finite("gain", gain); }
+  void validate() const { base::Requirement("OpenLoop").finite("gain", gain); }
 };
 
 struct Pd {
@@ -29,7 +29,7 @@ struct Pd {
            damping * (input.wanted.velocity - input.velocity);
   }
   void validate() const {
-    const Requirement require("Pd");
+    const base::Requirement require("Pd");
     require.at_least_zero("stiffness", stiffness);
     require.at_least_zero("damping", damping);
   }
@@ -50,8 +50,8 @@ struct Pid {
         std::clamp(state.torque + integral * error * input.period, -integral_limit, integral_limit);
     return stiffness * error + state.torque + damping * (input.wanted.velocity - input.velocity);
   }
-  void validate() const { validate_as(Requirement("Pid")); }
-  void validate_as(const Requirement& require) const {
+  void validate() const { validate_as(base::Requirement("Pid")); }
+  void validate_as(const base::Requirement& require) const {
     require.at_least_zero("stiffness", stiffness);
     require.at_least_zero("integral", integral);
     require.at_least_zero("damping", damping);
@@ -67,7 +67,7 @@ struct CompensatedPid : Pid, Estimates {
            dry * sign_of(velocity) + link_torque(input);
   }
   void validate() const {
-    const Requirement require("CompensatedPid");
+    const base::Requirement require("CompensatedPid");
     validate_as(require);
     validate_estimates(require);
   }

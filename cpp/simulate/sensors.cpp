@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/elementary.hpp"
+#include "base/require.hpp"
 #include "simulate/gaussian.hpp"
-#include "simulate/require.hpp"
 
 namespace jointid::simulate {
 
@@ -18,7 +18,7 @@ constexpr std::uint32_t kConverterNoise = 1;
 }  // namespace
 
 void Sensors::validate() const {
-  const Requirement require("Sensors");
+  const base::Requirement require("Sensors");
   require.at_least_zero("encoder_counts", encoder_counts);
   require.that(velocity_counts >= 1, "velocity_counts", velocity_counts, "at least 1");
   require.above_zero("velocity_time", velocity_time);

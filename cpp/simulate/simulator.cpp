@@ -164,7 +164,7 @@ std::vector<std::span<const Setup>> groups(const std::vector<Setup>& setups) {
 }  // namespace
 
 void Scenario::validate() const {
-  const Requirement require("Scenario");
+  const base::Requirement require("Scenario");
   require.above_zero("control_period", control_period);
   require.above_zero("integration_step", integration_step);
   require.above_zero("duration", duration);
@@ -191,7 +191,7 @@ int Scenario::substeps() const {
 }
 
 void Setup::validate() const {
-  const Requirement require("Setup");
+  const base::Requirement require("Setup");
   joint.validate();
   require.that(gear_ratio != 0.0 && std::isfinite(gear_ratio), "gear_ratio", gear_ratio,
                "finite and not 0");

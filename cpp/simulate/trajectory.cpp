@@ -6,14 +6,14 @@
 #include <utility>
 
 #include "base/elementary.hpp"
-#include "simulate/require.hpp"
+#include "base/require.hpp"
 
 namespace jointid::simulate {
 
 namespace {
 
 constexpr double kPi = 0x1.921fb54442d18p+1;
-constexpr Requirement require("Trajectory");
+constexpr base::Requirement require("Trajectory");
 
 /// Second derivatives at the knots of the natural cubic spline (tridiagonal elimination).
 Eigen::VectorXd bends(const Eigen::VectorXd& time, const Eigen::VectorXd& position) {

@@ -1,9 +1,8 @@
 """Simulate a joint in closed loop, once or many times."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 
@@ -12,18 +11,16 @@ from jointid.errors import InputError
 from jointid.joint.joint import Joint
 from jointid.joint.link import Link
 from jointid.recording.signals import FloatArray
-from jointid.simulation.simulated_joint import Bristle, Values, simulated_joint
+from jointid.simulation.arguments import (
+    Controller,
+    finite,
+    positive,
+    side_by_side,
+    whole_multiple,
+)
+from jointid.simulation.plant import Bristle, Values, simulated_joint
 from jointid.simulation.simulated_recording import SimulatedRecording
 from jointid.simulation.trajectory import Trajectory
-
-Controller = (
-    _core.OpenLoop
-    | _core.Pd
-    | _core.Pid
-    | _core.CompensatedPid
-    | _core.AdaptiveRobust
-    | _core.LugreObserver
-)
 
 _SUBSTEPS = 2  # integration steps a control period, unless told
 
@@ -187,14 +184,14 @@ bristle, position, velocity, name
     """
     if not isinstance(trajectory, Trajectory):
         raise InputError(f"trajectory is {trajectory!r}; a jointid.Trajectory is expected")
-    joint_list, controller_list, seed_list = _side_by_side(joints, controllers, seeds)
+    joint_list, controller_list, seed_list = side_by_side(joints, controllers, seeds)
     if not isinstance(payload, Link):
-        payload = _finite("payload", payload)
+        payload = finite("payload", payload)
     if bristle is not None and not isinstance(bristle, Bristle):
         raise InputError(f"bristle is {bristle!r}; a jointid.Bristle is expected")
-    period = _positive("control_period", control_period)
-    every = 1 if sample_period is None else _whole("sample_period", sample_period, period)
-    length = trajectory.duration if duration is None else _positive("duration", duration)
+    period = positive("control_period", control_period)
+    every = 1 if sample_period is None else whole_multiple("sample_period", sample_period, period)
+    length = trajectory.duration if duration is None else positive("duration", duration)
     try:
         scenario = _core.Scenario(
             duration=length,
@@ -202,10 +199,10 @@ bristle, position, velocity, name
             integration_step=(
                 period / _SUBSTEPS
                 if integration_step is None
-                else _positive("integration_step", integration_step)
+                else positive("integration_step", integration_step)
             ),
             sample_every=every,
-            settling=length / 6.0 if settling is None else _finite("settling", settling),
+            settling=length / 6.0 if settling is None else finite("settling", settling),
             sensors=_core.Sensors() if sensors is None else sensors,
         )
         setups, truths = [], []
@@ -216,8 +213,8 @@ bristle, position, velocity, name
             )
             setups.append(
                 setup.replace(
-                    position=start if position is None else _finite("position", position),
-                    velocity=_finite("velocity", velocity),
+                    position=start if position is None else finite("position", position),
+                    velocity=finite("velocity", velocity),
                 )
             )
             truths.append(truth)
@@ -307,65 +304,3 @@ def _recording(
             "motor_torque": torque / joint.gear_ratio,
         },
     )
-
-
-def _side_by_side(
-    joints: Any, controllers: Any, seeds: Any
-) -> tuple[list[Joint], list[Controller], list[int]]:
-    given = {"joints": joints, "controllers": controllers, "seeds": seeds}
-    known: dict[str, tuple[type, ...]] = {
-        "joints": (Joint,),
-        "controllers": get_args(Controller),
-        "seeds": (int, np.integer),
-    }
-    lists = {}
-    for what, value in given.items():
-        single = isinstance(value, known[what])
-        lists[what] = [value] if single or isinstance(value, str) else list(_iterable(what, value))
-        for entry in lists[what]:
-            if not isinstance(entry, known[what]) or isinstance(entry, bool):
-                names = ", ".join(kind.__name__ for kind in known[what])
-                raise InputError(f"{what}: {entry!r} is none of {names}")
-    count = max(len(entries) for entries in lists.values())
-    for what, entries in lists.items():
-        if len(entries) not in (1, count) or not entries:
-            raise InputError(
-                f"{what} has {len(entries)} entries where others have {count}; give one for all, or "
-                "as many"
-            )
-        lists[what] = entries if len(entries) == count else entries * count
-    for seed in lists["seeds"]:
-        if not 0 <= seed < 2**64:
-            raise InputError(f"seed is {seed}; a whole number from 0 to 2**64 - 1 is expected")
-    return lists["joints"], lists["controllers"], [int(seed) for seed in lists["seeds"]]
-
-
-def _iterable(what: str, value: Any) -> Any:
-    try:
-        return iter(value)
-    except TypeError:
-        raise InputError(f"{what} is {value!r}, which cannot be used") from None
-
-
-def _finite(what: str, value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
-        raise InputError(f"{what} is {value!r}; a number is expected")
-    if not math.isfinite(value):
-        raise InputError(f"{what} is {value}; a finite number is expected")
-    return float(value)
-
-
-def _positive(what: str, value: Any) -> float:
-    number = _finite(what, value)
-    if number <= 0.0:
-        raise InputError(f"{what} is {number!r}; more than 0 is expected")
-    return number
-
-
-def _whole(what: str, value: Any, period: float) -> int:
-    ratio = _positive(what, value) / period
-    if round(ratio) < 1 or abs(ratio - round(ratio)) > 1e-6 * ratio:
-        raise InputError(
-            f"{what} is {value!r}; a whole number of control periods ({period!r} s) is expected"
-        )
-    return round(ratio)

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from jointid import _core
 from jointid.errors import InputError
@@ -145,7 +146,7 @@ def torque_limit(joint: Joint) -> float | None:
     return min(known, default=None)
 
 
-def control_estimates(joint: Joint) -> dict[str, float]:
+def control_estimates(joint: Joint) -> dict[str, Any]:
     """Return what a model-based controller believes of a joint, from its parameters' values.
 
     Use it as ``jid.AdaptiveRobust(**jid.control_estimates(joint))``. Friction that differs between
@@ -174,7 +175,7 @@ def control_estimates(joint: Joint) -> dict[str, float]:
         )
     values = Values(joint)
     drive, link = _inertias(joint, values)
-    estimates = {"inertia": drive if joint.sensor else drive + link}
+    estimates: dict[str, Any] = {"inertia": drive if joint.sensor else drive + link}
     stribeck = joint.friction == "stribeck"
     for name in ("coulomb", "static", "viscous") if stribeck else ("coulomb", "viscous"):
         estimates[name] = sum(values.both(name)) / 2.0

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace jointid::simulate {
+namespace jointid::base {
 
 class Requirement {
  public:
@@ -33,4 +33,4 @@ class Requirement {
   const char* owner_;
 };
 
-}  // namespace jointid::simulate
+}  // namespace jointid::base
