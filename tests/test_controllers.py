@@ -34,7 +34,7 @@ def test_stepping_gives_the_torque_of_the_simulation(controller: Any) -> None:
         work.step(
             time=run.time[k],
             position=run.position[k],
-            velocity=run.velocity[k],
+            velocity=run.truth.signals["control_velocity"][k],
             sensor=run.sensor[k],
             reference=wanted[k, 0],
             reference_velocity=wanted[k, 1],

@@ -23,7 +23,8 @@ class Truth(Mapping[str, Any]):
     signals : mapping of str to ndarray, shape (n,)
         `position` [rad], `velocity` [rad/s], `acceleration` [rad/s²], `friction`, `link_torque`
         and `motor_torque` [N·m], at the recording's samples. `friction` is what the drive loses to
-        friction, `link_torque` what the sensor is in.
+        friction, `link_torque` what the sensor is in. `control_velocity` [rad/s] is what the
+        controller was given.
     """
 
     __slots__ = ("_parameters", "signals")

@@ -104,7 +104,9 @@ def simulate(
     -------
     SimulatedRecording
         Signals as the sensors saw them, the held torque, the reference; `truth` has the true
-        parameters, `truth.signals` the true signals. ``metadata["saturations"]`` counts the control
+        parameters, `truth.signals` the true signals. Unless the sensors show an exact velocity,
+        it is derived from the position, and what the controller had is in
+        ``truth.signals["control_velocity"]``. ``metadata["saturations"]`` counts the control
         periods in which the torque limit cut the command.
 
     Raises
@@ -273,17 +275,16 @@ def _recording(
     signals = outcome.signals
     count = len(signals["position"])
     torque = signals["torque"]
-    exact = scenario.sensors.velocity == "exact"
     return SimulatedRecording(
         time=np.arange(count) * (scenario.control_period * scenario.sample_every),
         position=signals["position"],
-        velocity=signals["velocity"],
+        # What a controller estimates on line lags; a log is differentiated centrally instead.
+        velocity=signals["velocity"] if scenario.sensors.velocity == "exact" else None,
         torque=torque,
         sensor=signals["reading"] if joint.sensor else None,
         reference=None if isinstance(controller, _core.OpenLoop) else signals["reference"],
         kind=joint.kind,
         torque_hold="zoh",
-        velocity_derived=not exact,
         name=name,
         metadata={
             "simulated": True,
@@ -302,5 +303,6 @@ def _recording(
             "friction": signals["friction"],
             "link_torque": signals["link_torque"],
             "motor_torque": torque / joint.gear_ratio,
+            "control_velocity": signals["velocity"],
         },
     )
