@@ -213,6 +213,18 @@ def test_identification_from_the_recipe_recovers_the_truth(joint: jid.Joint) -> 
         assert apart < 3.0 * math.hypot(mine.stderr, theirs.stderr), name
 
 
+def test_moves_as_an_independent_simulator_does(joint: jid.Joint) -> None:
+    """The recording beside the examples: same controller, other code, other noise."""
+    theirs = jid.load(data_folder() / "well_excited.csv.gz")
+    law = wrong_controller().replace(
+        boundary=0.9, adaptation=True, adaptation_dry=0.005, adaptation_viscous=0.005
+    )
+    sensors = jid.Sensors(torque_noise=0.2)
+    ours = jid.simulate(joint, law, well_excited(), sensors=sensors)
+    assert np.sqrt(np.mean((ours.position - theirs.position) ** 2)) < 5e-6
+    assert np.abs(ours.tracking_error()).max() > 1e-3
+
+
 def test_the_ring_closes_the_tracking_error_falls_to_that_of_the_truth(joint: jid.Joint) -> None:
     sensors = jid.Sensors(torque_noise=0.5)
     first = jid.AdaptiveRobust(

@@ -42,9 +42,10 @@ from jointid.joint.parameters import Parameter
 from jointid.joint.thesis import thesis_joint
 from jointid.recording.loading import load, load_runs
 from jointid.recording.recording import Recording
+from jointid.simulation.batch import SimulatedBatch, simulate_batch
 from jointid.simulation.plant import Bristle, control_estimates
 from jointid.simulation.simulated_recording import SimulatedRecording, Truth
-from jointid.simulation.simulation import SimulatedBatch, simulate, simulate_batch
+from jointid.simulation.simulation import simulate
 from jointid.simulation.trajectory import Trajectory
 
 __version__ = _core.__version__
