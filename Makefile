@@ -84,6 +84,7 @@ study: $(INSTALLED)  ## accuracy over many seeds; by hand, the results go to doc
 
 bench: $(INSTALLED)  ## speed; by hand
 	@$(BIN)/python benchmarks/speed.py
+	@$(BIN)/python benchmarks/simulation_speed.py
 
 soak: $(INSTALLED)  ## hours of identification; by hand
 	@$(BIN)/python benchmarks/soak.py

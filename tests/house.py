@@ -44,6 +44,7 @@ GROUPS: dict[str, Group] = {
         may_use={"core"},
         packages={"numpy", "scipy", "pandas", "pyarrow", "tomlkit"},
     ),
+    "simulation": Group(modules={"simulation."}, may_use={"core", "recording"}, packages={"numpy"}),
     "analysis": Group(
         modules={"identification.", "estimate.", "comparison.", "study."},
         may_use={"core", "recording"},
@@ -56,24 +57,27 @@ GROUPS: dict[str, Group] = {
     ),
     "hardware": Group(
         modules={"hardware."},
-        may_use={"core", "recording"},
+        may_use={"core", "recording", "simulation"},
         packages={"numpy", "can", "canopen"},
     ),
     "commissioning": Group(
         modules={"commissioning"},
-        may_use={"core", "recording", "analysis", "hardware"},
+        may_use={"core", "recording", "simulation", "analysis", "hardware"},
         packages={"numpy"},
     ),
     "face": Group(
         modules={"__init__"},
-        may_use={"core", "recording", "analysis", "presentation", "hardware", "commissioning"},
+        may_use={
+            *("core", "recording", "simulation", "analysis", "presentation", "hardware"),
+            "commissioning",
+        },
         packages=set(),
     ),
     "command line": Group(
         modules={"cli", "cli_arguments", "cli_commands", "__main__", "demo", "progress"},
         may_use={
-            *("core", "recording", "analysis", "presentation", "hardware", "commissioning"),
-            *("face", "command line"),
+            *("core", "recording", "simulation", "analysis", "presentation", "hardware"),
+            *("commissioning", "face", "command line"),
         },
         packages={"numpy", "matplotlib"},
     ),

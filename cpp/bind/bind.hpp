@@ -122,5 +122,6 @@ void bind_penalty(py::module_& m);
 void bind_genetic(py::module_& m);
 void bind_search(py::module_& m);
 void bind_diagnose(py::module_& m);
+void bind_simulate(py::module_& m);
 
 }  // namespace jointid::bind

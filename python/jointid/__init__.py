@@ -18,7 +18,18 @@ except ModuleNotFoundError as error:
     ) from error
 
 from jointid import plotting as plot
-from jointid._core import GaOptions, Generation, WindowOptions
+from jointid._core import (
+    AdaptiveRobust,
+    CompensatedPid,
+    GaOptions,
+    Generation,
+    LugreObserver,
+    OpenLoop,
+    Pd,
+    Pid,
+    Sensors,
+    WindowOptions,
+)
 from jointid.comparison.comparison import compare_models
 from jointid.comparison.comparison_result import Comparison
 from jointid.comparison.model_spec import ModelSpec
@@ -31,11 +42,19 @@ from jointid.joint.parameters import Parameter
 from jointid.joint.thesis import thesis_joint
 from jointid.recording.loading import load, load_runs
 from jointid.recording.recording import Recording
+from jointid.simulation.batch import SimulatedBatch, simulate_batch
+from jointid.simulation.plant import Bristle, control_estimates
+from jointid.simulation.simulated_recording import SimulatedRecording, Truth
+from jointid.simulation.simulation import simulate
+from jointid.simulation.trajectory import Trajectory
 
 __version__ = _core.__version__
 
 __all__ = [
+    "AdaptiveRobust",
+    "Bristle",
     "Comparison",
+    "CompensatedPid",
     "Estimate",
     "GaOptions",
     "Generation",
@@ -43,15 +62,27 @@ __all__ = [
     "Joint",
     "Limits",
     "Link",
+    "LugreObserver",
     "ModelSpec",
+    "OpenLoop",
     "Parameter",
+    "Pd",
+    "Pid",
     "Recording",
+    "Sensors",
+    "SimulatedBatch",
+    "SimulatedRecording",
+    "Trajectory",
+    "Truth",
     "WindowOptions",
     "__version__",
     "compare_models",
+    "control_estimates",
     "identify",
     "load",
     "load_runs",
     "plot",
+    "simulate",
+    "simulate_batch",
     "thesis_joint",
 ]
