@@ -45,7 +45,7 @@ GROUPS: dict[str, Group] = {
         packages={"numpy", "scipy", "pandas", "pyarrow", "tomlkit"},
     ),
     "analysis": Group(
-        modules={"identification.", "estimate.", "comparison.", "study."},
+        modules={"identification.", "estimate.", "comparison.", "online.", "study."},
         may_use={"core", "recording"},
         packages={"numpy", "scipy", "pandas"},
     ),

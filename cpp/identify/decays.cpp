@@ -29,15 +29,13 @@ JOINTID_CLONES void weighted_decay(const double* x, const double* weight, double
 
 }  // namespace
 
-void integrate_decays(const FrictionNodes& nodes, const Stretch& windows,
-                      const std::vector<DecayRates>& groups, const base::Cancel* cancel,
-                      Eigen::Ref<Eigen::MatrixXd> columns) {
+void integrate_decays(const FrictionNodes& nodes, const Stretch& windows, const DecayRates& group,
+                      const base::Cancel* cancel, Eigen::Ref<Eigen::MatrixXd> columns) {
   columns.setZero();
   std::array<double, kBlock> logarithm;
   std::array<double, kBlock> x;
   std::array<double, kBlock> value;
-  const bool general = std::any_of(groups.begin(), groups.end(),
-                                   [](const DecayRates& group) { return group.exponent != 2.0; });
+  const bool general = group.exponent != 2.0;
   std::size_t window = windows.begin;
   const std::size_t last = nodes.first[windows.end];
   for (std::size_t begin = nodes.first[windows.begin]; begin < last; begin += kBlock) {
@@ -49,22 +47,20 @@ void integrate_decays(const FrictionNodes& nodes, const Stretch& windows,
       for (std::size_t i = 0; i < count; ++i) logarithm[i] = base::log(speed[i]);
     }
     while (nodes.first[window + 1] <= begin) ++window;
+    general ? powers(logarithm.data(), group.exponent, count, x.data())
+            : squares(speed, count, x.data());
     Eigen::Index column = 0;
-    for (const auto& group : groups) {
-      group.exponent == 2.0 ? squares(speed, count, x.data())
-                            : powers(logarithm.data(), group.exponent, count, x.data());
-      for (const double rate : group.rates) {
-        weighted_decay(x.data(), weight, rate, count, value.data());
-        std::size_t at = window;
-        for (std::size_t i = 0; i < count;) {
-          while (nodes.first[at + 1] <= begin + i) ++at;
-          const std::size_t stop = std::min(count, nodes.first[at + 1] - begin);
-          double sum = 0.0;
-          for (; i < stop; ++i) sum += value[i];
-          columns(static_cast<Eigen::Index>(at - windows.begin), column) += sum;
-        }
-        ++column;
+    for (const double rate : group.rates) {
+      weighted_decay(x.data(), weight, rate, count, value.data());
+      std::size_t at = window;
+      for (std::size_t i = 0; i < count;) {
+        while (nodes.first[at + 1] <= begin + i) ++at;
+        const std::size_t stop = std::min(count, nodes.first[at + 1] - begin);
+        double sum = 0.0;
+        for (; i < stop; ++i) sum += value[i];
+        columns(static_cast<Eigen::Index>(at - windows.begin), column) += sum;
       }
+      ++column;
     }
   }
 }

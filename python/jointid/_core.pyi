@@ -30,6 +30,7 @@ __all__: list[str] = [
     "SeparableResult",
     "Shape",
     "SignalFacts",
+    "SlidingPenalty",
     "Spike",
     "SpikeRule",
     "Stop",
@@ -874,6 +875,73 @@ class PolishResult:
     def iterations(self) -> int: ...
     @property
     def penalty(self) -> float: ...
+
+class SlidingPenalty:
+    """
+    The penalty over the last seconds of a motion that goes on.
+    """
+    def __init__(
+        self,
+        *,
+        terms: collections.abc.Sequence[str],
+        residual: Residual,
+        gear_ratio: typing.SupportsFloat | typing.SupportsIndex,
+        window_duration: typing.SupportsFloat | typing.SupportsIndex,
+        mask_standstill: bool,
+        lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        speed: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+    def append(
+        self,
+        samples: Recording,
+        begin: typing.SupportsInt | typing.SupportsIndex,
+        end: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None:
+        """
+        Digest the sample intervals begin to end - 1; the other samples are context.
+        """
+    def compressed(self) -> CompressedPenalty | None:
+        """
+        The penalty over all stretches; None while there is no window with motion.
+        """
+    def forget(self, time: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        """
+        Drop the stretches that end no later than this time [s].
+        """
+    def linearised(
+        self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> tuple[
+        float,
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+    ]:
+        """
+        Penalty, window residuals and derivatives, by the direct sum.
+        """
+    def total(self, coefficient: typing.SupportsInt | typing.SupportsIndex) -> float:
+        """
+        Sum of a constant column over all windows.
+        """
+    @property
+    def begin(self) -> float:
+        """
+        [s]
+        """
+    @property
+    def end(self) -> float:
+        """
+        [s]
+        """
+    @property
+    def stretches(self) -> int: ...
+    @property
+    def usable_duration(self) -> float:
+        """
+        Integrated time of all windows [s].
+        """
+    @property
+    def window_count(self) -> int: ...
 
 class SpikeRule(enum.Enum):
     """
