@@ -51,7 +51,7 @@ inline double exp(double x) {
 /// e^-y for y >= 0, within 4 ulp: for sums over many samples, where exp's last bit drowns. Ten
 /// terms, economised from the Chebyshev series over the reduced range, and no special cases.
 inline double exp_decay(double y) {
-  const double x = y < 708.0 ? -y : -708.0;
+  const double x = y < 600.0 ? -y : -600.0;
   const double shifted = x * 0x1.71547652b82fep+0 + detail::kRound;
   const double k = shifted - detail::kRound;
   const double r = (x - k * detail::kLog2High) - k * detail::kLog2Low;
