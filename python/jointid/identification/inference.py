@@ -20,6 +20,7 @@ from jointid.estimate.student import quantile
 from jointid.identification.covariance import Covariance, parameter_covariance, widened
 from jointid.identification.diagnosis import diagnose
 from jointid.identification.facts import Facts, regressor
+from jointid.identification.inner_products import columns_with, inner, size
 from jointid.identification.inspection import inspect
 from jointid.identification.problem import Problem
 from jointid.identification.search_domain import SearchDomain
@@ -65,11 +66,11 @@ def infer(
     columns = penalty.columns(best[penalty.coefficients :])
     threads = problem.threads
     sizes = np.linalg.norm(jacobian, axis=0)
-    noise = np.linalg.norm(residual) / np.sqrt(max(1, len(residual) - len(best)))
+    noise = size(residual) / np.sqrt(max(1, len(residual) - len(best)))
     alone = noise / np.where(
         sizes > 0.0, sizes, 1.0
     )  # each parameter's error if it were the only one
-    freedom = freedom_of(domain, best, jacobian.T @ residual, alone)
+    freedom = freedom_of(domain, best, columns_with(jacobian, residual), alone)
     free = list(freedom.indices)
     table = problem.table(penalty, best, (residual, columns))
     freely = jacobian[:, free]
@@ -141,8 +142,8 @@ def r_squared(table: WindowTable) -> float:
 
 def relative_residual(table: WindowTable) -> float:
     """Norm of the residuals over the norm of the measured integrals; infinite when nothing was measured."""
-    size = float(np.linalg.norm(table.measured))
-    return float(np.linalg.norm(table.residual)) / size if size > 0.0 else float("inf")
+    measured = size(table.measured)
+    return size(table.residual) / measured if measured > 0.0 else float("inf")
 
 
 def freedom_of(domain: SearchDomain, best: Array, gradient: Array, alone: Array) -> Freedom:
@@ -189,8 +190,7 @@ def _statistics(problem: Problem, penalty: _core.Penalty, table: WindowTable) ->
         rms=float(np.sqrt(np.mean((residual / table.duration) ** 2))),
         relative=relative_residual(table),
         r_squared=r_squared(table),
-        autocorrelation=float(residual[1:] @ residual[:-1])
-        / max(float(residual @ residual), 1e-300),
+        autocorrelation=inner(residual[1:], residual[:-1]) / max(inner(residual, residual), 1e-300),
         samples=penalty.total_samples,
         left_out=penalty.unusable_intervals / intervals,
         standing=penalty.standing_samples / penalty.total_samples,

@@ -14,6 +14,7 @@ from jointid import _core
 from jointid.errors import InputError
 from jointid.identification.covariance import parameter_covariance
 from jointid.identification.inference import freedom_of, joint_of, parameters_of
+from jointid.identification.inner_products import columns_with, size
 from jointid.identification.model_terms import Request, choose_terms
 from jointid.identification.problem import Problem
 from jointid.identification.search_domain import SearchDomain, domain_for
@@ -196,9 +197,9 @@ class Sliding:
         best = _core.minimise_separable(form, domain.lower, domain.upper, threads=1).best
         penalty, residual, jacobian = plan.penalty.linearised(best)
         sizes = np.linalg.norm(jacobian, axis=0)
-        noise = np.linalg.norm(residual) / np.sqrt(max(1, residual.size - best.size))
+        noise = size(residual) / np.sqrt(max(1, residual.size - best.size))
         alone = noise / np.where(sizes > 0.0, sizes, 1.0)
-        freedom = freedom_of(domain, best, jacobian.T @ residual, alone)
+        freedom = freedom_of(domain, best, columns_with(jacobian, residual), alone)
         free = list(freedom.indices)
         spread = parameter_covariance(
             jacobian[:, free], residual, self._centre(plan, free), threads=1
