@@ -46,6 +46,7 @@ def contest(store: Store, order: list[str], limit: float, path: Path) -> None:
     labels = [f"{row.name.replace('`', '')}   {row.reached}/{row.runs}" for row in found]
     axes.set_yticks(range(len(found)), labels)
     axes.set_xscale("log")
+    axes.set_xlim(1e-3, 3.0 * limit)
     axes.set_ylim(-0.8, len(found) - 0.2)
     axes.set_xlabel("wall time to within 1e-3 of the optimal penalty [s]")
     axes.axvline(limit, color="0.6", linewidth=0.8, linestyle="--")
@@ -107,10 +108,10 @@ def growth(store: Store, path: Path) -> None:
         axes[1, 0],
         column("windows", "windows"),
         {
-            "identify() [ms]": column("windows", "seconds", 1e3),
-            "compressed, a candidate [µs]": column("windows", "candidate", 1e6),
+            "identify()": column("windows", "seconds"),
+            "compressed penalty, a candidate": column("windows", "candidate"),
         },
-        ("windows", "time [ms] or [µs]"),
+        ("windows", "time [s]"),
     )
     _lines(
         axes[1, 1],
@@ -118,5 +119,7 @@ def growth(store: Store, path: Path) -> None:
         {"with breeding, one thread": column("population", "candidate", 1e6)},
         ("population", "time per candidate [µs]"),
     )
+    axes[1, 1].set_yscale("linear")
+    axes[1, 1].set_ylim(bottom=0.0)
     figure.savefig(path, dpi=150)
     plt.close(figure)

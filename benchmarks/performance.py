@@ -14,6 +14,7 @@ from store import Store
 from summary import OURS, claims, rows
 
 TEMPLATE = Path(__file__).resolve().parent / "performance.template.md"
+VERDICTS = {True: "yes", False: "**no**", None: "limit too short to tell"}
 LIBRARIES = ("numpy", "scipy", "pygmo", "deap", "pymoo", "pygad", "cma")
 
 
@@ -64,11 +65,12 @@ def contest_table(store: Store, order: list[str]) -> str:
                 f"{sign}{row.seconds / ours:.3g}",
                 f"{row.reached}/{row.runs}",
                 f"{row.ratio:.4g}",
-                f"{row.evaluations:.0f}" if row.evaluations else "—",
+                f"{row.evaluations:,.0f}" if row.evaluations else "—",
+                seconds(row.candidate) if row.evaluations else "—",
             ]
         )
     header = ["search", "penalty", "median time", "range", "times our search", "reached", "P/P*"]
-    return table([*header, "candidates"], lines)
+    return table([*header, "candidates", "time a candidate"], lines)
 
 
 def scaling_tables(store: Store) -> dict[str, str]:
@@ -133,7 +135,7 @@ def write(store: Store, order: list[str], limit: float, path: Path) -> None:
         failed=FAILED,
         claims=table(
             ["wanted", "measured", "holds"],
-            [[c.wish, c.measured, "yes" if c.holds else "**no**"] for c in claims(store, order)],
+            [[c.wish, c.measured, VERDICTS[c.holds]] for c in claims(store, order)],
         ),
         contest=contest_table(store, order),
         candidates=table(["form", "time per candidate"], candidate_lines),

@@ -16,7 +16,7 @@ FAILED = 3  # runs after which a peer that never reached the target is left alon
 LIMIT = 20.0  # [s] a run
 SLOW = 2.0  # [s] a run, beyond which `FEW` must do
 WARM = 0.05  # [s] of each peer before the first round: lazy imports, caches
-HOPELESS = 8  # rows expected to use up their limit; they get half the time
+HOPELESS = 10  # rows expected to use up their limit; they get half the time
 
 
 def limit_for(seconds: float) -> float:

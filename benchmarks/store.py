@@ -16,12 +16,12 @@ class Store:
         self.path = path
         self.records: list[Record] = []
         path.parent.mkdir(parents=True, exist_ok=True)
-        found = []
-        if path.exists():
-            lines = path.read_text().splitlines()
-            found = [json.loads(line) for line in lines if line.endswith("}")]
+        text = path.read_text() if path.exists() else ""
+        whole = text[: text.rfind("\n") + 1]  # the last line may have been cut off
+        found = [json.loads(line) for line in whole.splitlines()]
         header = {"kind": "settings", **settings}
         if found and found[0] == header and found[-1]["kind"] != "finished":
+            path.write_text(whole)
             self.records = found
             print(f"Going on from {len(found) - 1} records of {path}", flush=True)
         else:
