@@ -78,7 +78,7 @@ def make_contest(recording: jid.Recording | None = None) -> Contest:
     problem, direct = problem_of(recording, joint, WINDOWS)
     domain = domain_for(direct, joint, None, problem.peak_speed)
     assert direct.names[0] == "inertia"
-    usable = np.asarray(_core.usable_intervals(problem.in_core(recording)), dtype=np.bool_)
+    usable = np.asarray(_core.usable_intervals(problem.in_core[0]), dtype=np.bool_)
     inertia = float(domain.lower[0])
     assert inertia == domain.upper[0]
     numpy = NumpyPenalty(recording, inertia, usable, direct.windows, direct.names[1:])
