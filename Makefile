@@ -49,13 +49,13 @@ lint: $(INSTALLED) .venv/.test-tools .venv/.lint-tools  ## ruff, mypy, clang-for
 	@echo "ruff check";         $(BIN)/ruff check
 	@echo "ruff format";        $(BIN)/ruff format --check --quiet
 	@echo "mypy";               $(BIN)/mypy
-	@echo "clang-format";       find cpp -name '*.[ch]pp' -print0 | xargs -0 $(BIN)/clang-format --dry-run -Werror
+	@echo "clang-format";       find cpp benchmarks -name '*.[ch]pp' -print0 | xargs -0 $(BIN)/clang-format --dry-run -Werror
 	@echo stub;                 $(BIN)/python tools/stub.py --check
 
 format: .venv/.lint-tools  ## format Python and C++ in place
 	@$(BIN)/ruff check --fix --quiet || true
 	@$(BIN)/ruff format --quiet
-	@find cpp -name '*.[ch]pp' -print0 | xargs -0 $(BIN)/clang-format -i
+	@find cpp benchmarks -name '*.[ch]pp' -print0 | xargs -0 $(BIN)/clang-format -i
 
 stub: .venv/.installed .venv/.lint-tools  ## write python/jointid/_core.pyi anew
 	@$(BIN)/python tools/stub.py
@@ -82,8 +82,8 @@ study: $(INSTALLED)  ## accuracy over many seeds; by hand, the results go to doc
 	@$(BIN)/python benchmarks/coverage_study.py
 	@$(BIN)/python benchmarks/presets_study.py
 
-bench: $(INSTALLED)  ## speed; by hand
-	@$(BIN)/python benchmarks/speed.py
+bench: $(INSTALLED) .venv/.bench-tools  ## speed against other libraries (20 min); writes docs/performance.md
+	@$(BIN)/python benchmarks/speed.py $(BENCH)
 	@$(BIN)/python benchmarks/simulation_speed.py
 
 soak: $(INSTALLED)  ## hours of identification; by hand
@@ -108,6 +108,11 @@ clean:  ## remove everything made here, .venv too
 .venv/.lint-tools: .venv/.created pyproject.toml
 	@echo "Installing ruff, mypy, clang-format and the stub generator"
 	@$(INSTALL) --group lint
+	@touch $@
+
+.venv/.bench-tools: .venv/.created pyproject.toml
+	@echo "Installing the libraries that the benchmark times"
+	@$(INSTALL) --group bench
 	@touch $@
 
 .venv/.installed: .venv/.created $(SOURCES)

@@ -46,7 +46,7 @@ GROUPS: dict[str, Group] = {
     ),
     "simulation": Group(modules={"simulation."}, may_use={"core", "recording"}, packages={"numpy"}),
     "analysis": Group(
-        modules={"identification.", "estimate.", "comparison.", "study."},
+        modules={"identification.", "estimate.", "comparison.", "online.", "study."},
         may_use={"core", "recording"},
         packages={"numpy", "scipy", "pandas"},
     ),

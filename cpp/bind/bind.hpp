@@ -121,6 +121,7 @@ void bind_recording(py::module_& m);
 void bind_penalty(py::module_& m);
 void bind_genetic(py::module_& m);
 void bind_search(py::module_& m);
+void bind_online(py::module_& m);
 void bind_diagnose(py::module_& m);
 void bind_simulate(py::module_& m);
 

@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "base/clones.hpp"
-#include "identify/compression.hpp"
 
 namespace jointid::identify {
 
@@ -109,104 +108,101 @@ Eigen::MatrixXd root_of(const double* products, Eigen::Index size, const double*
 
 }  // namespace
 
+CompressedPenalty::CompressedPenalty(const Penalty& frame)
+    : names_(frame.names()),
+      coefficients_(frame.coefficients()),
+      residual_(frame.residual()),
+      gain_index_(frame.gain_index()) {
+  for (Eigen::Index j = 0; j < coefficients_; ++j) {
+    (frame.is_shaped(j) ? shaped_ : constant_).push_back(j);
+  }
+  rows_ = static_cast<Eigen::Index>(constant_.size()) + 1;
+  if (has_too_many_terms()) reason_ = "the model has too many terms";
+}
+
 CompressedPenalty::CompressedPenalty(const Penalty& penalty, const search::Domain& domain,
                                      base::Pool& pool)
-    : names_(penalty.names()),
-      coefficients_(penalty.coefficients()),
-      residual_(penalty.residual()),
-      gain_index_(penalty.gain_index()) {
+    : CompressedPenalty(penalty) {
   domain.validate();
   if (domain.size() != penalty.parameters()) {
     throw std::invalid_argument("domain must have " + std::to_string(penalty.parameters()) +
                                 " parameters, got " + std::to_string(domain.size()));
   }
-  for (Eigen::Index j = 0; j < coefficients_; ++j) {
-    (penalty.is_shaped(j) ? shaped_ : constant_).push_back(j);
-  }
-  rows_ = static_cast<Eigen::Index>(constant_.size()) + 1;
+  if (!has_too_many_terms()) build(penalty, domain, pool);
+}
+
+CompressedPenalty::CompressedPenalty(const Penalty& frame, const std::optional<ShapeNodes>& nodes,
+                                     const std::vector<Digest>& digests)
+    : CompressedPenalty(frame) {
+  if (!has_too_many_terms()) assemble(nodes, digests);
+}
+
+bool CompressedPenalty::has_too_many_terms() const {
   const auto shaped = static_cast<Eigen::Index>(shaped_.size());
-  if (static_cast<std::size_t>(rows_ * (shaped + 1) + pairs(shaped)) + 2 * kLanes > kWidest) {
-    reason_ = "the model has too many terms";
-    return;
-  }
-  build(penalty, domain, pool);
+  return static_cast<std::size_t>(rows_ * (shaped + 1) + pairs(shaped)) + 2 * kLanes > kWidest;
 }
 
 void CompressedPenalty::build(const Penalty& penalty, const search::Domain& domain,
                               base::Pool& pool) {
-  const auto take = [&](const Digest& whole) {
-    const auto lanes = static_cast<Eigen::Index>(kLanes);
-    triangle_ = Eigen::MatrixXd::Zero((rows_ + lanes - 1) / lanes * lanes, rows_);
-    triangle_.topRows(rows_) = whole.triangle;
-    target_ = Eigen::VectorXd::Zero(rows_ + static_cast<Eigen::Index>(shaped_.size()));
-    target_.head(rows_) = whole.triangle.col(rows_ - 1);
-  };
   if (shaped_.empty()) {
-    take(digest_all(penalty, {{}}, pool)[0]);
-    exact_ = true;
+    assemble(std::nullopt, digest_all(penalty, {}, pool));
     return;
   }
-  double speed = 0.0;
-  for (const auto& shaped : penalty.shaped()) {
-    for (const double v : penalty.nodes(shaped.term.direction).speed) speed = std::max(speed, v);
-  }
+  const double speed = penalty.peak_speed();
   double density = 1.0;
-  for (int attempt = 0; attempt < kAttempts; ++attempt, density *= kDenser) {
+  for (int attempt = 0; attempt < kAttempts && !exact_; ++attempt, density *= kDenser) {
     const auto nodes = shape_nodes(penalty, domain, speed, density, reason_);
     if (!nodes) return;
-    order_ = nodes->order;
-    auto groups = nodes->lines;
-    const std::size_t lines = groups.size();
-    for (const auto& probe : nodes->probes) {
-      const double exponent = probe.size() == 1 ? 2.0 : probe[0];
-      const double rate = probe.size() == 1 ? probe[0] : base::exp(-probe[0] * base::log(probe[1]));
-      if (probe.size() == 1) {
-        groups[0].rates.push_back(rate);
-      } else {
-        groups.push_back({exponent, {rate}});
-      }
-    }
-    const auto digests = digest_all(penalty, groups, pool);
-    take(digests[0]);
-    Samples samples;
-    std::vector<Eigen::VectorXd> expected;
-    passes_ = 0;
-    for (std::size_t i = 0; i < groups.size(); ++i) {
-      const Eigen::MatrixXd functions = functions_of(digests[i]);
-      passes_ += functions.cols();
-      const Eigen::Index keep =
-          i < lines ? static_cast<Eigen::Index>(nodes->lines[i].rates.size()) : 0;
-      if (keep > 0) samples.values.emplace_back(functions.leftCols(keep));
-      for (Eigen::Index k = keep; k < functions.cols(); ++k)
-        expected.emplace_back(functions.col(k));
-    }
-    table_ = ShapeTable(nodes->axes, samples, nodes->axes.size() == 1 ? kLineDegree : kPlaneDegree);
-    // The probes tell how far the table is off between the nodes.
-    const auto size = static_cast<Eigen::Index>(shaped_.size()) * rows_;
-    double scale = 0.0;  // squared size of the shaped columns
-    for (const auto& line : samples.values) {
-      const auto products = line.bottomRows(line.rows() - size).cwiseAbs().colwise().sum();
-      scale = std::max(scale,
-                       line.topRows(size).colwise().squaredNorm().maxCoeff() + products.maxCoeff());
-    }
-    error_ = 0.0;
-    std::vector<double> found(table_.width());
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-      table_.values(nodes->probes[i].data(), found.data());
-      const Eigen::Map<const Eigen::VectorXd> values(found.data(), expected[i].size());
-      const Eigen::VectorXd difference = (values - expected[i]).cwiseAbs();
-      const Eigen::Index products = difference.size() - size;
-      error_ = std::max({error_, 0.1 * difference.head(size).maxCoeff() / std::sqrt(scale),
-                         difference.tail(products).maxCoeff() / scale});
-    }
-    exact_ = error_ <= kTolerance;
-    if (exact_) return;
+    assemble(nodes, digest_all(penalty, rates_of(*nodes), pool));
   }
+}
+
+void CompressedPenalty::assemble(const std::optional<ShapeNodes>& nodes,
+                                 const std::vector<Digest>& digests) {
+  const Digest& whole = digests.front();
+  const auto lanes = static_cast<Eigen::Index>(kLanes);
+  triangle_ = Eigen::MatrixXd::Zero((rows_ + lanes - 1) / lanes * lanes, rows_);
+  triangle_.topRows(rows_) = whole.triangle;
+  target_ = Eigen::VectorXd::Zero(rows_ + static_cast<Eigen::Index>(shaped_.size()));
+  target_.head(rows_) = whole.triangle.col(rows_ - 1);
+  exact_ = true;
+  if (!nodes) return;
+  order_ = nodes->order;
+  Samples samples;
+  std::vector<Eigen::VectorXd> expected;  // at the probes
+  passes_ = 0;
+  for (std::size_t i = 0; i < digests.size(); ++i) {
+    const Eigen::MatrixXd functions = functions_of(digests[i]);
+    passes_ += functions.cols();
+    const Eigen::Index keep =
+        i < nodes->lines.size() ? static_cast<Eigen::Index>(nodes->lines[i].rates.size()) : 0;
+    if (keep > 0) samples.values.emplace_back(functions.leftCols(keep));
+    for (Eigen::Index k = keep; k < functions.cols(); ++k) expected.emplace_back(functions.col(k));
+  }
+  table_ = ShapeTable(nodes->axes, samples, nodes->axes.size() == 1 ? kLineDegree : kPlaneDegree);
+  // The probes tell how far the table is off between the nodes.
+  const auto size = static_cast<Eigen::Index>(shaped_.size()) * rows_;
+  double scale = 1e-300;  // squared size of the shaped columns
+  for (const auto& line : samples.values) {
+    const auto products = line.bottomRows(line.rows() - size).cwiseAbs().colwise().sum();
+    scale = std::max(scale,
+                     line.topRows(size).colwise().squaredNorm().maxCoeff() + products.maxCoeff());
+  }
+  error_ = 0.0;
+  std::vector<double> found(table_.width());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    table_.values(nodes->probes[i].data(), found.data());
+    const Eigen::Map<const Eigen::VectorXd> values(found.data(), expected[i].size());
+    const Eigen::VectorXd difference = (values - expected[i]).cwiseAbs();
+    error_ = std::max({error_, 0.1 * difference.head(size).maxCoeff() / std::sqrt(scale),
+                       difference.tail(difference.size() - size).maxCoeff() / scale});
+  }
+  exact_ = error_ <= kTolerance;
   std::ostringstream text;
   text.precision(2);
   text << "the shapes' functions could not be interpolated to " << kTolerance << ": " << error_
        << " is left after " << passes_ << " shapes";
-  reason_ = text.str();
+  reason_ = exact_ ? "" : text.str();
 }
 
 void CompressedPenalty::require_inside(const double* shapes) const {

@@ -7,9 +7,11 @@
 // plus a remainder that is kept from falling below zero: never negative.
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "identify/compression.hpp"
 #include "identify/penalty.hpp"
 #include "identify/shape_table.hpp"
 #include "search/domain.hpp"
@@ -22,6 +24,10 @@ class CompressedPenalty final : public PenaltyFunction {
   /// threads. Where the table cannot meet the tolerance the penalty is not `exact`: use the direct
   /// sum, for the `reason` given.
   CompressedPenalty(const Penalty& penalty, const search::Domain& domain, base::Pool& pool);
+  /// From digests of `rates_of(nodes)`; without nodes, for a penalty without shapes, of one digest.
+  /// `frame` gives the terms, its windows do not matter.
+  CompressedPenalty(const Penalty& frame, const std::optional<ShapeNodes>& nodes,
+                    const std::vector<Digest>& digests);
 
   [[nodiscard]] bool exact() const { return exact_; }
   [[nodiscard]] const std::string& reason() const { return reason_; }
@@ -49,7 +55,10 @@ class CompressedPenalty final : public PenaltyFunction {
                 base::Pool& pool) const override;
 
  private:
+  explicit CompressedPenalty(const Penalty& frame);
   void build(const Penalty& penalty, const search::Domain& domain, base::Pool& pool);
+  void assemble(const std::optional<ShapeNodes>& nodes, const std::vector<Digest>& digests);
+  [[nodiscard]] bool has_too_many_terms() const;
   void require_inside(const double* shapes) const;
   /// Shaped columns at table values, rows x shaped.
   [[nodiscard]] Eigen::MatrixXd shaped_columns(const double* functions) const;

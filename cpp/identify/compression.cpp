@@ -16,7 +16,7 @@ constexpr int kCoarse = 2;
 constexpr double kGolden = 0.6180339887498949;
 
 Eigen::Index count_for(double even_length, double density) {
-  return static_cast<Eigen::Index>(std::ceil(density * (9.0 * even_length + 14.0)));
+  return static_cast<Eigen::Index>(std::ceil(density * (9.0 * even_length + 18.0)));
 }
 
 /// Parts of the windows; a running sum cannot be cut within a recording.
@@ -41,29 +41,28 @@ void accumulate(Eigen::MatrixXd& columns) {
   for (Eigen::Index row = 1; row < columns.rows(); ++row) columns.row(row) += columns.row(row - 1);
 }
 
-Digest digest_part(const Penalty& penalty, const Stretch& part,
-                   const std::vector<DecayRates>& groups, const base::Cancel& cancel) {
+Digest digest_group(const Penalty& penalty, const Stretch& part, const DecayRates& group,
+                    const base::Cancel* cancel) {
   const auto rows = static_cast<Eigen::Index>(part.end - part.begin);
   const auto first = static_cast<Eigen::Index>(part.begin);
   const auto shaped = static_cast<Eigen::Index>(penalty.shaped().size());
   Eigen::MatrixXd constant(rows, penalty.coefficients() - shaped + 1);
   Eigen::Index to = 0;
   for (Eigen::Index j = 0; j < penalty.coefficients(); ++j) {
-    if (!penalty.is_shaped(j))
-      constant.col(to++) = penalty.constant_columns().col(j).segment(first, rows);
+    if (penalty.is_shaped(j)) continue;
+    constant.col(to++) = penalty.constant_columns().col(j).segment(first, rows);
   }
   constant.col(to) = penalty.target().segment(first, rows);
-  Eigen::Index nodes = 0;
-  for (const auto& group : groups) nodes += static_cast<Eigen::Index>(group.rates.size());
+  const auto nodes = static_cast<Eigen::Index>(group.rates.size());
   Eigen::MatrixXd columns(rows, shaped * nodes);
   Eigen::MatrixXd own(rows, shaped > 1 ? nodes : 0);
   for (Eigen::Index j = 0; j < shaped; ++j) {
     const auto& term = penalty.shaped()[static_cast<std::size_t>(j)].term;
     if (shaped == 1) {
-      integrate_decays(penalty.nodes(term.direction), part, groups, &cancel, columns);
+      integrate_decays(penalty.nodes(term.direction), part, group, cancel, columns);
       break;
     }
-    integrate_decays(penalty.nodes(term.direction), part, groups, &cancel, own);
+    integrate_decays(penalty.nodes(term.direction), part, group, cancel, own);
     for (Eigen::Index k = 0; k < nodes; ++k) columns.col(k * shaped + j) = own.col(k);
   }
   if (penalty.cumulative()) accumulate(columns);
@@ -134,15 +133,39 @@ std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Doma
   return result;
 }
 
+std::vector<DecayRates> rates_of(const ShapeNodes& nodes) {
+  auto groups = nodes.lines;
+  for (const auto& probe : nodes.probes) {
+    if (probe.size() == 1) {
+      groups[0].rates.push_back(probe[0]);
+    } else {
+      groups.push_back({probe[0], {base::exp(-probe[0] * base::log(probe[1]))}});
+    }
+  }
+  return groups;
+}
+
+std::vector<Digest> digest_part(const Penalty& penalty, const Stretch& windows,
+                                const std::vector<DecayRates>& groups, const base::Cancel* cancel) {
+  std::vector<Digest> result;
+  if (groups.empty()) result.push_back(digest_group(penalty, windows, {}, cancel));
+  for (const auto& group : groups) {
+    result.push_back(digest_group(penalty, windows, group, cancel));
+  }
+  return result;
+}
+
 std::vector<Digest> digest_all(const Penalty& penalty, const std::vector<DecayRates>& groups,
                                base::Pool& pool) {
   const auto parts = parts_of(penalty);
-  std::vector<std::vector<Digest>> digests(groups.size(), std::vector<Digest>(parts.size()));
-  pool.for_each(groups.size() * parts.size(), [&](std::size_t begin, std::size_t end) {
+  const std::size_t count = std::max<std::size_t>(1, groups.size());
+  std::vector<std::vector<Digest>> digests(count, std::vector<Digest>(parts.size()));
+  pool.for_each(count * parts.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t part = i % parts.size();
       const std::size_t group = i / parts.size();
-      digests[group][part] = digest_part(penalty, parts[part], {groups[group]}, pool.cancel());
+      digests[group][part] = digest_group(
+          penalty, parts[part], groups.empty() ? DecayRates{} : groups[group], &pool.cancel());
     }
   });
   std::vector<Digest> result;

@@ -28,7 +28,15 @@ struct ShapeNodes {
 std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Domain& domain,
                                       double speed, double density, std::string& reason);
 
-/// One digest of all windows for each group of rates.
+/// The rates of all lines and probes: those of a single line's probes behind its own, else a group
+/// a probe.
+std::vector<DecayRates> rates_of(const ShapeNodes& nodes);
+
+/// One digest of some windows for each group of rates; none of shapes when there are no groups.
+std::vector<Digest> digest_part(const Penalty& penalty, const Stretch& windows,
+                                const std::vector<DecayRates>& groups, const base::Cancel* cancel);
+
+/// The same of all windows, their parts over the threads.
 std::vector<Digest> digest_all(const Penalty& penalty, const std::vector<DecayRates>& groups,
                                base::Pool& pool);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 
 #include "base/clones.hpp"
 #include "base/elementary.hpp"
@@ -10,62 +11,60 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // three buffers stay in the first-level cache
+// Rates side by side: the lanes of a vector. Windows hold some ten samples, too few to sum along.
+constexpr std::size_t kLanes = 8;
 
 JOINTID_CLONES void squares(const double* speed, std::size_t count, double* x) {
   for (std::size_t i = 0; i < count; ++i) x[i] = speed[i] * speed[i];
 }
 
-// Its argument is at most some hundreds, where exp needs no care; a speed of 0 has the logarithm
+// Arguments of at most some hundreds, where exp needs no care; a speed of 0 has the logarithm
 // -infinity and the power 0.
-JOINTID_CLONES void powers(const double* logarithm, double exponent, std::size_t count, double* x) {
-  for (std::size_t i = 0; i < count; ++i) x[i] = base::exp(exponent * logarithm[i]);
+JOINTID_CLONES void powers(const double* speed, double exponent, std::size_t count, double* x) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double logarithm = base::log_normal(speed[i] > 0.0 ? speed[i] : 1.0);
+    x[i] = speed[i] > 0.0 ? base::exp(exponent * logarithm) : 0.0;
+  }
 }
 
-JOINTID_CLONES void weighted_decay(const double* x, const double* weight, double rate,
-                                   std::size_t count, double* value) {
-  for (std::size_t i = 0; i < count; ++i) value[i] = weight[i] * base::exp(-rate * x[i]);
+/// For every window w, sums[w * kLanes + lane] = sum of weight exp(-rates[lane] x). first[w] counts
+/// from first[0].
+JOINTID_CLONES void window_sums(const double* x, const double* weight, const std::size_t* first,
+                                std::size_t windows, const double* rates, double* sums) {
+  for (std::size_t w = 0; w < windows; ++w) {
+    std::array<double, kLanes> sum{};
+    for (std::size_t i = first[w] - first[0]; i < first[w + 1] - first[0]; ++i) {
+      for (std::size_t l = 0; l < kLanes; ++l) {
+        sum[l] += weight[i] * base::exp_decay(rates[l] * x[i]);
+      }
+    }
+    for (std::size_t l = 0; l < kLanes; ++l) sums[w * kLanes + l] = sum[l];
+  }
 }
 
 }  // namespace
 
-void integrate_decays(const FrictionNodes& nodes, const Stretch& windows,
-                      const std::vector<DecayRates>& groups, const base::Cancel* cancel,
-                      Eigen::Ref<Eigen::MatrixXd> columns) {
-  columns.setZero();
-  std::array<double, kBlock> logarithm;
-  std::array<double, kBlock> x;
-  std::array<double, kBlock> value;
-  const bool general = std::any_of(groups.begin(), groups.end(),
-                                   [](const DecayRates& group) { return group.exponent != 2.0; });
-  std::size_t window = windows.begin;
-  const std::size_t last = nodes.first[windows.end];
-  for (std::size_t begin = nodes.first[windows.begin]; begin < last; begin += kBlock) {
+void integrate_decays(const FrictionNodes& nodes, const Stretch& windows, const DecayRates& group,
+                      const base::Cancel* cancel, Eigen::Ref<Eigen::MatrixXd> columns) {
+  const std::size_t begin = nodes.first[windows.begin];
+  const std::size_t count = nodes.first[windows.end] - begin;
+  const std::size_t rows = windows.end - windows.begin;
+  std::vector<double> x(count);
+  const double* speed = nodes.speed.data() + begin;
+  group.exponent == 2.0 ? squares(speed, count, x.data())
+                        : powers(speed, group.exponent, count, x.data());
+  std::vector<double> sums(rows * kLanes);
+  for (std::size_t from = 0; from < group.rates.size(); from += kLanes) {
     if (cancel != nullptr) cancel->check();
-    const std::size_t count = std::min(kBlock, last - begin);
-    const double* speed = nodes.speed.data() + begin;
-    const double* weight = nodes.weight.data() + begin;
-    if (general) {
-      for (std::size_t i = 0; i < count; ++i) logarithm[i] = base::log(speed[i]);
-    }
-    while (nodes.first[window + 1] <= begin) ++window;
-    Eigen::Index column = 0;
-    for (const auto& group : groups) {
-      group.exponent == 2.0 ? squares(speed, count, x.data())
-                            : powers(logarithm.data(), group.exponent, count, x.data());
-      for (const double rate : group.rates) {
-        weighted_decay(x.data(), weight, rate, count, value.data());
-        std::size_t at = window;
-        for (std::size_t i = 0; i < count;) {
-          while (nodes.first[at + 1] <= begin + i) ++at;
-          const std::size_t stop = std::min(count, nodes.first[at + 1] - begin);
-          double sum = 0.0;
-          for (; i < stop; ++i) sum += value[i];
-          columns(static_cast<Eigen::Index>(at - windows.begin), column) += sum;
-        }
-        ++column;
-      }
-    }
+    const std::size_t lanes = std::min(kLanes, group.rates.size() - from);
+    std::array<double, kLanes> rates{};
+    std::copy_n(group.rates.begin() + static_cast<std::ptrdiff_t>(from), lanes, rates.begin());
+    window_sums(x.data(), nodes.weight.data() + begin, nodes.first.data() + windows.begin, rows,
+                rates.data(), sums.data());
+    const Eigen::Map<const Eigen::MatrixXd> found(sums.data(), kLanes,
+                                                  static_cast<Eigen::Index>(rows));
+    columns.middleCols(static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(lanes)) =
+        found.topRows(static_cast<Eigen::Index>(lanes)).transpose();
   }
 }
 

@@ -25,9 +25,8 @@ struct DecayRates {
   std::vector<double> rates;
 };
 
-/// One column a rate, group by group (windows x rates).
-void integrate_decays(const FrictionNodes& nodes, const Stretch& windows,
-                      const std::vector<DecayRates>& groups, const base::Cancel* cancel,
-                      Eigen::Ref<Eigen::MatrixXd> columns);
+/// One column a rate (windows x rates).
+void integrate_decays(const FrictionNodes& nodes, const Stretch& windows, const DecayRates& group,
+                      const base::Cancel* cancel, Eigen::Ref<Eigen::MatrixXd> columns);
 
 }  // namespace jointid::identify

@@ -244,6 +244,28 @@ void Penalty::own_columns(const std::vector<std::string>& per_recording, std::si
   }
 }
 
+Penalty Penalty::fragment(const Masked& recordings, const std::vector<std::string>& terms,
+                          double window_duration, Residual residual, double gear_ratio) {
+  Penalty result(recordings, terms, residual, gear_ratio);
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const auto windows =
+        cut_windows(recordings[i]->recording(), recordings[i]->usable(), window_duration);
+    result.windows_.insert(result.windows_.end(), windows.begin(), windows.end());
+    result.recording_of_.insert(result.recording_of_.end(), windows.size(), static_cast<int>(i));
+  }
+  result.choice_.duration = window_duration;
+  result.integrate_all(recordings, gear_ratio, nullptr);
+  return result;
+}
+
+double Penalty::peak_speed() const {
+  double speed = 0.0;
+  for (const auto& shaped : shaped_) {
+    for (const double v : nodes(shaped.term.direction).speed) speed = std::max(speed, v);
+  }
+  return speed;
+}
+
 bool Penalty::is_shaped(Eigen::Index coefficient) const {
   return std::any_of(shaped_.begin(), shaped_.end(),
                      [&](const Shaped& shaped) { return shaped.coefficient == coefficient; });

@@ -39,9 +39,16 @@ class Penalty final : public PenaltyFunction {
   };
 
   [[nodiscard]] const std::vector<std::string>& names() const override { return names_; }
+  /// Of a stretch of a recording, on which nothing need be determined: few windows, even none, will
+  /// do.
+  static Penalty fragment(const Masked& recordings, const std::vector<std::string>& terms,
+                          double window_duration, Residual residual, double gear_ratio);
+
   /// The term of each coefficient.
   [[nodiscard]] const std::vector<Term>& terms() const { return terms_; }
   [[nodiscard]] const std::vector<Shaped>& shaped() const { return shaped_; }
+  /// Largest speed that a shaped column is summed over [rad/s or m/s].
+  [[nodiscard]] double peak_speed() const;
   [[nodiscard]] bool is_shaped(Eigen::Index coefficient) const;
   [[nodiscard]] Eigen::Index coefficients() const override { return columns_.cols(); }
   [[nodiscard]] Eigen::Index window_count() const { return target_.size(); }

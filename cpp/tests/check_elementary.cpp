@@ -48,7 +48,8 @@ class Worst {
 using Function = double (*)(double);
 using Exact = long double (*)(long double);
 
-void compare(Function function, Exact exact, double low, double high, int dense, int random) {
+void compare(Function function, Exact exact, double low, double high, int dense, int random,
+             double limit = kUlps) {
   Worst worst;
   for (int i = 0; i <= dense; ++i) {
     const double x = low + (high - low) * i / dense;
@@ -59,7 +60,7 @@ void compare(Function function, Exact exact, double low, double high, int dense,
     const double x = low + (high - low) * draw.uniform();
     worst.see(x, function(x), exact(x));
   }
-  CHECK_WITH(worst.within(kUlps), worst.text());
+  CHECK_WITH(worst.within(limit), worst.text());
 }
 
 long double exp_exact(long double x) {
@@ -94,6 +95,16 @@ CHECK_CASE("elementary: exp at its edges") {
   CHECK(base::exp(std::nextafter(709.78, kInfinity)) == kInfinity);
   CHECK(base::exp(kInfinity) == kInfinity);
   CHECK(std::isnan(base::exp(kNan)));
+}
+
+CHECK_CASE("elementary: exp_decay within 4 ulp up to 600, and never denormal") {
+  const auto exact = [](long double y) { return std::exp(-y); };
+  compare(base::exp_decay, exact, 0.0, 1.0, 100'000, 100'000, 4.0);
+  compare(base::exp_decay, exact, 0.0, 599.0, 100'000, 100'000, 4.0);
+  CHECK(base::exp_decay(0.0) == 1.0);
+  for (const double y : {600.0, 1e300, kInfinity}) {
+    CHECK(base::exp_decay(y) < 1e-260 && base::exp_decay(y) > 1e-261);
+  }
 }
 
 CHECK_CASE("elementary: log within 2 ulp") {

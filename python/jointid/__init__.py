@@ -40,6 +40,8 @@ from jointid.joint.joint import Joint
 from jointid.joint.link import Limits, Link
 from jointid.joint.parameters import Parameter
 from jointid.joint.thesis import thesis_joint
+from jointid.online.online_estimate import OnlineEstimate
+from jointid.online.online_identifier import OnlineIdentifier
 from jointid.recording.loading import load, load_runs
 from jointid.recording.recording import Recording
 from jointid.simulation.batch import SimulatedBatch, simulate_batch
@@ -64,6 +66,8 @@ __all__ = [
     "Link",
     "LugreObserver",
     "ModelSpec",
+    "OnlineEstimate",
+    "OnlineIdentifier",
     "OpenLoop",
     "Parameter",
     "Pd",

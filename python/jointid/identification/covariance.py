@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.identification.inner_products import inner
 
 Array = NDArray[np.float64]
 
@@ -104,7 +105,7 @@ def parameter_covariance(
     inverse = np.where(known, 1.0 / np.where(known, singular, 1.0), 0.0)
     pseudo = (directions.T * inverse**2) @ directions
     freedom = max(1, rows - count)
-    classical = pseudo * (residual @ residual) / freedom
+    classical = pseudo * inner(residual, residual) / freedom
     # Newey and West's variance of each parameter: of the scores, weighted with a column of `pseudo`.
     robust = _core.robust_variance(jacobian, residual, 1.0 / scale, pseudo, threads=threads)
     robust *= rows / freedom

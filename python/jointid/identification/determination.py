@@ -9,6 +9,7 @@ from jointid import _core
 from jointid.estimate.findings import ParameterEstimate, Warned
 from jointid.estimate.wording import percent
 from jointid.identification.facts import Facts
+from jointid.identification.inner_products import inner
 
 # A parameter is undetermined above this relative standard error, or when other windows move it by so many.
 _LARGE_ERROR = 0.05
@@ -198,5 +199,5 @@ def noise_width(facts: Facts) -> float:
     if facts.penalty.residual == _core.Residual.torque:
         residual = residual / (gain.value or 1e-300)
     freedom = max(1, residual.size - len(free) - 1)
-    noise = float(residual @ residual) * residual.size / freedom
+    noise = inner(residual, residual) * residual.size / freedom
     return noise / max(own**2, 1e-300)

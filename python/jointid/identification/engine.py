@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.estimate.findings import Convergence
+from jointid.identification.inner_products import inner
 from jointid.identification.search_domain import SearchDomain
 
 Array = NDArray[np.float64]
@@ -78,7 +79,7 @@ class Engine:
         if direct.residual == _core.Residual.sensor:
             gain = float(best[direct.names.index("sensor_gain")])
         expected = direct(best)
-        size = float(direct.target @ direct.target) / gain**2
+        size = inner(direct.target, direct.target) / gain**2
         if abs(self.form(best) - expected) <= _RELATIVE * expected + _ABSOLUTE * size:
             return outcome
         found = _core.polish(direct, domain.lower, domain.upper, best)

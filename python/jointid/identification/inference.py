@@ -20,6 +20,7 @@ from jointid.estimate.student import quantile
 from jointid.identification.covariance import Covariance, parameter_covariance, widened
 from jointid.identification.diagnosis import diagnose
 from jointid.identification.facts import Facts, regressor
+from jointid.identification.inner_products import columns_with, inner, size
 from jointid.identification.inspection import inspect
 from jointid.identification.problem import Problem
 from jointid.identification.search_domain import SearchDomain
@@ -34,7 +35,7 @@ _NAMED = 0.3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Freedom:
+class Freedom:
     """Which parameters were really free, and which ended on a bound."""
 
     indices: tuple[int, ...]
@@ -65,11 +66,11 @@ def infer(
     columns = penalty.columns(best[penalty.coefficients :])
     threads = problem.threads
     sizes = np.linalg.norm(jacobian, axis=0)
-    noise = np.linalg.norm(residual) / np.sqrt(max(1, len(residual) - len(best)))
+    noise = size(residual) / np.sqrt(max(1, len(residual) - len(best)))
     alone = noise / np.where(
         sizes > 0.0, sizes, 1.0
     )  # each parameter's error if it were the only one
-    freedom = _freedom(domain, best, jacobian.T @ residual, alone)
+    freedom = freedom_of(domain, best, columns_with(jacobian, residual), alone)
     free = list(freedom.indices)
     table = problem.table(penalty, best, (residual, columns))
     freely = jacobian[:, free]
@@ -77,7 +78,9 @@ def infer(
     by_chance = parameter_covariance(freely, residual, centre, threads=threads)
     systematic = systematic_errors(problem, penalty, best, free, freely, columns, shifts)
     spread = widened(by_chance, systematic)
-    parameters = _parameters(problem, penalty, domain, best, freedom, spread, len(residual), shifts)
+    parameters = parameters_of(
+        problem, penalty, domain, best, freedom, spread, len(residual), shifts
+    )
     statistics = _statistics(problem, penalty, table)
     named = sorted(zip(free, np.abs(spread.weakest), strict=True), key=lambda pair: -pair[1])
     weakest = tuple(domain.names[i] for i, share in named if share > _NAMED)
@@ -119,7 +122,7 @@ def infer(
         windows=table,
         convergence=convergence,
         warnings=warnings,
-        joint=_joint(problem, parameters),
+        joint=joint_of(problem, parameters),
         settings=settings,
         seconds=seconds,
     )
@@ -139,11 +142,11 @@ def r_squared(table: WindowTable) -> float:
 
 def relative_residual(table: WindowTable) -> float:
     """Norm of the residuals over the norm of the measured integrals; infinite when nothing was measured."""
-    size = float(np.linalg.norm(table.measured))
-    return float(np.linalg.norm(table.residual)) / size if size > 0.0 else float("inf")
+    measured = size(table.measured)
+    return size(table.residual) / measured if measured > 0.0 else float("inf")
 
 
-def _freedom(domain: SearchDomain, best: Array, gradient: Array, alone: Array) -> _Freedom:
+def freedom_of(domain: SearchDomain, best: Array, gradient: Array, alone: Array) -> Freedom:
     """Which parameters a bound holds: they lie on it, and the penalty would fall beyond it.
 
     On it means nearer than a thousandth of what the parameter could move by noise alone, not a share
@@ -163,7 +166,7 @@ def _freedom(domain: SearchDomain, best: Array, gradient: Array, alone: Array) -
         # On its bound a parameter is not free to vary: an error would not be a standard error.
         if high > low and bound is None:
             free.append(index)
-    return _Freedom(indices=tuple(free), at_bound=tuple(at_bound))
+    return Freedom(indices=tuple(free), at_bound=tuple(at_bound))
 
 
 def _centre(
@@ -187,8 +190,7 @@ def _statistics(problem: Problem, penalty: _core.Penalty, table: WindowTable) ->
         rms=float(np.sqrt(np.mean((residual / table.duration) ** 2))),
         relative=relative_residual(table),
         r_squared=r_squared(table),
-        autocorrelation=float(residual[1:] @ residual[:-1])
-        / max(float(residual @ residual), 1e-300),
+        autocorrelation=inner(residual[1:], residual[:-1]) / max(inner(residual, residual), 1e-300),
         samples=penalty.total_samples,
         left_out=penalty.unusable_intervals / intervals,
         standing=penalty.standing_samples / penalty.total_samples,
@@ -205,16 +207,17 @@ def _facts(penalty: _core.Penalty) -> dict[str, _core.Term | _core.Shape]:
     return facts
 
 
-def _parameters(
+def parameters_of(
     problem: Problem,
     penalty: _core.Penalty,
     domain: SearchDomain,
     best: Array,
-    freedom: _Freedom,
+    freedom: Freedom,
     spread: Covariance,
     windows: int,
     shifts: tuple[Array | None, Array | None],
 ) -> dict[str, ParameterEstimate]:
+    """Every parameter of the penalty by name, with its error, interval and bounds."""
     factor = quantile(0.975, max(1, windows - len(freedom.indices)))
     errors = dict(zip(freedom.indices, spread.stderr.tolist(), strict=True))
     prismatic = problem.recordings[0].kind == "prismatic"
@@ -240,7 +243,7 @@ def _parameters(
     return result
 
 
-def _joint(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Joint:
+def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Joint:
     """The joint with the estimated values in its parameter table; what it knew for a fact stays a fact."""
     choice, recording = problem.choice, problem.recordings[0]
     base = problem.joint

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.errors import InputError
+from jointid.identification.inner_products import size
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter, merge
 
@@ -62,17 +63,17 @@ def _coefficient_bounds(
     ]
     columns = penalty.columns(np.array(shapes))
     column = columns[:, index]
-    size = float(np.linalg.norm(column))
-    if size == 0.0:
+    extent = size(column)
+    if extent == 0.0:
         raise InputError(
             f"the recording does not excite '{name}' at all: fix it with parameters={{'{name}': value}}"
         )
-    level = float(np.linalg.norm(penalty.target))
+    level = size(penalty.target)
     if level == 0.0:
         raise InputError("the torque is zero throughout: there is nothing to identify")
     if term.name == "sensor_gain":
         return _gain_bounds(penalty, columns, index)
-    scale = level / size
+    scale = level / extent
     if term.name == "sensor_offset":
         return _offset_bounds(penalty, columns, scale)
     return (0.0 if term.non_negative else -_GENEROUS * scale), _GENEROUS * scale

@@ -3,6 +3,7 @@
 import csv
 import re
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -21,6 +22,7 @@ from jointid.recording.csv_text import text_of
 from jointid.recording.saving import CSV_MARK, saved_attributes
 from jointid.recording.signals import FloatArray
 
+_LONG = 1 << 20  # characters: beyond, a file is read as a stream if it is plain
 _INNER = "\x1f"  # separates cells where they are put together anew: no file's text holds it
 
 
@@ -45,7 +47,10 @@ class CsvTable:
 
     def __init__(self, path: Path) -> None:
         self.source = str(path)
-        lines = text_of(path).replace("\r\n", "\n").replace("\r", "\n").split("\n")
+        self._content = text_of(path)
+        self._table: FloatArray | None = None
+        long = len(self._content) > _LONG
+        lines = _lines(self._content[:_LONG])[:-1] if long else _lines(self._content)
         self.saved: Mapping[str, Any] | None = None
         if lines[0].startswith(CSV_MARK):
             self.saved = saved_attributes(lines[0][len(CSV_MARK) :], f"{self.source}, line 1")
@@ -59,17 +64,18 @@ class CsvTable:
         self._separator = named or separator_of(
             lines[first], lines[next(told, first)], f"{self.source}, line {first + 1}"
         )
-        below = self._read_header(lines, first)
-        self._line_numbers = [
-            number for number, line in enumerate(lines[below:], start=below + 1) if line.strip()
-        ]
-        self._rows = [lines[number - 1] for number in self._line_numbers]
-        if not self._rows:
-            raise InputError(f"{self.header_place}: a header, but no rows below it")
-        self._refuse_ragged_rows()
+        self._below = self._read_header(lines, first)
+        if long and '"' not in self._content:
+            self._table = _plain_numbers(path, self._below, self._separator, len(self.headers))
+        if self._table is None:
+            if not self._rows:
+                raise InputError(f"{self.header_place}: a header, but no rows below it")
+            self._refuse_ragged_rows()
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
         """Return columns as arrays of shape (n,), or name the cell that is no number."""
+        if self._table is not None:
+            return [np.ascontiguousarray(self._table[:, column]) for column in columns]
         rows, separator, used = self._rows, self._separator, list(columns)
         if separator != "," and any("," in row for row in rows):
             rows, separator, used = self._with_points(columns), _INNER, list(range(len(columns)))
@@ -98,6 +104,17 @@ class CsvTable:
         """Return file, line and column of a cell."""
         line = self._line_numbers[row]
         return f"{self.source}, line {line}, column {self.headers[column]!r}"
+
+    @cached_property
+    def _line_numbers(self) -> list[int]:
+        """Of the rows; lines without anything are none."""
+        below = _lines(self._content)[self._below :]
+        return [number for number, line in enumerate(below, self._below + 1) if line.strip()]
+
+    @cached_property
+    def _rows(self) -> list[str]:
+        lines = _lines(self._content)
+        return [lines[number - 1] for number in self._line_numbers]
 
     def _read_header(self, lines: list[str], first: int) -> int:
         """Find the headers; return the index of the first line below them."""
@@ -164,6 +181,31 @@ class CsvTable:
                 if number_of(cells[column], self._separator) is None:
                     return InputError(f"{self.place(column, row)}: {_no_number(cells[column])}")
         return InputError(f"{self.source}: the numbers cannot be read ({' '.join(reason.split())})")
+
+
+def _lines(text: str) -> list[str]:
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+
+def _plain_numbers(path: Path, below: int, separator: str, count: int) -> FloatArray | None:
+    """Return all cells below the header of a file that holds nothing but numbers, else None.
+
+    The same parser as for any other file, but from the file's stream: a million rows as texts of their
+    own cost more time and room than their numbers.
+    """
+    try:
+        table = np.loadtxt(
+            path,
+            delimiter=separator,
+            dtype=np.float64,
+            comments=None,
+            skiprows=below,
+            ndmin=2,
+            encoding="latin-1",  # numbers are ASCII, whatever the header is
+        )
+    except ValueError:
+        return None
+    return table if table.shape[1] == count and len(table) > 0 else None
 
 
 def _no_number(cell: str) -> str:

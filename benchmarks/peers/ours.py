@@ -1,0 +1,97 @@
+"""jointid itself: whole `identify` calls, and the search alone, stopped by its callback at the target."""
+
+from __future__ import annotations
+
+import jointid as jid
+from jointid import _core
+from peers.contest import WINDOWS, Contest, Objective
+from peers.peer import Peer, Solve
+
+POPULATION, GENERATIONS = 200, 1500  # of the thesis presets
+
+
+def whole_identify(method: str, windows: int | None) -> Solve:
+    """The call a user makes: checks, penalty, search, polish, standard errors, warnings."""
+
+    def solve(objective: Objective, seed: int) -> None:
+        contest = objective.contest
+        estimate = jid.identify(
+            contest.recording, contest.joint, method=method, windows=windows, seed=seed
+        )
+        found = estimate.convergence
+        objective.evaluations += int(found.evaluations[-1]) if found is not None else 0
+        if windows == WINDOWS:
+            values = [estimate.parameters[name].value for name in contest.direct.names]
+            objective.best = min(objective.best, contest.direct(values))
+        else:  # other windows, another penalty: held against its own optimum
+            objective.best = contest.best_penalty * estimate.penalty / own_optimum(contest, windows)
+
+    return solve
+
+
+_OPTIMA: dict[int | None, float] = {}
+
+
+def own_optimum(contest: Contest, windows: int | None) -> float:
+    """The optimal penalty over other windows; found once, in the untimed first round."""
+    if windows not in _OPTIMA:
+        best = jid.identify(contest.recording, contest.joint, method="separable", windows=windows)
+        _OPTIMA[windows] = best.penalty
+    return _OPTIMA[windows]
+
+
+def search(options: _core.GaOptions, threads: int = 0) -> Solve:
+    """Compression, genetic search until the target, and the polish if the options have one."""
+
+    def solve(objective: Objective, seed: int) -> None:
+        contest = objective.contest
+        low, high = contest.full_lower, contest.full_upper
+        form = _core.CompressedPenalty(contest.direct, low, high, threads=threads)
+        assert form.exact
+        found = _core.minimise_genetic(
+            form,
+            low,
+            high,
+            options=options,
+            seed=seed,
+            threads=threads,
+            callback=lambda generation: generation.best <= contest.target,
+        )
+        objective.evaluations += found.evaluations
+        best = found.best
+        if found.penalty > contest.target and options.polish:
+            best = _core.refine_separable(form, low, high, best, threads=threads).best
+        objective.best = min(objective.best, contest.direct(best))
+
+    return solve
+
+
+def separable(objective: Objective, seed: int) -> None:
+    """Elimination of the linear parameters; deterministic."""
+    del seed
+    contest = objective.contest
+    low, high = contest.full_lower, contest.full_upper
+    form = _core.CompressedPenalty(contest.direct, low, high)
+    found = _core.minimise_separable(form, low, high)
+    objective.evaluations += found.evaluations
+    objective.best = min(objective.best, contest.direct(found.best))
+
+
+def peers() -> list[Peer]:
+    """Rows; those called `identify` time the whole call."""
+    thesis, code = (
+        options.replace(population=POPULATION, generations=GENERATIONS)
+        for options in (_core.GaOptions.thesis(), _core.GaOptions.thesis_code())
+    )
+    rows = {
+        "jointid `identify()`, default windows": whole_identify("ga", None),
+        "jointid `identify()`, 200 windows": whole_identify("ga", WINDOWS),
+        'jointid `identify(method="separable")`, 200 windows': whole_identify("separable", WINDOWS),
+        "jointid search, default": search(_core.GaOptions()),
+        "jointid search, `thesis()` 200 × 1500": search(thesis),
+        "jointid search, `thesis_code()` 200 × 1500": search(code),
+        "jointid search, separable": separable,
+    }
+    return [
+        Peer(name=name, form="compressed", solve=solve, whole=True) for name, solve in rows.items()
+    ]

@@ -1,0 +1,77 @@
+"""SciPy: differential evolution, one candidate at a time and vectorised, and least squares from many starts."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import Bounds, differential_evolution, least_squares
+
+from peers.contest import Objective
+from peers.peer import Peer
+
+NEAR = 0.2  # a good start lies within this share of the optimum
+TIGHT = 1e-12  # the penalty is of the order of 1e-4: the default tolerances would stop short of it
+
+
+def evolution(objective: Objective, seed: int) -> None:
+    """The documentation's call; tol and the final L-BFGS-B polish are the defaults."""
+    bounds = Bounds(objective.lower, objective.upper)
+    differential_evolution(objective, bounds, rng=np.random.default_rng(seed))
+
+
+def vectorised(objective: Objective, seed: int) -> None:
+    """As the documentation advises for a vectorised function: a population a call, deferred updating."""
+
+    def many(columns: np.ndarray) -> np.ndarray:
+        if columns.ndim == 1:  # the polish asks for one
+            return np.asarray(objective(columns))
+        return objective.many(columns.T)
+
+    differential_evolution(
+        many,  # type: ignore[arg-type]  # the stubs do not know `vectorized`
+        Bounds(objective.lower, objective.upper),
+        rng=np.random.default_rng(seed),
+        vectorized=True,
+        updating="deferred",
+    )
+
+
+def _least_squares(objective: Objective, start: np.ndarray) -> None:
+    least_squares(
+        objective.residuals,
+        start,
+        jac=objective.jacobian if objective.compiled else "2-point",
+        bounds=(objective.lower, objective.upper),
+        x_scale=objective.width,
+        ftol=TIGHT,
+        xtol=TIGHT,
+        gtol=TIGHT,
+    )
+
+
+def multi_start(objective: Objective, seed: int) -> None:
+    """Trust region reflective from one random start; the contest starts it again until it succeeds."""
+    rng = np.random.default_rng(seed)
+    _least_squares(objective, rng.uniform(objective.lower, objective.upper))
+
+
+def good_start(objective: Objective, seed: int) -> None:
+    """The same from within 20 % of the optimum, which a user rarely has."""
+    rng = np.random.default_rng(seed)
+    best = objective.contest.best
+    start = best * (1.0 + rng.uniform(-NEAR, NEAR, best.size))
+    _least_squares(objective, np.clip(start, objective.lower, objective.upper))
+
+
+def peers() -> list[Peer]:
+    """Each with both forms of the penalty."""
+    rows = {
+        "SciPy differential_evolution": evolution,
+        "SciPy differential_evolution, vectorized": vectorised,
+        "SciPy least_squares, random starts": multi_start,
+        "SciPy least_squares, start within 20 %": good_start,
+    }
+    return [
+        Peer(name=name, form=form, solve=solve)
+        for name, solve in rows.items()
+        for form in ("NumPy", "compiled")
+    ]

@@ -1,0 +1,20 @@
+"""All rows of the contest, in the table's order."""
+
+from __future__ import annotations
+
+from peers import (
+    cma_peers,
+    deap_peers,
+    ours,
+    pygad_peers,
+    pygmo_peers,
+    pymoo_peers,
+    scipy_peers,
+)
+from peers.peer import Peer
+
+
+def all_peers() -> list[Peer]:
+    """Ours first."""
+    rooms = (ours, scipy_peers, pygmo_peers, pymoo_peers, deap_peers, pygad_peers, cma_peers)
+    return [peer for room in rooms for peer in room.peers()]

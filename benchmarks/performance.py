@@ -1,0 +1,148 @@
+"""Writes docs/performance.md from `performance.template.md` and the records."""
+
+from __future__ import annotations
+
+import os
+import platform
+import subprocess
+from importlib.metadata import version
+from pathlib import Path
+from string import Template
+
+from rounds import FAILED, FEW
+from store import Store
+from summary import OURS, claims, rows
+
+TEMPLATE = Path(__file__).resolve().parent / "performance.template.md"
+VERDICTS = {True: "yes", False: "**no**", None: "limit too short to tell"}
+LIBRARIES = ("numpy", "scipy", "pygmo", "deap", "pymoo", "pygad", "cma")
+
+
+def versions() -> dict[str, str]:
+    """Of what was timed."""
+    return {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}}
+
+
+def machine() -> str:
+    """Processor, cores, compiler."""
+    model = platform.processor() or platform.machine()
+    for line in Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            model = line.split(":", 1)[1].strip()
+            break
+    told = subprocess.run(["c++", "--version"], check=True, text=True, capture_output=True)
+    return f"{model}, {os.cpu_count()} cores; {told.stdout.splitlines()[0]}"
+
+
+def seconds(value: float) -> str:
+    """A time with three figures and its unit."""
+    for factor, unit in ((1.0, "s"), (1e3, "ms"), (1e6, "µs")):
+        if value * factor >= 1.0:
+            return f"{value * factor:.3g} {unit}"
+    return f"{value * 1e9:.3g} ns"
+
+
+def table(header: list[str], lines: list[list[str]]) -> str:
+    """In Markdown."""
+    head = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
+    return "\n".join([*head, *("| " + " | ".join(line) + " |" for line in lines)])
+
+
+def contest_table(store: Store, order: list[str]) -> str:
+    """A line a peer."""
+    found = rows(store, order)
+    ours = next(row.seconds for row in found if row.key == OURS)
+    lines = []
+    for row in found:
+        sign = "> " if row.bound else ""
+        spread = f"{seconds(row.quickest)} … {seconds(row.slowest)}"
+        lines.append(
+            [
+                row.name,
+                row.form,
+                sign + seconds(row.seconds),
+                "—" if row.bound else spread,
+                f"{sign}{row.seconds / ours:.3g}",
+                f"{row.reached}/{row.runs}",
+                f"{row.ratio:.4g}",
+                f"{row.evaluations:,.0f}" if row.evaluations else "—",
+                seconds(row.candidate) if row.evaluations else "—",
+            ]
+        )
+    header = ["search", "penalty", "median time", "range", "times our search", "reached", "P/P*"]
+    return table([*header, "candidates", "time a candidate"], lines)
+
+
+def scaling_tables(store: Store) -> dict[str, str]:
+    """One a direction."""
+
+    def of(over: str) -> list[dict[str, float]]:
+        return store.of("scaling", over=over)
+
+    return {
+        "samples": table(
+            ["samples", "windows", "`identify()`", "arrays", "peak memory", "times the arrays"],
+            [
+                [
+                    f"{r['samples']:,}",
+                    f"{r['windows']:,}",
+                    seconds(r["seconds"]),
+                    f"{r['arrays'] / 1e6:.1f} MB",
+                    f"{r['memory'] / 1e6:.1f} MB",
+                    f"{r['memory'] / r['arrays']:.1f}",
+                ]
+                for r in of("samples")
+            ],
+        ),
+        "windows": table(
+            ["windows", "`identify()`", "compressed, a candidate"],
+            [
+                [f"{r['windows']}", seconds(r["seconds"]), seconds(r["candidate"])]
+                for r in of("windows")
+            ],
+        ),
+        "population": table(
+            ["population", "search of 20 generations", "a candidate, breeding included"],
+            [
+                [f"{r['population']}", seconds(r["seconds"]), seconds(r["candidate"])]
+                for r in of("population")
+            ],
+        ),
+        "threads": table(
+            ["threads", "direct sum, a candidate", "compressed, a candidate"],
+            [
+                [f"{r['threads']}", seconds(r["direct"]), seconds(r["compressed"])]
+                for r in of("threads")
+            ],
+        ),
+    }
+
+
+def write(store: Store, order: list[str], limit: float, path: Path) -> None:
+    """Fill the template."""
+    literal = store.of("literal")[0]
+    candidate_lines = [[r["name"], seconds(r["seconds"])] for r in store.of("candidate")]
+    candidate_lines.append(
+        ["literal C++ transcription, -O2, one thread", seconds(literal["candidate"])]
+    )
+    most = max(len(store.of("run", peer=key)) for key in order)
+    content = Template(TEMPLATE.read_text()).substitute(
+        machine=machine(),
+        versions=", ".join(f"{name} {value}" for name, value in versions().items()),
+        limit=f"{limit:.3g}",
+        seeds=most,
+        few=FEW,
+        failed=FAILED,
+        claims=table(
+            ["wanted", "measured", "holds"],
+            [[c.wish, c.measured, VERDICTS[c.holds]] for c in claims(store, order)],
+        ),
+        contest=contest_table(store, order),
+        candidates=table(["form", "time per candidate"], candidate_lines),
+        literal_total=seconds(literal["total"]),
+        literal_runs=literal["runs"],
+        literal_generations=literal["generations"],
+        **scaling_tables(store),
+    )
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(content)

@@ -1,0 +1,120 @@
+"""How time and memory grow: samples, windows, population, threads. Medians of few runs, each a record."""
+
+from __future__ import annotations
+
+import json
+import os
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from peers.contest import Contest, problem_of
+from store import Record, Store
+
+import jointid as jid
+from jointid import _core
+
+SAMPLES = (6_000, 20_000, 60_000, 200_000, 600_000, 2_000_000, 3_600_000, 6_000_000)
+WINDOWS = (10, 30, 100, 300, 1000, 3000, 6000)
+POPULATIONS = (20, 60, 200, 600, 2000, 6000, 20000)
+GENERATIONS = 20
+REPEATS = 7
+CHILD = Path(__file__).resolve().parent / "long_recording.py"
+
+
+def median(call: Callable[[], object], repeats: int = REPEATS) -> float:
+    """Seconds a call."""
+    seconds = []
+    for _ in range(repeats):
+        began = time.perf_counter()
+        call()
+        seconds.append(time.perf_counter() - began)
+    return statistics.median(seconds)
+
+
+def by_samples(largest: int) -> Iterator[Record]:
+    """Whole `identify` calls on recordings of 6 s to 100 minutes, with the peak of memory."""
+    for samples in SAMPLES:
+        if samples > largest:
+            return
+        repeats = REPEATS if samples <= 3_600_000 else 3
+        call = [sys.executable, str(CHILD), str(samples), str(repeats)]
+        told = subprocess.run(call, check=True, text=True, capture_output=True).stdout
+        yield {"over": "samples", **json.loads(told)}
+
+
+def by_windows(contest: Contest) -> Iterator[Record]:
+    """Whole `identify` calls, and the compressed penalty's time per candidate."""
+    rng = np.random.default_rng(2)
+    free = rng.uniform(contest.lower, contest.upper, (2000, contest.lower.size))
+    rows = np.asfortranarray(np.array([contest.full(row) for row in free]).T)
+    for windows in WINDOWS:
+        _, direct = problem_of(contest.recording, contest.joint, windows)
+        form = _core.CompressedPenalty(direct, contest.full_lower, contest.full_upper)
+        yield {
+            "over": "windows",
+            "windows": windows,
+            "seconds": median(
+                partial(jid.identify, contest.recording, contest.joint, windows=windows)
+            ),
+            "candidate": median(partial(form.evaluate, rows, threads=1)) / len(free),
+        }
+
+
+def by_population(contest: Contest) -> Iterator[Record]:
+    """The genetic search on the compressed penalty, one thread, and the direct sum on all."""
+    low, high = contest.full_lower, contest.full_upper
+    form = _core.CompressedPenalty(contest.direct, low, high)
+    for population in POPULATIONS:
+        options = _core.GaOptions(
+            population=population, generations=GENERATIONS, polish=False, tolerance=0.0
+        )
+        seconds = median(
+            partial(_core.minimise_genetic, form, low, high, options=options, threads=1)
+        )
+        candidates = population * (GENERATIONS + 1)
+        yield {
+            "over": "population",
+            "population": population,
+            "seconds": seconds,
+            "candidate": seconds / candidates,
+        }
+
+
+def by_threads(contest: Contest) -> Iterator[Record]:
+    """The direct sum and the compressed one on 2000 and 200 000 candidates."""
+    rng = np.random.default_rng(3)
+    free = rng.uniform(contest.lower, contest.upper, (2000, contest.lower.size))
+    few = np.asfortranarray(np.array([contest.full(row) for row in free]).T)
+    many = np.asfortranarray(np.tile(few, 100))
+    form = _core.CompressedPenalty(contest.direct, contest.full_lower, contest.full_upper)
+    cores = os.cpu_count() or 1
+    counts = sorted({1, cores, *(2**i for i in range(10) if 2**i < cores)})
+    for threads in counts:
+        yield {
+            "over": "threads",
+            "threads": threads,
+            "direct": median(partial(contest.direct.evaluate, few, threads=threads)) / 2e3,
+            "compressed": median(partial(form.evaluate, many, threads=threads)) / 2e5,
+        }
+
+
+def measure(contest: Contest, store: Store, largest: int) -> None:
+    """Whatever the store does not have yet."""
+    parts: dict[str, Callable[[], Iterator[Record]]] = {
+        "samples": lambda: by_samples(largest),
+        "windows": lambda: by_windows(contest),
+        "population": lambda: by_population(contest),
+        "threads": lambda: by_threads(contest),
+    }
+    for over, part in parts.items():
+        if store.of("scaling", over=over):
+            continue
+        for record in list(part()):
+            store.append({"kind": "scaling", **record})
+        print(f"scaling over {over} done", flush=True)

@@ -1,0 +1,101 @@
+// The sliding penalty against the penalty over the same windows.
+
+#include <string>
+#include <vector>
+
+#include "check.hpp"
+#include "identify/separable.hpp"
+#include "identify/sliding_penalty.hpp"
+#include "synthetic.hpp"
+
+namespace jointid::tests {
+namespace {
+
+using identify::Penalty;
+using identify::Residual;
+using identify::SlidingPenalty;
+
+const std::vector<std::string> kTerms{"inertia", "coulomb",     "static",
+                                      "viscous", "sensor_gain", "sensor_offset"};
+
+search::Domain domain() {
+  Eigen::VectorXd lower(7);
+  Eigen::VectorXd upper(7);
+  lower << 0, 0, 0, 0, 0.1, -30, 0;
+  upper << 50, 50, 50, 50, 5, 30, 200;
+  return {lower, upper};
+}
+
+identify::Recording recorded(int samples) {
+  auto r = moving(samples, 0.001, false, 3);
+  add_torque(r, {}, true);
+  add_noise(r, 0.5, 3);
+  return r;
+}
+
+SlidingPenalty sliding(double speed = 4.5) {
+  return {kTerms, Residual::sensor, 1.0, 0.02, true, domain(), speed};
+}
+
+CHECK_CASE("sliding: stretches add up to the penalty over the same windows") {
+  const auto r = recorded(4001);
+  const Penalty whole({r}, kTerms, {0, 0.02}, Residual::sensor, true);
+  auto parts = sliding();
+  for (Eigen::Index begin = 0; begin < 4000; begin += 500) parts.append(r, begin, begin + 500);
+  CHECK(parts.window_count() == whole.window_count());
+  CHECK(parts.begin() == r.time[0] && parts.end() == r.time[4000]);
+  CHECK_CLOSE(parts.usable_duration(), whole.usable_duration().sum(), 1e-12);
+  const auto compressed = parts.compressed();
+  CHECK(compressed.has_value());
+  if (!compressed) return;
+  CHECK_WITH(compressed->exact(), compressed->reason());
+  const Eigen::VectorXd theta = 0.7 * domain().lower + 0.3 * domain().upper;
+  CHECK_CLOSE((*compressed)(theta), whole(theta), 1e-10 * whole(theta));
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd jacobian;
+  parts.residuals(theta, residual, jacobian);
+  CHECK_CLOSE(residual.squaredNorm(), whole(theta), 1e-12 * whole(theta));
+  CHECK(jacobian.rows() == whole.window_count() && jacobian.cols() == 7);
+}
+
+CHECK_CASE("sliding: what is forgotten does not count any more") {
+  const auto r = recorded(4001);
+  auto parts = sliding();
+  auto late = sliding();
+  for (Eigen::Index begin = 0; begin < 4000; begin += 500) {
+    parts.append(r, begin, begin + 500);
+    if (begin >= 2000) late.append(r, begin, begin + 500);
+  }
+  parts.forget(r.time[2000]);
+  CHECK(parts.stretches() == 4 && parts.begin() == r.time[2000]);
+  const Eigen::VectorXd theta = 0.7 * domain().lower + 0.3 * domain().upper;
+  CHECK((*parts.compressed())(theta) == (*late.compressed())(theta));
+  parts.forget(1e9);
+  CHECK(parts.stretches() == 0 && !parts.compressed().has_value());
+}
+
+CHECK_CASE("sliding: context tells a stretch's end whether the joint stands still") {
+  auto r = recorded(2001);
+  for (Eigen::Index k = 900; k < 1200; ++k) {
+    r.velocity[k] = 0.0;
+    r.position[k] = r.position[900];
+  }
+  auto parts = sliding();
+  parts.append(r, 0, 1000);
+  parts.append(r, 1000, 2000);
+  const Penalty whole({r}, kTerms, {0, 0.02}, Residual::sensor, true);
+  CHECK_CLOSE(parts.usable_duration(), whole.usable_duration().sum(), 1e-12);
+}
+
+CHECK_CASE("sliding: refuses what it cannot serve") {
+  const auto r = recorded(2001);
+  auto parts = sliding();
+  parts.append(r, 500, 1000);
+  CHECK_REFUSED(parts.append(r, 900, 1500), "before the last one's end");
+  CHECK_REFUSED(parts.append(r, 1500, 2001), "not within the 2001 samples");
+  CHECK_REFUSED(sliding(1.0).append(r, 0, 500), "faster than the");
+  CHECK_REFUSED(sliding(0.0), "speed and window_duration must be above 0");
+}
+
+}  // namespace
+}  // namespace jointid::tests

@@ -1,0 +1,1 @@
+"""On-line identification: an estimate that follows the joint while it runs."""

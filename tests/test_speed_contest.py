@@ -1,0 +1,107 @@
+"""The speed contest is fair: one penalty for all, a stop at the target, nothing lost when it is interrupted."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
+from peers.contest import Contest, Expired, Objective, Reached, make_contest, prove_same
+from peers.peer import Peer, timed
+from store import Store
+from summary import rows
+
+
+@pytest.fixture(scope="module")
+def contest() -> Contest:
+    return make_contest()
+
+
+def test_numpy_penalty_that_differs_is_refused(contest: Contest) -> None:
+    prove_same(contest)
+    contest.numpy._balance[0] *= 1.0 + 1e-6
+    try:
+        with pytest.raises(AssertionError, match="differs"):
+            prove_same(contest)
+    finally:
+        contest.numpy._balance[0] /= 1.0 + 1e-6
+
+
+@pytest.mark.parametrize("compiled", [False, True])
+def test_objective_stops_at_the_target_and_not_before(contest: Contest, compiled: bool) -> None:
+    objective = Objective(contest, compiled=compiled, limit=60.0)
+    middle = 0.5 * (contest.lower + contest.upper)
+    expected = contest.direct(contest.full(middle))
+    assert objective(middle) == pytest.approx(expected, rel=1e-9)
+    assert objective.many(np.array([middle, middle])) == pytest.approx(expected, rel=1e-9)
+    assert objective.unit(np.full(6, 0.5)) == pytest.approx(expected, rel=1e-9)
+    residual = objective.residuals(middle)
+    assert residual @ residual == pytest.approx(expected, rel=1e-9)
+    with pytest.raises(Reached):
+        objective(contest.best)
+    assert objective.evaluations == 6
+
+
+def test_jacobian_is_the_residuals_slope(contest: Contest) -> None:
+    objective = Objective(contest, compiled=True, limit=60.0)
+    at, step = 0.5 * (contest.lower + contest.upper), 1e-6
+    slope = objective.residuals(at + step * np.eye(6)[3]) - objective.residuals(
+        at - step * np.eye(6)[3]
+    )
+    expected = slope / (2.0 * step)
+    assert objective.jacobian(at)[:, 3] == pytest.approx(
+        expected, rel=1e-5, abs=1e-6 * np.abs(expected).max()
+    )
+
+
+def test_time_that_is_over_ends_a_run(contest: Contest) -> None:
+    with pytest.raises(Expired):
+        Objective(contest, compiled=True, limit=-1.0)(contest.lower + 1.0)
+
+
+def test_search_that_ends_early_starts_again_with_another_seed(contest: Contest) -> None:
+    seeds = []
+
+    def solve(objective: Objective, seed: int) -> None:
+        seeds.append(seed)
+        objective(contest.best if len(seeds) == 3 else contest.upper)
+
+    run = timed(Peer(name="x", form="NumPy", solve=solve), contest, 5, 60.0)
+    assert run.reached
+    assert run.evaluations == 3
+    assert len(set(seeds)) == 3
+
+
+def test_interrupted_run_goes_on_and_a_finished_one_begins_anew(tmp_path: Path) -> None:
+    path = tmp_path / "runs.jsonl"
+    Store(path, {"limit": 1.0}).append({"kind": "run", "peer": "a"})
+    with path.open("a") as file:
+        file.write('{"kind": "run", "pe')  # cut off while writing
+    again = Store(path, {"limit": 1.0})
+    assert again.of("run", peer="a")
+    again.append({"kind": "run", "peer": "b"})
+    third = Store(path, {"limit": 1.0})
+    assert third.of("run", peer="b")
+    assert not Store(tmp_path / "runs.jsonl", {"limit": 2.0}).of("run")
+    store = Store(path, {"limit": 2.0})
+    store.append({"kind": "finished"})
+    assert not Store(path, {"limit": 2.0}).of("finished")
+
+
+def test_median_of_runs_that_mostly_failed_is_a_bound(tmp_path: Path) -> None:
+    store = Store(tmp_path / "runs.jsonl", {})
+    for reached in (True, False, False):
+        store.append(
+            {
+                "kind": "run",
+                "peer": "a | NumPy",
+                "seconds": 1.0 if reached else 20.0,
+                "reached": reached,
+                "ratio": 1.0,
+                "evaluations": 10,
+            }
+        )
+    (row,) = rows(store, ["a | NumPy"])
+    assert row.bound
+    assert (row.seconds, row.reached, row.runs) == (20.0, 1, 3)
