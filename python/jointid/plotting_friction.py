@@ -62,7 +62,8 @@ def sensitivity(
     """The torque at constant speed and constant sensor reading, and how a parameter's error moves it.
 
     This is the drive's torque by (4-20) without acceleration: friction + gain · reading + offset.
-    Where the three curves part, a recording tells of the parameter.
+    Where the three curves part, a recording tells of the parameter. Forward motion is shown; backward,
+    friction changes its sign.
 
     Parameters
     ----------
@@ -101,7 +102,7 @@ def sensitivity(
         link = 0.0
         if joint.sensor:
             link = changed.get("sensor_gain", 0.0) * reading + changed.get("sensor_offset", 0.0)
-        _draw(axes, changed, peak, number, f"{parameter} {name}", above=link)
+        _draw(axes, changed, peak, number, f"{parameter} {name}", above=link, forward=True)
     _label(axes, "torque at constant speed", joint.kind)
     axes.legend(loc="best")
     return axes
@@ -150,14 +151,14 @@ def torque_over_velocity(
         ".",
         color=MEASURED,
         markersize=1.5,
-        label="recorded, a point a sample",
+        label="recorded samples",
         rasterized=True,
     )
     if curve is not None:
         peak = float(np.abs(recording.velocity).max())
-        _draw(axes, _values(_joint(curve)), peak, 0, "friction of the model", colour=SECOND)
+        _draw(axes, _values(_joint(curve)), peak, 0, "friction, model", colour=SECOND)
     _label(axes, what, recording.kind)
-    axes.legend(loc="upper left", markerscale=4.0)
+    axes.legend(loc="lower right", markerscale=4.0, fontsize="small")
     return axes
 
 
@@ -191,6 +192,7 @@ def _draw(
     label: str,
     *,
     above: float = 0.0,
+    forward: bool = False,
     colour: str | None = None,
 ) -> None:
     """One curve, broken at rest, where friction takes any value in between."""
@@ -202,9 +204,9 @@ def _draw(
     if colour is not None:
         keywords["color"] = colour
     middle = len(speed)
-    axes.plot(
-        np.insert(velocity, middle, 0.0), np.insert(torque, middle, np.nan), label=label, **keywords
-    )
+    velocity, torque = np.insert(velocity, middle, 0.0), np.insert(torque, middle, np.nan)
+    shown = slice(middle + 1, None) if forward else slice(None)
+    axes.plot(velocity[shown], torque[shown], label=label, **keywords)
 
 
 def _label(axes: Axes, what: str, kind: str) -> None:

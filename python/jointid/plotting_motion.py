@@ -60,7 +60,8 @@ def tracking_error(runs: Runs, axes: Axes | None = None, *, settling: float | No
         axes.plot(elapsed, error, label=label, **line_style(number, len(elapsed)))
     axes.set_xlabel("time [s]")
     axes.set_ylabel(f"position less reference [{_small(next(iter(named.values())))}]")
-    axes.legend(loc="best")
+    _room_for_legend(axes)
+    axes.legend(loc="upper right")
     return axes
 
 
@@ -128,8 +129,20 @@ def trajectory(
     axes.set_xlabel("time [s]")
     axes.set_ylabel(f"desired {what} [{_UNITS[what][0]}]")
     if label:
-        axes.legend(loc="best")
+        _room_for_legend(axes)
+        axes.legend(loc="upper right")
     return axes
+
+
+def _room_for_legend(axes: Axes) -> None:
+    """Room above the curves, of all axes that share the scale."""
+    family = axes.get_shared_y_axes().get_siblings(axes)
+    drawn = [other for other in family if other.lines]
+    low = min(float(other.dataLim.ymin) for other in drawn)
+    high = max(float(other.dataLim.ymax) for other in drawn)
+    entries = max(len(other.lines) for other in drawn)
+    size = high - low or 1.0
+    axes.set_ylim(low - 0.05 * size, high + (0.05 + 0.13 * entries) * size)
 
 
 def _named(runs: Runs) -> Mapping[str, Recording]:
