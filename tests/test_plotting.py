@@ -74,6 +74,26 @@ def test_sensitivity_reaches_beyond_the_bounds() -> None:
     assert _at(axes, 1, 0.5) - _at(axes, 0, 0.5) == pytest.approx(2.0, abs=1e-3)
 
 
+def test_convergence_claims_no_polish_that_was_not(run: jid.SimulatedRecording) -> None:
+    options = jid.GaOptions(population=20, generations=5)
+    for polish, told in ((True, "after the polish"), (False, "the answer, not polished")):
+        estimate = jid.identify(run, thesis_joint(), ga=options.replace(polish=polish))
+        assert _legend(jid.plot.convergence(estimate))[-1] == told
+
+
+def test_style_leaves_a_notebook_drawing() -> None:
+    # A back end that is loaded inside the block turns drawing on for good.
+    before = matplotlib.is_interactive()
+    try:
+        matplotlib.interactive(False)
+        with jid.plot.style():
+            matplotlib.interactive(True)
+        assert matplotlib.is_interactive()
+        assert matplotlib.rcParams["axes.spines.top"]
+    finally:
+        matplotlib.interactive(before)
+
+
 def test_tracking_error_tells_its_root_mean_square(run: jid.SimulatedRecording) -> None:
     axes = jid.plot.tracking_error({"before": run})
     late = run.tracking_error()[len(run.time) // 6 :]

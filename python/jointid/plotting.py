@@ -96,7 +96,7 @@ def friction_map(recording: Recording | None, estimate: Estimate, axes: Axes | N
     prismatic = estimate.settings["kind"] == "prismatic"
     axes.set_xlabel("velocity [m/s]" if prismatic else "velocity [rad/s]")
     axes.set_ylabel(f"friction [{_torque_unit(estimate)}]")
-    axes.legend(loc="upper left")
+    axes.legend(loc="upper left", frameon=False)
     return axes
 
 
@@ -122,7 +122,7 @@ def window_means(estimate: Estimate, axes: Axes | None = None) -> Axes:
     )
     axes.set_xlabel("time [s]")
     axes.set_ylabel(f"{signal}, window mean [{unit}]")
-    axes.legend(loc="best")
+    axes.legend(loc="best", frameon=False)
     return axes
 
 
@@ -181,9 +181,11 @@ def convergence(estimate: Estimate, axes: Axes | None = None) -> Axes:
     history = estimate.convergence
     axes.semilogy(history.generation, history.mean, color=MEASURED, label="population mean")
     axes.semilogy(history.generation, history.best, color=SECOND, label="best so far")
-    axes.axhline(estimate.penalty, color=FITTED, linestyle="--", label="after the polish")
+    polished = (estimate.settings["ga"] or {}).get("polish") and estimate.settings["method"] == "ga"
+    last = "after the polish" if polished else "the answer, not polished"
+    axes.axhline(estimate.penalty, color=FITTED, linestyle="--", label=last)
     axes.set_xlabel("generation")
     unit = _compared(estimate)[1]
     axes.set_ylabel(f"penalty [({unit}·s)²]")
-    axes.legend(loc="best")
+    axes.legend(loc="best", frameon=False)
     return axes

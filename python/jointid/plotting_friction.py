@@ -46,7 +46,7 @@ def friction_curves(
         _draw(axes, _values(_joint(joint)), peak, number, name)
     kinds = {_joint(joint).kind for joint in joints.values()}
     _label(axes, "friction", "prismatic" if kinds == {"prismatic"} else "revolute")
-    axes.legend(loc="best")
+    axes.legend(loc="best", frameon=False)
     return axes
 
 
@@ -104,7 +104,7 @@ def sensitivity(
             link = changed.get("sensor_gain", 0.0) * reading + changed.get("sensor_offset", 0.0)
         _draw(axes, changed, peak, number, f"{parameter} {name}", above=link, forward=True)
     _label(axes, "torque at constant speed", joint.kind)
-    axes.legend(loc="best")
+    axes.legend(loc="best", frameon=False)
     return axes
 
 
@@ -158,7 +158,7 @@ def torque_over_velocity(
         peak = float(np.abs(recording.velocity).max())
         _draw(axes, _values(_joint(curve)), peak, 0, "friction, model", colour=SECOND)
     _label(axes, what, recording.kind)
-    axes.legend(loc="lower right", markerscale=4.0, fontsize="small")
+    axes.legend(loc="lower right", frameon=False, markerscale=4.0, fontsize="small")
     return axes
 
 

@@ -61,7 +61,7 @@ def tracking_error(runs: Runs, axes: Axes | None = None, *, settling: float | No
     axes.set_xlabel("time [s]")
     axes.set_ylabel(f"position less reference [{_small(next(iter(named.values())))}]")
     _room_for_legend(axes)
-    axes.legend(loc="upper right")
+    axes.legend(loc="upper right", frameon=False)
     return axes
 
 
@@ -95,7 +95,7 @@ def signal(runs: Runs, name: str, axes: Axes | None = None) -> Axes:
     axes.set_xlabel("time [s]")
     axes.set_ylabel(f"{name.replace('_', ' ')} [{unit}]")
     if len(named) > 1:
-        axes.legend(loc="best")
+        axes.legend(loc="best", frameon=False)
     return axes
 
 
@@ -130,7 +130,7 @@ def trajectory(
     axes.set_ylabel(f"desired {what} [{_UNITS[what][0]}]")
     if label:
         _room_for_legend(axes)
-        axes.legend(loc="upper right")
+        axes.legend(loc="upper right", frameon=False)
     return axes
 
 

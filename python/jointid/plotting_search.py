@@ -51,5 +51,5 @@ def adaptation(
     axes.set_ylabel("probability [–]")
     axes.set_yscale("log")
     axes.set_ylim(0.01, 1.3)
-    axes.legend(loc="center left")
+    axes.legend(loc="center left", frameon=False)
     return axes

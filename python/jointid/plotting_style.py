@@ -37,10 +37,18 @@ _STYLE: dict[str, Any] = {
 @contextmanager
 def style() -> Iterator[None]:
     """Matplotlib settings of all our pictures, for the time of a `with` block."""
-    from matplotlib import rc_context
+    from matplotlib import interactive, is_interactive, rc_context
 
-    with rc_context(cast("Any", _STYLE)):
-        yield
+    drawing = is_interactive()
+    try:
+        with rc_context(cast("Any", _STYLE)):
+            try:
+                yield
+            finally:
+                drawing = is_interactive()
+    finally:
+        # A notebook's back end is loaded with the first figure and turns this on, here perhaps.
+        interactive(drawing)
 
 
 def given_or_new(axes: Axes | None) -> Axes:
