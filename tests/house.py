@@ -51,8 +51,11 @@ GROUPS: dict[str, Group] = {
         packages={"numpy", "scipy", "pandas"},
     ),
     "presentation": Group(
-        modules={"plotting", "reporting"},
-        may_use={"core", "recording", "analysis"},
+        modules={
+            *("plotting", "plotting_friction", "plotting_motion", "plotting_search"),
+            *("plotting_style", "reporting"),
+        },
+        may_use={"core", "recording", "simulation", "analysis"},
         packages={"numpy", "matplotlib"},
     ),
     "hardware": Group(
