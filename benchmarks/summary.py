@@ -117,13 +117,8 @@ def _ratio_claims(found: list[Row]) -> list[Claim]:
             1.0,
             lambda r: r.form == "NumPy" and "start within" in r.name,
         ),
-        (
-            "SciPy least squares from a good start, compiled residual and Jacobian",
-            1.0,
-            lambda r: r.form == "compiled" and "start within" in r.name,
-        ),
     ]
-    claims = []
+    claims = [_from_good_start(found)]
     for name, wanted, belongs in groups:
         group = [row for row in found if belongs(row)]
         quickest = min(group, key=lambda row: row.seconds)
@@ -140,6 +135,23 @@ def _ratio_claims(found: list[Row]) -> list[Claim]:
             )
         )
     return claims
+
+
+def _from_good_start(found: list[Row]) -> Claim:
+    """Local searches from the same starts, on the same compiled residual and Jacobian."""
+    ours, theirs = (
+        next(
+            r
+            for r in found
+            if r.form == "compiled" and r.name.startswith(who) and "within" in r.name
+        )
+        for who in ("jointid polish", "SciPy least_squares")
+    )
+    return Claim(
+        wish="from a good start no slower than SciPy least squares, compiled residual and Jacobian",
+        measured=f"{theirs.seconds / ours.seconds:.3g} times as fast ({ours.name}, to the end; SciPy to the target)",
+        holds=theirs.seconds >= ours.seconds,
+    )
 
 
 def claims(store: Store, order: list[str]) -> list[Claim]:

@@ -162,3 +162,9 @@ def test_every_plot_draws_into_given_axes(estimate: jid.Estimate) -> None:
 def test_convergence_needs_a_genetic_search(robot: jid.Estimate) -> None:
     with pytest.raises(ValueError, match="without a genetic search"):
         jid.plot.convergence(robot)
+
+
+def test_holds_no_view_of_what_it_was_made_from(estimate: jid.Estimate) -> None:
+    # A view of one column would keep the whole penalty, as large as the recording.
+    for field in dataclasses.fields(estimate.windows):
+        assert getattr(estimate.windows, field.name).base is None, field.name

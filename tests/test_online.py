@@ -220,10 +220,48 @@ def test_an_error_in_the_thread_is_told_by_the_next_call(excited: jid.Recording)
         raise RuntimeError("the user's own")
 
     with jid.OnlineIdentifier(jid.thesis_joint(), callback=broken) as identifier:
-        for block in blocks(excited.crop(0.0, 3.0), 3000):
-            identifier.feed(**block)
+        identifier.feed(**next(blocks(excited, 3000)))
         with pytest.raises(RuntimeError, match="the user's own"):
             identifier.wait(30.0)
+
+
+def test_goes_on_after_an_error_in_the_callback(excited: jid.Recording) -> None:
+    calls: list[int] = []
+
+    def broken_once(estimate: jid.OnlineEstimate) -> None:
+        calls.append(estimate.update)
+        if len(calls) == 1:
+            raise RuntimeError("the user's own")
+
+    with jid.OnlineIdentifier(jid.thesis_joint(), callback=broken_once) as identifier:
+        for block in blocks(excited.crop(0.0, 4.0), 500):
+            try:
+                identifier.feed(**block)
+                identifier.wait(30.0)
+            except RuntimeError:
+                continue
+    assert calls == list(range(1, len(calls) + 1))
+    assert len(calls) > 2
+
+
+def test_closes_from_its_own_callback(excited: jid.Recording) -> None:
+    identifier = jid.OnlineIdentifier(jid.thesis_joint(), callback=lambda _: identifier.close())
+    identifier.feed(**next(blocks(excited.crop(0.0, 3.0), 3000)))
+    assert identifier._thread is not None
+    identifier._thread.join(30.0)
+    assert not identifier._thread.is_alive()
+    assert identifier.estimate is not None
+
+
+def test_a_refused_first_sample_decides_nothing(excited: jid.Recording) -> None:
+    with jid.OnlineIdentifier(jid.thesis_joint()) as identifier:
+        with pytest.raises(jid.InputError, match="need a position"):
+            identifier.feed(time=0.0, torque=1.0)
+        with pytest.raises(jid.InputError, match="not a number"):
+            identifier.feed(time=0.0, position=0.0, torque=np.nan)
+        for block in blocks(excited.crop(0.0, 3.0), 3000):
+            identifier.feed(**block)
+        assert identifier.wait(30.0) is not None
 
 
 def test_closed_is_closed() -> None:

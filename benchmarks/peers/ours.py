@@ -6,7 +6,9 @@ import jointid as jid
 from jointid import _core
 from peers.contest import WINDOWS, Contest, Objective
 from peers.peer import Peer, Solve
+from peers.starts import near_optimum
 
+POLISH = "jointid polish, start within 20 %"
 POPULATION, GENERATIONS = 200, 1500  # of the thesis presets
 
 
@@ -77,6 +79,15 @@ def separable(objective: Objective, seed: int) -> None:
     objective.best = min(objective.best, contest.direct(found.best))
 
 
+def polish(objective: Objective, seed: int) -> None:
+    """Levenberg-Marquardt on the direct sum, from the starts that SciPy's least squares gets."""
+    contest = objective.contest
+    start = contest.full(near_optimum(objective, seed))
+    found = _core.polish(contest.direct, contest.full_lower, contest.full_upper, start)
+    objective.evaluations += found.iterations
+    objective.best = min(objective.best, found.penalty)
+
+
 def peers() -> list[Peer]:
     """Rows; those called `identify` time the whole call."""
     thesis, code = (
@@ -93,5 +104,9 @@ def peers() -> list[Peer]:
         "jointid search, separable": separable,
     }
     return [
-        Peer(name=name, form="compressed", solve=solve, whole=True) for name, solve in rows.items()
+        *(
+            Peer(name=name, form="compressed", solve=solve, whole=True)
+            for name, solve in rows.items()
+        ),
+        Peer(name=POLISH, form="compiled", solve=polish, whole=True),
     ]

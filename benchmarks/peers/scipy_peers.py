@@ -7,8 +7,8 @@ from scipy.optimize import Bounds, differential_evolution, least_squares
 
 from peers.contest import Objective
 from peers.peer import Peer
+from peers.starts import near_optimum
 
-NEAR = 0.2  # a good start lies within this share of the optimum
 TIGHT = 1e-12  # the penalty is of the order of 1e-4: the default tolerances would stop short of it
 
 
@@ -55,11 +55,8 @@ def multi_start(objective: Objective, seed: int) -> None:
 
 
 def good_start(objective: Objective, seed: int) -> None:
-    """The same from within 20 % of the optimum, which a user rarely has."""
-    rng = np.random.default_rng(seed)
-    best = objective.contest.best
-    start = best * (1.0 + rng.uniform(-NEAR, NEAR, best.size))
-    _least_squares(objective, np.clip(start, objective.lower, objective.upper))
+    """The same from near the optimum."""
+    _least_squares(objective, near_optimum(objective, seed))
 
 
 def peers() -> list[Peer]:

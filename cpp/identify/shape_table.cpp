@@ -14,10 +14,12 @@ namespace {
 constexpr std::size_t kLanes = ShapeTable::kLanes;
 
 /// Values of T_0 .. T_(count-1) at x (also a little outside [-1, 1]).
-void chebyshev_row(double x, Eigen::Ref<Eigen::RowVectorXd> row) {
-  row[0] = 1.0;
-  if (row.size() > 1) row[1] = x;
-  for (Eigen::Index k = 2; k < row.size(); ++k) row[k] = 2.0 * x * row[k - 1] - row[k - 2];
+void chebyshev_values(double x, Eigen::Ref<Eigen::VectorXd> values) {
+  values[0] = 1.0;
+  if (values.size() > 1) values[1] = x;
+  for (Eigen::Index k = 2; k < values.size(); ++k) {
+    values[k] = 2.0 * x * values[k - 1] - values[k - 2];
+  }
 }
 
 /// Values at local Chebyshev points -> coefficients of powers of the local coordinate.
@@ -47,15 +49,14 @@ class Powers {
   Eigen::MatrixXd powers_;
 };
 
-/// The series' functions at all pieces' local points: points x series terms.
+/// The series' functions at all pieces' local points: series terms x points.
 Eigen::MatrixXd at_pieces(const ShapeAxis& axis, Eigen::Index order, Eigen::Index count) {
   const Eigen::VectorXd local = chebyshev_points(order);
-  Eigen::MatrixXd result(axis.pieces() * order, count);
-  Eigen::RowVectorXd row(count);
+  Eigen::MatrixXd result(count, axis.pieces() * order);
   for (std::int64_t piece = 0; piece < axis.pieces(); ++piece) {
     for (Eigen::Index l = 0; l < order; ++l) {
-      chebyshev_row(axis.position(axis.shape_in(piece, local[l])), row);
-      result.row(piece * order + l) = row;
+      chebyshev_values(axis.position(axis.shape_in(piece, local[l])),
+                       result.col(piece * order + l));
     }
   }
   return result;
@@ -126,7 +127,7 @@ ShapeTable::ShapeTable(std::vector<ShapeAxis> axes, const Samples& samples, int 
 void ShapeTable::build_line(const Eigen::MatrixXd& values) {
   const auto order = static_cast<Eigen::Index>(order_);
   const Eigen::MatrixXd points =
-      chebyshev_coefficients(values) * at_pieces(axes_[0], order, values.cols()).transpose();
+      chebyshev_coefficients(values) * at_pieces(axes_[0], order, values.cols());
   const Powers powers(order);
   rows_.assign(static_cast<std::size_t>(axes_[0].pieces()) * terms_ * width_, 0.0);
   for (std::int64_t piece = 0; piece < axes_[0].pieces(); ++piece) {
@@ -146,11 +147,10 @@ void ShapeTable::build_plane(const Samples& samples) {
   for (Eigen::Index k = 0; k < outer; ++k) {
     const auto& values = samples.values[static_cast<std::size_t>(k)];
     const Eigen::MatrixXd line =
-        chebyshev_coefficients(values) * at_pieces(axes_[1], order, values.cols()).transpose();
+        chebyshev_coefficients(values) * at_pieces(axes_[1], order, values.cols());
     lines.col(k) = line.reshaped();
   }
-  const Eigen::MatrixXd all =
-      chebyshev_coefficients(lines) * at_pieces(axes_[0], order, outer).transpose();
+  const Eigen::MatrixXd all = chebyshev_coefficients(lines) * at_pieces(axes_[0], order, outer);
   const Powers powers(order);
   rows_.assign(static_cast<std::size_t>(axes_[0].pieces() * axes_[1].pieces()) * terms_ * width_,
                0.0);

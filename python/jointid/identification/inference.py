@@ -62,9 +62,12 @@ def infer(
     shifts : tuple of ndarray or None
         How each parameter moves when the windows are halved and doubled.
     """
+    threads = problem.threads
+    # Before anything of a window's size is held, and all of that no longer than needed: an hour's
+    # recording leaves no room for more.
+    inspections = tuple(inspect(run, threads) for run in problem.recordings)
     value, residual, jacobian = penalty.linearised(best)
     columns = penalty.columns(best[penalty.coefficients :])
-    threads = problem.threads
     sizes = np.linalg.norm(jacobian, axis=0)
     noise = size(residual) / np.sqrt(max(1, len(residual) - len(best)))
     alone = noise / np.where(
@@ -74,10 +77,14 @@ def infer(
     free = list(freedom.indices)
     table = problem.table(penalty, best, (residual, columns))
     freely = jacobian[:, free]
+    del jacobian
     centre = _centre(penalty, columns, free)
     by_chance = parameter_covariance(freely, residual, centre, threads=threads)
     systematic = systematic_errors(problem, penalty, best, free, freely, columns, shifts)
+    del freely
     spread = widened(by_chance, systematic)
+    at_best = regressor(penalty, columns, threads)
+    del columns
     parameters = parameters_of(
         problem, penalty, domain, best, freedom, spread, len(residual), shifts
     )
@@ -99,8 +106,8 @@ def infer(
             status=status,
             message=message,
             bounds_from_data=domain.from_data,
-            inspections=tuple(inspect(run, threads) for run in problem.recordings),
-            at_best=regressor(penalty, columns, threads),
+            inspections=inspections,
+            at_best=at_best,
             correlations={
                 (domain.names[free[i]], domain.names[free[j]]): float(spread.correlation[i, j])
                 for i in range(len(free))

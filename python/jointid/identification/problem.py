@@ -136,18 +136,18 @@ class Problem:
             start[mine], stop[mine] = recording.time[first], recording.time[last]
             travel[mine] = recording.position[last] - recording.position[first]
         if self.choice.residual == "sensor":
-            measured = columns[:, names.index("sensor_gain")]
+            measured = columns[:, names.index("sensor_gain")].copy()
             fitted = measured + residual
             torque_residual = residual * theta[names.index("sensor_gain")]
         else:
-            measured = np.asarray(penalty.target)
+            measured = penalty.target.copy()
             fitted = measured - residual
             torque_residual = residual
         friction = torque_residual.copy()
         for index, term in enumerate(penalty.terms):
             if term.friction:
                 friction += theta[index] * columns[:, index]
-        duration = np.asarray(penalty.usable_duration)
+        duration = penalty.usable_duration.copy()  # a view would keep the penalty for good
         return WindowTable(
             recording=run,
             start=start,

@@ -158,9 +158,11 @@ class OnlineIdentifier:
                     f"feed: there is no signal '{name}'; there are time, position, torque, {', '.join(_OPTIONAL)}"
                 )
         given = {"time": time, "position": position, "torque": torque, **others}
-        if self._signals is None:
-            self._signals = tuple(name for name, value in given.items() if value is not None)
-        samples = checked(given, self._signals)
+        here = tuple(name for name, value in given.items() if value is not None)
+        signals = self._signals or here
+        if not {"position", "motor_position"} & set(signals):
+            raise InputError("feed: samples need a position, of the output or the motor's side")
+        samples = checked(given, signals)
         times = samples["time"]
         if times.size == 0:
             return
@@ -174,6 +176,7 @@ class OnlineIdentifier:
             self._raise_failure()
             if self._closed:
                 raise InputError("feed: the identifier is closed")
+            self._signals = signals
             self._last_time = float(times[-1])
             self._waiting.append({name: values.copy() for name, values in samples.items()})
             self._bound()
@@ -259,12 +262,21 @@ class OnlineIdentifier:
                 for samples in taken:
                     sliding.append(samples)
                 found = sliding.estimate(dropped)
-                if found is not None:
-                    with self._condition:
-                        self._estimate = found
-                    if self._callback is not None:
-                        self._callback(found)
             except Exception as error:  # told by the next call; the past may have been at fault
                 with self._condition:
                     self._failure = error
                 sliding = Sliding(self._settings, self._signals)
+                continue
+            if found is not None:
+                self._tell(found)
+
+    def _tell(self, found: OnlineEstimate) -> None:
+        with self._condition:
+            self._estimate = found
+        if self._callback is None:
+            return
+        try:
+            self._callback(found)
+        except Exception as error:  # the user's own, told by the next call
+            with self._condition:
+                self._failure = error
