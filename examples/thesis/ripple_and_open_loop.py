@@ -10,6 +10,7 @@ import jointid as jid
 
 RIPPLE = 2.6  # N·m: 0.4 % of the gear's 650 N·m, twice a turn of the motor
 DURATION = 12.0
+Run = jid.SimulatedRecording
 ENCODER = jid.Sensors(encoder_counts=8000, velocity="counts", torque_noise=0.5)
 
 
@@ -19,7 +20,7 @@ def rippled_joint(amplitude: float) -> jid.Joint:
     return joint.with_parameters({**TRUTH, "ripple_sin_2": amplitude, "ripple_cos_2": 0.0})
 
 
-def closed_loop(amplitude: float) -> jid.SimulatedRecording:
+def closed_loop(amplitude: float) -> Run:
     """A move of 20 degrees to and fro under the true estimates."""
     return jid.simulate(
         rippled_joint(amplitude),
@@ -30,9 +31,9 @@ def closed_loop(amplitude: float) -> jid.SimulatedRecording:
     )
 
 
-def open_loop(amplitude: float) -> jid.SimulatedRecording:
-    """The drive pushes with a sine, slowly, so that its own inertia takes little of it."""
-    push = jid.Trajectory.sine(48.0, 0.05, duration=40.0)
+def open_loop(amplitude: float, *, size: float = 48.0, rate: float = 0.05) -> Run:
+    """The drive pushes with a sine, slowly unless told, so that its own inertia takes little of it."""
+    push = jid.Trajectory.sine(size, rate, duration=2.0 / rate)
     return jid.simulate(
         rippled_joint(amplitude),
         jid.OpenLoop(),
@@ -42,7 +43,7 @@ def open_loop(amplitude: float) -> jid.SimulatedRecording:
     )
 
 
-def swing(run: jid.SimulatedRecording, signal: np.ndarray) -> float:
+def swing(run: Run, signal: np.ndarray) -> float:
     """Amplitude at twice the motor's angle, while the joint moves at half its peak speed or more."""
     speed = np.abs(run.truth.signals["velocity"])
     angle = 2.0 * 101.0 * run.truth.signals["position"]
@@ -93,7 +94,8 @@ def draw(gallery: Gallery) -> None:
             1e3 * swing(run, rate),
             "mrad/s",
         )
-    _maps(gallery, opened)
+    _maps(gallery, opened, "")
+    _maps(gallery, open_loop(RIPPLE, size=54.0, rate=0.25), ", five times faster")
     for name, run in loops.items():
         plain = jid.identify(run, hanging_joint())
         modelled = jid.identify(run, hanging_joint(), ripple=(2,))
@@ -105,7 +107,7 @@ def draw(gallery: Gallery) -> None:
         gallery.note("6-14" if name == "closed" else "6-18", f"{name} loop: ripple", size, "N·m")
 
 
-def _maps(gallery: Gallery, run: jid.SimulatedRecording) -> None:
+def _maps(gallery: Gallery, run: Run, how: str) -> None:
     """How far each map lies from the friction that acted, while the joint moves."""
     assert run.torque is not None
     assert run.sensor is not None
@@ -120,4 +122,4 @@ def _maps(gallery: Gallery, run: jid.SimulatedRecording) -> None:
         ("6-18", "and the drive's inertia", less - inertia * run.truth.signals["acceleration"]),
     ):
         off = float(np.sqrt(np.mean((torque - friction)[moving] ** 2)))
-        gallery.note(figure, f"{name}: rms distance from friction", off, "N·m")
+        gallery.note(figure, f"{name}: rms distance from friction{how}", off, "N·m")

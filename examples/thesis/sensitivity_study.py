@@ -35,6 +35,7 @@ def draw(gallery: Gallery) -> None:
             moved = np.abs([change(name, float(speed)) for speed in speeds])
             gallery.note(f"4-{number}", f"{name} +10 %: at 0.01 rad/s", moved[10], "N·m")
             gallery.note(f"4-{number}", f"{name} +10 %: at 0.6 rad/s", moved[-1], "N·m")
+            gallery.note(f"4-{number}", f"{name} +10 %: at 0.1 rad/s", moved[100], "N·m")
             if np.ptp(moved) > 1e-6:
                 most = speeds[int(np.argmax(moved))]
                 gallery.note(f"4-{number}", f"{name}: most at", most, "rad/s")
