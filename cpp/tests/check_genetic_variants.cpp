@@ -135,7 +135,7 @@ CHECK_CASE("islands: the best goes round the ring, and the first island is a run
   single.islands = 1;
   const auto many = search_for(rippled, cube(3, -4.0, 5.0), several, 8);
   const auto one = search_for(rippled, cube(3, -4.0, 5.0), single, 8);
-  CHECK(many.state->genes.leftCols(60) == one.state->genes);
+  CHECK(many.state->genes.leftCols(several.population) == one.state->genes);
 }
 
 CHECK_CASE("presets: the thesis's settings, deterministic, adapting") {
