@@ -46,7 +46,7 @@ def contest(store: Store, order: list[str], limit: float, path: Path) -> None:
     labels = [f"{row.name.replace('`', '')}   {row.reached}/{row.runs}" for row in found]
     axes.set_yticks(range(len(found)), labels)
     axes.set_xscale("log")
-    axes.set_xlim(1e-3, 3.0 * limit)
+    axes.set_xlim(2e-4, 3.0 * limit)
     axes.set_ylim(-0.8, len(found) - 0.2)
     axes.set_xlabel("wall time to within 1e-3 of the optimal penalty [s]")
     axes.axvline(limit, color="0.6", linewidth=0.8, linestyle="--")

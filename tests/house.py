@@ -46,16 +46,21 @@ GROUPS: dict[str, Group] = {
     ),
     "simulation": Group(modules={"simulation."}, may_use={"core", "recording"}, packages={"numpy"}),
     "analysis": Group(
-        modules={"identification.", "estimate.", "comparison.", "online.", "study."},
+        modules={"identification.", "estimate.", "comparison.", "online."},
         may_use={"core", "recording"},
         packages={"numpy", "scipy", "pandas"},
+    ),
+    "study": Group(
+        modules={"study."},
+        may_use={"core", "recording", "simulation", "analysis"},
+        packages={"numpy", "pandas", "pyarrow"},
     ),
     "presentation": Group(
         modules={
             *("plotting", "plotting_friction", "plotting_motion", "plotting_search"),
-            *("plotting_style", "reporting"),
+            *("plotting_study", "plotting_style", "reporting"),
         },
-        may_use={"core", "recording", "simulation", "analysis"},
+        may_use={"core", "recording", "simulation", "analysis", "study"},
         packages={"numpy", "matplotlib"},
     ),
     "hardware": Group(
@@ -71,16 +76,16 @@ GROUPS: dict[str, Group] = {
     "face": Group(
         modules={"__init__"},
         may_use={
-            *("core", "recording", "simulation", "analysis", "presentation", "hardware"),
-            "commissioning",
+            *("core", "recording", "simulation", "analysis", "study", "presentation"),
+            *("hardware", "commissioning"),
         },
         packages=set(),
     ),
     "command line": Group(
         modules={"cli", "cli_arguments", "cli_commands", "__main__", "demo", "progress"},
         may_use={
-            *("core", "recording", "simulation", "analysis", "presentation", "hardware"),
-            *("commissioning", "face", "command line"),
+            *("core", "recording", "simulation", "analysis", "study", "presentation"),
+            *("hardware", "commissioning", "face", "command line"),
         },
         packages={"numpy", "matplotlib"},
     ),

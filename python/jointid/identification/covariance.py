@@ -109,7 +109,10 @@ def parameter_covariance(
     # Newey and West's variance of each parameter: of the scores, weighted with a column of `pseudo`.
     robust = _core.robust_variance(jacobian, residual, 1.0 / scale, pseudo, threads=threads)
     robust *= rows / freedom
-    stretch = np.sqrt(np.maximum(robust / np.maximum(np.diag(classical), 1e-300), 1.0))
+    chance = np.diag(classical)
+    # No variance by chance, as of a column that is nothing: there is nothing to stretch either.
+    ratio = np.divide(robust, chance, out=np.ones_like(robust), where=chance > 1e-300)
+    stretch = np.sqrt(np.maximum(ratio, 1.0))
     matrix = classical * np.outer(stretch, stretch) / np.outer(scale, scale)
     unknown = (norms == 0.0) | (np.abs(directions[~known]).max(axis=0, initial=0.0) > 1e-3)
     if rows <= count:  # nothing is left to tell noise from model
