@@ -46,9 +46,12 @@ from jointid.recording.loading import load, load_runs
 from jointid.recording.recording import Recording
 from jointid.simulation.batch import SimulatedBatch, simulate_batch
 from jointid.simulation.plant import Bristle, control_estimates
+from jointid.simulation.scenario import Scenario
 from jointid.simulation.simulated_recording import SimulatedRecording, Truth
 from jointid.simulation.simulation import simulate
 from jointid.simulation.trajectory import Trajectory
+from jointid.study.study_result import Study
+from jointid.study.sweeping import StudyInterruptedError, StudyStep, sweep
 
 __version__ = _core.__version__
 
@@ -73,9 +76,13 @@ __all__ = [
     "Pd",
     "Pid",
     "Recording",
+    "Scenario",
     "Sensors",
     "SimulatedBatch",
     "SimulatedRecording",
+    "Study",
+    "StudyInterruptedError",
+    "StudyStep",
     "Trajectory",
     "Truth",
     "WindowOptions",
@@ -88,5 +95,6 @@ __all__ = [
     "plot",
     "simulate",
     "simulate_batch",
+    "sweep",
     "thesis_joint",
 ]

@@ -11,6 +11,7 @@ from jointid.estimate.findings import FrictionCurve
 from jointid.plotting_friction import friction_curves, sensitivity, torque_over_velocity
 from jointid.plotting_motion import signal, tracking_error, trajectory
 from jointid.plotting_search import adaptation
+from jointid.plotting_study import sweep
 from jointid.plotting_style import FITTED, MEASURED, SECOND, line_style, style
 from jointid.plotting_style import given_or_new as _axes
 from jointid.recording.recording import Recording
@@ -28,6 +29,7 @@ __all__ = [
     "sensitivity",
     "signal",
     "style",
+    "sweep",
     "torque_over_velocity",
     "tracking_error",
     "trajectory",
