@@ -82,7 +82,10 @@ GROUPS: dict[str, Group] = {
         packages=set(),
     ),
     "command line": Group(
-        modules={"cli", "cli_arguments", "cli_commands", "__main__", "demo", "progress"},
+        modules={
+            *("cli", "cli_arguments", "cli_commands", "cli_simulation", "cli_study"),
+            *("__main__", "demo", "progress"),
+        },
         may_use={
             *("core", "recording", "simulation", "analysis", "study", "presentation"),
             *("hardware", "commissioning", "face", "command line"),

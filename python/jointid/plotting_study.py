@@ -86,7 +86,7 @@ def _values(study: Study, value: str) -> tuple[Array, str]:
         column = study.column(value)
         if column.dtype.kind not in "fiu":
             raise InputError(f"'{value}' is a column of texts; one of numbers can be drawn")
-        return column.astype(np.float64), _title(value)
+        return column.astype(np.float64), _title(study, value)
     found = study.column(name).astype(np.float64)
     try:
         true = np.array([study.truth_of(row.cell)[name] for row in study.rows])
@@ -95,15 +95,17 @@ def _values(study: Study, value: str) -> tuple[Array, str]:
     return 100.0 * np.abs(found / true - 1.0), f"error of {name} [%]"
 
 
-def _title(value: str) -> str:
+def _title(study: Study, value: str) -> str:
+    if value == "penalty":
+        sensor = "sensor_gain" in study.parameters
+        return "penalty [(sensor units·s)²]" if sensor else "penalty [(N·m·s)²]"
     units = {
-        "penalty": "[–]",
         "evaluations": "[–]",
         "generations": "[–]",
         "inertia": "[kg·m²]",
         "coulomb": "[N·m]",
         "static": "[N·m]",
-        "stribeck": "[s/rad]",
+        "stribeck": "[s²/rad²]",
         "viscous": "[N·m·s/rad]",
         "torque_offset": "[N·m]",
     }
@@ -141,7 +143,9 @@ def _line(
         mine = values[_of(study, x, label)]
         axes.plot([place] * len(mine), mine, ".", color=MEASURED, markersize=4, zorder=1)
         line.append(_statistic(statistic, mine))
-    axes.plot(places, line, marker="o", markersize=4, label=statistic, **line_style(2))
+    # Between words there is nothing to draw a line through.
+    look = line_style(2) if numbers else line_style(2) | {"linestyle": "none"}
+    axes.plot(places, line, marker="o", markersize=5, label=statistic, **look)
     if numbers and _wide(np.array(labels, dtype=np.float64)):
         axes.set_xscale("log")
     if not numbers:
@@ -193,4 +197,4 @@ def _map(
     axes.set_xlabel(x)
     axes.set_ylabel(y)
     bar = axes.figure.colorbar(image, ax=axes)
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    bar.outline.set_visible(False)

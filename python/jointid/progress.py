@@ -116,6 +116,4 @@ class StudyProgress(_Bar):
             self._first = step.number - len(step.rows)
         rate = (step.number - self._first) / max(time.monotonic() - self._began, 1e-6)
         left = (step.total - step.number) / max(rate, 1e-6)
-        self._draw(
-            step.number / step.total, f"trial {step.number}/{step.total}, {left:.0f} s left"
-        )
+        self._draw(step.number / step.total, f"trial {step.number}/{step.total}, {left:.0f} s left")

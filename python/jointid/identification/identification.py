@@ -20,6 +20,7 @@ from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
 from jointid.recording.recording import Recording
 
+
 def identify(
     recordings: Recording | Sequence[Recording],
     joint: Joint | None = None,
@@ -183,4 +184,3 @@ def _predicting(estimate: Estimate, name: str) -> float:
         return estimate.parameters[name].value
     own = [p.value for key, p in estimate.parameters.items() if key.startswith(f"{name}[")]
     return float(np.mean(own))
-

@@ -159,7 +159,6 @@ class Scenario:
         values = ((name, p.value) for name, p in self.joint.parameters.items())
         return {name: value for name, value in values if value is not None}
 
-
     def believing(self, joint: Joint) -> Controller:
         """Return the controller with what `control_estimates` reads from a joint, e.g. an estimate's.
 

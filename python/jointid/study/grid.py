@@ -25,7 +25,11 @@ PRESETS = {
 OPTIONS = (
     "method",
     "ga",
-    *(n for n in inspect.signature(prepare).parameters if n not in ("recordings", "joint", "threads")),
+    *(
+        n
+        for n in inspect.signature(prepare).parameters
+        if n not in ("recordings", "joint", "threads")
+    ),
 )
 
 Label = str | int | float | bool | None
@@ -65,9 +69,7 @@ class Cell:
     def genetic(self, common: Mapping[str, Any]) -> _core.GaOptions:
         """Settings of the genetic algorithm."""
         base = genetic_options(self.values.get("ga", common.get("ga")))
-        changes = {
-            n.removeprefix("ga."): v for n, v in self.values.items() if n.startswith("ga.")
-        }
+        changes = {n.removeprefix("ga."): v for n, v in self.values.items() if n.startswith("ga.")}
         try:
             return base.replace(**changes)
         except (ValueError, TypeError) as error:
@@ -108,7 +110,9 @@ def cells_of(grid: Mapping[str, Any], scenario: Scenario | None) -> tuple[Cell, 
         A name that cannot be swept, no values, or values that a table cannot show.
     """
     if not isinstance(grid, Mapping):
-        raise InputError(f"grid is {grid!r}; a mapping from a setting's name to its values is expected")
+        raise InputError(
+            f"grid is {grid!r}; a mapping from a setting's name to its values is expected"
+        )
     known = _known(scenario)
     axes = []
     for name, values in grid.items():
@@ -151,7 +155,9 @@ def _labelled(name: str, values: Any) -> list[tuple[Label, Any]]:
     labels = [label for label, _ in pairs]
     for label in labels:
         if not isinstance(label, str | int | float | bool | None):
-            raise InputError(f"grid: '{name}' has the label {label!r}; a text or a number is expected")
+            raise InputError(
+                f"grid: '{name}' has the label {label!r}; a text or a number is expected"
+            )
     if len({(type(label), label) for label in labels}) < len(labels):
         raise InputError(f"grid: '{name}' has a value twice: {', '.join(map(str, labels))}")
     return pairs

@@ -4,16 +4,25 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Mapping
 from typing import Any
 
 from jointid import _core
+from jointid.errors import InputError
+from jointid.joint.parameters import finite_number
 from jointid.simulation.scenario import Scenario
 from jointid.study import study_file
 from jointid.study.work import Work
 
 
-def header_of_work(work: Work, trials: int) -> dict[str, Any]:
-    """The first line of the study's file."""
+def header_of_work(work: Work, trials: int, truth: Mapping[str, float] | None) -> dict[str, Any]:
+    """The first line of the study's file.
+
+    Raises
+    ------
+    InputError
+        The truth is no mapping of names to numbers.
+    """
     subject = work.subject
     simulated = isinstance(subject, Scenario)
     settings: dict[str, Any] = {
@@ -40,11 +49,15 @@ def header_of_work(work: Work, trials: int) -> dict[str, Any]:
     text = json.dumps([header, values, holds], sort_keys=True)
     fingerprint = hashlib.sha256(text.encode()).hexdigest()[:16]
     settings["fingerprint"] = fingerprint
-    return header | {"fingerprint": fingerprint, "trials": trials, "truth": _truth(work)}
+    return header | {"fingerprint": fingerprint, "trials": trials, "truth": _truth(work, truth)}
 
 
-def _truth(work: Work) -> dict[str, float]:
+def _truth(work: Work, given: Mapping[str, float] | None) -> dict[str, float]:
     """What is known to be true of all recordings."""
+    if given is not None:
+        if not isinstance(given, Mapping):
+            raise InputError(f"truth is {given!r}; a mapping of parameters to numbers is expected")
+        return {str(name): finite_number("truth", str(name), v) for name, v in given.items()}
     if isinstance(work.subject, Scenario):
         return work.subject.truth
     tables = [dict(run.truth or {}) for run in work.subject]

@@ -58,7 +58,7 @@ class StudyFile:
         else:
             if not path.parent.is_dir():
                 raise InputError(f"output {path}: the folder {path.parent} does not exist")
-            self._file = path.open("wb")
+            self._file = path.open("w+b")
         self._write([header])
 
     def append(self, rows: Iterable[Row]) -> None:
@@ -136,7 +136,7 @@ def _checked(path: Path, header: dict[str, Any]) -> dict[str, Any]:
             f"{path}: its schema is {header.get('schema')!r}; this version of jointid reads {SCHEMA}"
         )
     for name in ("fingerprint", "trials", "seed", "cells", "swept", "truth", "settings"):
-        header[name]  # noqa: B018  a KeyError says that it is no header
+        header[name]
     return header
 
 

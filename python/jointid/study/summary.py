@@ -29,6 +29,8 @@ class CellSummary:
         The swept settings.
     trials, refused : int
         Done, and of them refused.
+    reason : str
+        Why the first of them was refused.
     converged : float
         Share of the trials that ended as converged.
     penalty : float
@@ -46,6 +48,7 @@ class CellSummary:
     labels: dict[str, Any]
     trials: int
     refused: int
+    reason: str
     converged: float
     penalty: float
     mean: dict[str, float]
@@ -70,6 +73,11 @@ class Summary:
     cells: tuple[CellSummary, ...]
     within: float
 
+    def asdict(self) -> dict[str, Any]:
+        """For a machine: what is not a number, or not known, is None."""
+        cells = [{n: _known(v) for n, v in _record(cell).items()} for cell in self.cells]
+        return {"within": self.within, "cells": cells}
+
     def to_pandas(self) -> pd.DataFrame:
         """One line a cell; a column `NAME_mean`, `NAME_spread`, `NAME_bias`, `NAME_scatter` a parameter."""
         import pandas as pd
@@ -83,6 +91,10 @@ class Summary:
             "  ".join(text.rjust(width) for text, width in zip(line, widths, strict=True))
             for line in [header, *body]
         ]
+        for cell in self.cells:
+            if cell.refused:
+                told = ", ".join(f"{name} {label}" for name, label in cell.labels.items())
+                lines.append(f"{told}: {cell.refused} refused: {cell.reason}")
         return "\n".join(line.rstrip() for line in lines)
 
     def to_html(self) -> str:
@@ -129,23 +141,35 @@ def _cell(study: Study, number: int, rows: Sequence[Row], within: float) -> Cell
         labels=study.cells[number],
         trials=len(rows),
         refused=len(rows) - len(done),
+        reason=next((row.message for row in rows if row.status == REFUSED), ""),
         converged=_share([row.status == "converged" for row in rows]),
         penalty=float(np.median([row.penalty for row in done])) if done else math.nan,
-        mean={name: float(v.mean()) for name, v in values.items()},
+        mean={name: _mean(v) for name, v in values.items()},
         spread={name: _deviation(v) for name, v in values.items()},
-        bias={name: float(r.mean()) for name, r in ratios.items()},
+        bias={name: _mean(r) for name, r in ratios.items()},
         scatter={name: _deviation(r) for name, r in ratios.items()},
         success=_share(np.all(near, axis=0).tolist() if done else []) if near else None,
         tracking=tracking,
     )
 
 
+def _known(value: Any) -> Any:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
 def _share(flags: Sequence[bool]) -> float:
     return sum(flags) / len(flags) if flags else math.nan
 
 
+def _mean(values: np.ndarray[Any, np.dtype[np.float64]]) -> float:
+    """Of equal values, that value: a mean may round it."""
+    return float(values[0] if np.ptp(values) == 0.0 else values.mean())
+
+
 def _deviation(values: np.ndarray[Any, np.dtype[np.float64]]) -> float:
-    return float(values.std(ddof=1)) if len(values) > 1 else math.nan
+    if len(values) < 2:
+        return math.nan
+    return 0.0 if np.ptp(values) == 0.0 else float(values.std(ddof=1))
 
 
 def _record(cell: CellSummary) -> dict[str, Any]:
@@ -162,7 +186,7 @@ def _texts(summary: Summary) -> tuple[list[str], list[list[str]]]:
     cells = summary.cells
     swept = list(cells[0].labels) if cells else []
     names = list(dict.fromkeys(name for cell in cells for name in cell.mean))
-    names = [name for name in names if any(_varies(cell, name) for cell in cells)]
+    names = [name for name in names if not _fixed(cells, name)] or names
     success = any(cell.success is not None for cell in cells)
     tracking = list(dict.fromkeys(name for cell in cells for name in cell.tracking))
     header = [*swept, "trials", "converged", "penalty"]
@@ -180,11 +204,10 @@ def _texts(summary: Summary) -> tuple[list[str], list[list[str]]]:
     return header, body
 
 
-def _varies(cell: CellSummary, name: str) -> bool:
-    """Whether a parameter was searched, as far as its values tell; of one trial, each may be."""
-    if cell.trials < 2 and abs(cell.bias.get(name, 1.0)) > 1e-9:
-        return True
-    return cell.spread.get(name, 0.0) > 1e-9 * abs(cell.mean.get(name, 0.0))
+def _fixed(cells: Sequence[CellSummary], name: str) -> bool:
+    """Whether a parameter has the same value, to the bit, wherever it was."""
+    means = {cell.mean[name] for cell in cells if name in cell.mean}
+    return len(means) == 1 and not any(cell.spread.get(name, 0.0) > 0.0 for cell in cells)
 
 
 def _parameter(cell: CellSummary, name: str) -> str:

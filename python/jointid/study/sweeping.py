@@ -69,6 +69,7 @@ def sweep(
     seed: int = 0,
     stderr: bool = False,
     tracking: bool = False,
+    truth: Mapping[str, float] | None = None,
     executor: Executor | None = None,
     threads: int | None = None,
     callback: Callable[[StudyStep], object] | None = None,
@@ -101,6 +102,9 @@ def sweep(
     tracking : bool
         Of a scenario whose controller compensates friction: whether to simulate again with the
         identified and with the true parameters. Default False.
+    truth : mapping of str to float, optional
+        True parameters [SI], for biases and shares of success. Default: what the recordings or the
+        scenario know.
     executor : concurrent.futures.Executor, optional
         Who does the trials: a process pool, or a cluster's, such as Dask's ``client.get_executor()``.
         It is left running. Default: this process.
@@ -137,19 +141,21 @@ def sweep(
         raise InputError(f"callback must be callable, got {callback!r}")
     if executor is not None and not hasattr(executor, "submit"):
         raise InputError(f"executor is {executor!r}; a concurrent.futures.Executor is expected")
-    header = header_of_work(work, trials)
+    header = header_of_work(work, trials, truth)
     file = None
     if output is not None:
         if Path(output).suffix != ".jsonl":
-            raise InputError(f"output {output}: a study grows in a .jsonl file; Study.save writes tables")
+            raise InputError(
+                f"output {output}: a study grows in a .jsonl file; Study.save writes tables"
+            )
         file = StudyFile(Path(output), header, resume=resume)
     elif resume:
         raise InputError("resume=True goes on with a file; give it as output=")
     rows = [] if file is None else [row for row in file.rows if row.trial < trials]
     total = len(work.cells) * trials
     places = work.ordered(trials, (row.place for row in rows))
-    with file if file is not None else nullcontext():
-        try:
+    try:
+        with file if file is not None else nullcontext():
             for done in _done(work, places, executor):
                 if file is not None:
                     file.append(done)
@@ -158,9 +164,9 @@ def sweep(
                     StudyStep(number=len(rows), total=total, rows=tuple(done))
                 ):
                     break
-        except KeyboardInterrupt as interrupt:
-            study = study_of(header, rows, time.perf_counter() - began)
-            raise StudyInterruptedError(study) from interrupt
+    except KeyboardInterrupt as interrupt:
+        study = study_of(header, rows, time.perf_counter() - began)
+        raise StudyInterruptedError(study) from interrupt
     if rows and all(row.status == REFUSED for row in rows):
         raise InputError(rows[0].message)
     return study_of(header, rows, time.perf_counter() - began)
@@ -217,9 +223,7 @@ def _threaded(work: Work, executor: Executor | None, threads: int | None) -> Wor
     )
 
 
-def _done(
-    work: Work, places: Sequence[Place], executor: Executor | None
-) -> Iterator[list[Row]]:
+def _done(work: Work, places: Sequence[Place], executor: Executor | None) -> Iterator[list[Row]]:
     """Rows as they come."""
     if executor is None:
         runner = Runner(work)
@@ -229,9 +233,7 @@ def _done(
     yield from _elsewhere(work, places, executor)
 
 
-def _elsewhere(
-    work: Work, places: Iterable[Place], executor: Executor
-) -> Iterator[list[Row]]:
+def _elsewhere(work: Work, places: Iterable[Place], executor: Executor) -> Iterator[list[Row]]:
     chunks = work.chunks(list(places))
     running: set[Future[list[Row]]] = set()
     try:
