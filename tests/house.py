@@ -44,36 +44,51 @@ GROUPS: dict[str, Group] = {
         may_use={"core"},
         packages={"numpy", "scipy", "pandas", "pyarrow", "tomlkit"},
     ),
+    "simulation": Group(modules={"simulation."}, may_use={"core", "recording"}, packages={"numpy"}),
     "analysis": Group(
-        modules={"identification.", "estimate.", "comparison.", "online.", "study."},
+        modules={"identification.", "estimate.", "comparison.", "online."},
         may_use={"core", "recording"},
         packages={"numpy", "scipy", "pandas"},
     ),
+    "study": Group(
+        modules={"study."},
+        may_use={"core", "recording", "simulation", "analysis"},
+        packages={"numpy", "pandas", "pyarrow"},
+    ),
     "presentation": Group(
-        modules={"plotting", "reporting"},
-        may_use={"core", "recording", "analysis"},
+        modules={
+            *("plotting", "plotting_friction", "plotting_motion", "plotting_search"),
+            *("plotting_study", "plotting_style", "reporting"),
+        },
+        may_use={"core", "recording", "simulation", "analysis", "study"},
         packages={"numpy", "matplotlib"},
     ),
     "hardware": Group(
         modules={"hardware."},
-        may_use={"core", "recording"},
+        may_use={"core", "recording", "simulation"},
         packages={"numpy", "can", "canopen"},
     ),
     "commissioning": Group(
         modules={"commissioning"},
-        may_use={"core", "recording", "analysis", "hardware"},
+        may_use={"core", "recording", "simulation", "analysis", "hardware"},
         packages={"numpy"},
     ),
     "face": Group(
         modules={"__init__"},
-        may_use={"core", "recording", "analysis", "presentation", "hardware", "commissioning"},
+        may_use={
+            *("core", "recording", "simulation", "analysis", "study", "presentation"),
+            *("hardware", "commissioning"),
+        },
         packages=set(),
     ),
     "command line": Group(
-        modules={"cli", "cli_arguments", "cli_commands", "__main__", "demo", "progress"},
+        modules={
+            *("cli", "cli_arguments", "cli_commands", "cli_simulation", "cli_study"),
+            *("__main__", "demo", "progress"),
+        },
         may_use={
-            *("core", "recording", "analysis", "presentation", "hardware", "commissioning"),
-            *("face", "command line"),
+            *("core", "recording", "simulation", "analysis", "study", "presentation"),
+            *("hardware", "commissioning", "face", "command line"),
         },
         packages={"numpy", "matplotlib"},
     ),

@@ -37,3 +37,17 @@ def test_arrays_example_recovers_what_it_made() -> None:
     estimate = module.main()
     assert estimate.parameters["coulomb"].value == pytest.approx(module.TRUE_COULOMB, rel=0.01)
     assert estimate.parameters["viscous"].value == pytest.approx(module.TRUE_VISCOUS, rel=0.01)
+
+
+def test_simulation_example_closes_the_ring(capsys: pytest.CaptureFixture[str]) -> None:
+    module = _module(EXAMPLES[3])
+    module.main()
+    lines = capsys.readouterr().out.splitlines()
+    error = {
+        name: float(line.split()[-2])
+        for line in lines
+        for name in ("first guess", "identified", "true")
+        if line.startswith(f"  {name} ")
+    }
+    assert error["identified"] < error["first guess"] / 10.0
+    assert error["identified"] == pytest.approx(error["true"], rel=0.05)

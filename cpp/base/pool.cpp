@@ -77,14 +77,15 @@ void Pool::run() {
   }
 }
 
-void Pool::for_each(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work) {
+void Pool::for_each(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work,
+                    std::size_t chunk) {
   if (count == 0) return;
   start();
   std::unique_lock lock(mutex_);
   work_ = &work;
   next_ = 0;
   count_ = count;
-  chunk_ = std::max<std::size_t>(1, count / (10 * workers_.size()));
+  chunk_ = chunk > 0 ? chunk : std::max<std::size_t>(1, count / (10 * workers_.size()));
   failure_ = nullptr;
   wake_.notify_all();
   const auto finished = [&] { return next_ >= count_ && running_ == 0; };

@@ -36,8 +36,9 @@ class Pool {
   /// Ask the poll now (between generations); throws what the poll throws.
   void poll();
   /// Calls work(begin, end) for chunks that cover [0, count); returns when all are done; rethrows
-  /// the first exception.
-  void for_each(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work);
+  /// the first exception. A chunk of 0 is chosen; give 1 where indices differ much in their work.
+  void for_each(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work,
+                std::size_t chunk = 0);
 
  private:
   void start();

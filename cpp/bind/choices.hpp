@@ -1,6 +1,7 @@
 #pragma once
 // Choices with names cross the border as their words: selection="roulette".
 
+#include "base/choices.hpp"
 #include "bind/bind.hpp"
 #include "search/genetic_options.hpp"
 
@@ -12,11 +13,11 @@ struct ChoiceCaster {
 
   bool load(py::handle given, bool) {
     if (!py::isinstance<py::str>(given)) return false;
-    value = search::chosen<Choice>(given.cast<std::string>());
+    value = base::chosen<Choice>(given.cast<std::string>());
     return true;
   }
   static py::handle cast(Choice choice, py::return_value_policy, py::handle) {
-    const auto text = search::word(choice);
+    const auto text = base::word(choice);
     return py::str(text.data(), text.size()).release();
   }
 };

@@ -4,6 +4,7 @@
 #include "bind/choices.hpp"
 #include "identify/penalty_function.hpp"
 #include "search/random_search.hpp"
+#include "search/trials.hpp"
 
 namespace jointid::bind {
 
@@ -164,6 +165,39 @@ void bind_state(py::module_& m) {
       .def(py::pickle(&bytes_of, &state_of));
 }
 
+void bind_trials(py::module_& m) {
+  using search::TrialResult;
+  py::class_<TrialResult>(m, "TrialResult", "What is left of one of many searches.")
+      .def_readonly("best", &TrialResult::best)
+      .def_readonly("penalty", &TrialResult::penalty)
+      .def_readonly("evaluations", &TrialResult::evaluations)
+      .def_readonly("generations", &TrialResult::generations)
+      .def_readonly("stop", &TrialResult::stop);
+  m.def(
+      "minimise_trials",
+      [](const PenaltyFunction& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
+         const std::vector<GaOptions>& options, const std::vector<std::uint64_t>& seeds,
+         bool random, int threads) {
+        if (options.size() != seeds.size()) {
+          throw std::invalid_argument("options and seeds must be as many, got " +
+                                      std::to_string(options.size()) + " and " +
+                                      std::to_string(seeds.size()));
+        }
+        const Domain domain{std::move(lower), std::move(upper)};
+        std::vector<search::Trial> trials(options.size());
+        for (std::size_t i = 0; i < trials.size(); ++i) trials[i] = {options[i], seeds[i]};
+        const py::gil_scoped_release nogil;
+        base::Pool pool(threads, SignalPoll{});
+        return search::minimise_trials(
+            objective(penalty), domain, trials,
+            random ? search::Searcher::random : search::Searcher::genetic, pool);
+      },
+      py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::kw_only(), py::arg("options"),
+      py::arg("seeds"), py::arg("random") = false, py::arg("threads") = 0,
+      "Many genetic (or random) searches side by side, a thread each: the same bits as one by "
+      "one.");
+}
+
 }  // namespace
 
 void bind_genetic(py::module_& m) {
@@ -232,6 +266,7 @@ void bind_genetic(py::module_& m) {
       py::arg("callback") = py::none(),
       "Random search with the budget of the genetic one: population, islands and generations of "
       "the options count, nothing else.");
+  bind_trials(m);
 }
 
 }  // namespace jointid::bind

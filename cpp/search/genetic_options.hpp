@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "search/choices.hpp"
+#include "base/choices.hpp"
 
 namespace jointid::search {
 
@@ -103,51 +103,55 @@ void each_field(Options& o, Visit visit) {
   visit("polish", o.polish);
 }
 
+}  // namespace jointid::search
+
+namespace jointid::base {
+
 template <>
-struct Words<Coding> {
+struct Words<search::Coding> {
   static constexpr std::string_view field = "GaOptions.coding";
   static constexpr std::array<std::string_view, 2> all{"real", "binary"};
 };
 template <>
-struct Words<Selection> {
+struct Words<search::Selection> {
   static constexpr std::string_view field = "GaOptions.selection";
   static constexpr std::array<std::string_view, 3> all{"tournament", "roulette", "rank"};
 };
 template <>
-struct Words<Fitness> {
+struct Words<search::Fitness> {
   static constexpr std::string_view field = "GaOptions.fitness";
   static constexpr std::array<std::string_view, 3> all{"inverse_square", "inverse", "sum_minus"};
 };
 template <>
-struct Words<Crossover> {
+struct Words<search::Crossover> {
   static constexpr std::string_view field = "GaOptions.crossover";
   static constexpr std::array<std::string_view, 3> all{"sbx", "sorted_sbx", "blx"};
 };
 template <>
-struct Words<BitCrossover> {
+struct Words<search::BitCrossover> {
   static constexpr std::string_view field = "GaOptions.bit_crossover";
   static constexpr std::array<std::string_view, 2> all{"one_point", "two_point"};
 };
 template <>
-struct Words<Uncrossed> {
+struct Words<search::Uncrossed> {
   static constexpr std::string_view field = "GaOptions.uncrossed";
   static constexpr std::array<std::string_view, 2> all{"mates", "places"};
 };
 template <>
-struct Words<Mutation> {
+struct Words<search::Mutation> {
   static constexpr std::string_view field = "GaOptions.mutation";
   static constexpr std::array<std::string_view, 4> all{"non_uniform", "shrinking", "uniform",
                                                        "polynomial"};
 };
 template <>
-struct Words<MutationUnit> {
+struct Words<search::MutationUnit> {
   static constexpr std::string_view field = "GaOptions.mutation_unit";
   static constexpr std::array<std::string_view, 2> all{"gene", "individual"};
 };
 template <>
-struct Words<Diversity> {
+struct Words<search::Diversity> {
   static constexpr std::string_view field = "GaOptions.diversity";
   static constexpr std::array<std::string_view, 2> all{"penalty", "fitness"};
 };
 
-}  // namespace jointid::search
+}  // namespace jointid::base

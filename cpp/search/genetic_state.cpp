@@ -79,7 +79,7 @@ double told(const Field& field) {
 template <class Field>
 void tell(Field& field, double number) {
   if constexpr (std::is_enum_v<Field>) {
-    if (!(number >= 0.0 && number < static_cast<double>(Words<Field>::all.size()))) {
+    if (!(number >= 0.0 && number < static_cast<double>(base::Words<Field>::all.size()))) {
       refuse("an option has an unknown value");
     }
     field = static_cast<Field>(static_cast<int>(number));
@@ -197,7 +197,7 @@ void require_same_run(const GaState& state, const GaOptions& options, const Doma
     using Field = std::remove_cvref_t<decltype(field)>;
     if constexpr (std::is_enum_v<Field>) {
       const auto given = static_cast<Field>(static_cast<int>(other));
-      throw std::invalid_argument(difference(name, word(field), word(given)));
+      throw std::invalid_argument(difference(name, base::word(field), base::word(given)));
     } else {
       throw std::invalid_argument(difference(name, told(field), other));
     }

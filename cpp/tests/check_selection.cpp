@@ -92,7 +92,7 @@ CHECK_CASE("selection: infinite penalties never become parents, zero ones share"
   options.selection = Selection::roulette;
   for (const auto fitness : {Fitness::inverse_square, Fitness::inverse, Fitness::sum_minus}) {
     options.fitness = fitness;
-    const std::string name(search::word(fitness));
+    const std::string name(base::word(fitness));
     check_shares(options, of({kInfinite, 2.0, kInfinite, 2.0}), of({0, 0.5, 0, 0.5}), name);
     check_shares(options, of({kInfinite, 2.0, kInfinite, kInfinite}), of({0, 1, 0, 0}), name);
     check_shares(options, Eigen::VectorXd::Constant(4, kInfinite), of({0.25, 0.25, 0.25, 0.25}),

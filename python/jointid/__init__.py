@@ -18,7 +18,18 @@ except ModuleNotFoundError as error:
     ) from error
 
 from jointid import plotting as plot
-from jointid._core import GaOptions, Generation, WindowOptions
+from jointid._core import (
+    AdaptiveRobust,
+    CompensatedPid,
+    GaOptions,
+    Generation,
+    LugreObserver,
+    OpenLoop,
+    Pd,
+    Pid,
+    Sensors,
+    WindowOptions,
+)
 from jointid.comparison.comparison import compare_models
 from jointid.comparison.comparison_result import Comparison
 from jointid.comparison.model_spec import ModelSpec
@@ -33,11 +44,22 @@ from jointid.online.online_estimate import OnlineEstimate
 from jointid.online.online_identifier import OnlineIdentifier
 from jointid.recording.loading import load, load_runs
 from jointid.recording.recording import Recording
+from jointid.simulation.batch import SimulatedBatch, simulate_batch
+from jointid.simulation.plant import Bristle, control_estimates
+from jointid.simulation.scenario import Scenario
+from jointid.simulation.simulated_recording import SimulatedRecording, Truth
+from jointid.simulation.simulation import simulate
+from jointid.simulation.trajectory import Trajectory
+from jointid.study.study_result import Study
+from jointid.study.sweeping import StudyInterruptedError, StudyStep, sweep
 
 __version__ = _core.__version__
 
 __all__ = [
+    "AdaptiveRobust",
+    "Bristle",
     "Comparison",
+    "CompensatedPid",
     "Estimate",
     "GaOptions",
     "Generation",
@@ -45,17 +67,34 @@ __all__ = [
     "Joint",
     "Limits",
     "Link",
+    "LugreObserver",
     "ModelSpec",
     "OnlineEstimate",
     "OnlineIdentifier",
+    "OpenLoop",
     "Parameter",
+    "Pd",
+    "Pid",
     "Recording",
+    "Scenario",
+    "Sensors",
+    "SimulatedBatch",
+    "SimulatedRecording",
+    "Study",
+    "StudyInterruptedError",
+    "StudyStep",
+    "Trajectory",
+    "Truth",
     "WindowOptions",
     "__version__",
     "compare_models",
+    "control_estimates",
     "identify",
     "load",
     "load_runs",
     "plot",
+    "simulate",
+    "simulate_batch",
+    "sweep",
     "thesis_joint",
 ]

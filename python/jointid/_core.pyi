@@ -11,8 +11,11 @@ import numpy.typing
 import typing
 
 __all__: list[str] = [
+    "AdaptiveRobust",
     "Agreement",
+    "CompensatedPid",
     "CompressedPenalty",
+    "ControlRun",
     "GaOptions",
     "GaResult",
     "GaState",
@@ -20,21 +23,32 @@ __all__: list[str] = [
     "Hold",
     "Inspection",
     "Limit",
+    "LugreObserver",
     "Model",
+    "OpenLoop",
+    "Outcome",
+    "Pd",
     "Penalty",
     "PenaltyFunction",
     "PenaltyParts",
+    "Pid",
     "PolishResult",
     "Recording",
     "Residual",
+    "Scenario",
+    "Sensors",
     "SeparableResult",
+    "Setup",
     "Shape",
     "SignalFacts",
+    "SimulatedJoint",
     "SlidingPenalty",
     "Spike",
     "SpikeRule",
     "Stop",
     "Term",
+    "Trajectory",
+    "TrialResult",
     "WindowOptions",
     "friction_basis",
     "inspect",
@@ -42,6 +56,7 @@ __all__: list[str] = [
     "minimise_genetic",
     "minimise_random",
     "minimise_separable",
+    "minimise_trials",
     "model_names",
     "models",
     "parameter_names",
@@ -49,6 +64,7 @@ __all__: list[str] = [
     "refine_separable",
     "robust_variance",
     "shapes",
+    "simulate_runs",
     "term",
     "terms",
     "triangle",
@@ -852,6 +868,21 @@ class GaResult:
     @property
     def stop(self) -> Stop: ...
 
+class TrialResult:
+    """
+    What is left of one of many searches.
+    """
+    @property
+    def best(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def generations(self) -> int: ...
+    @property
+    def penalty(self) -> float: ...
+    @property
+    def stop(self) -> Stop: ...
+
 class SeparableResult:
     """
     The separable optimum.
@@ -1077,6 +1108,1396 @@ class Inspection:
         Scatter of the samples' times about the stamps and about an even grid [s].
         """
 
+class Trajectory:
+    """
+    A desired motion; use it through jointid.Trajectory.
+    """
+    @staticmethod
+    def multisine(
+        *,
+        amplitude: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        frequency: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        phase: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        offset: typing.SupportsFloat | typing.SupportsIndex,
+        duration: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> Trajectory: ...
+    @staticmethod
+    def samples(
+        *,
+        time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    ) -> Trajectory: ...
+    @staticmethod
+    def sigmoid(
+        *,
+        distance: typing.SupportsFloat | typing.SupportsIndex,
+        rise: typing.SupportsFloat | typing.SupportsIndex,
+        duration: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> Trajectory: ...
+    @staticmethod
+    def step(
+        *,
+        distance: typing.SupportsFloat | typing.SupportsIndex,
+        time: typing.SupportsFloat | typing.SupportsIndex,
+        duration: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> Trajectory: ...
+    @staticmethod
+    def trapezoid(
+        *,
+        distance: typing.SupportsFloat | typing.SupportsIndex,
+        velocity: typing.SupportsFloat | typing.SupportsIndex,
+        acceleration: typing.SupportsFloat | typing.SupportsIndex,
+        duration: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> Trajectory: ...
+    def at(self, time: typing.SupportsFloat | typing.SupportsIndex) -> tuple[float, float, float]:
+        """
+        Position, velocity and acceleration at a time.
+        """
+    def sample(
+        self, time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Position, velocity and acceleration, shape (times, 3).
+        """
+    @property
+    def duration(self) -> float: ...
+
+class SimulatedJoint:
+    """
+    A joint as the core simulates it: output side, SI.
+
+    Parameters
+    ----------
+    inertia : default 1.0
+        Of the drive [kg·m²].
+    link_inertia : default 0.0
+        Behind the torque sensor [kg·m²].
+    load : default 0.0
+        Constant torque behind the sensor [N·m].
+    torque_offset : default 0.0
+        Constant torque in the drive [N·m].
+    torque_limit : default 1e+300
+        Of the drive [N·m].
+    decay : default 'gaussian'
+        How static friction fades: "none", "gaussian" (4-1) or "general" (2-3).
+    coulomb_positive : default 0.0
+        [N·m]
+    coulomb_negative : default 0.0
+        [N·m]
+    static_positive : default 0.0
+        Excess over Coulomb [N·m].
+    static_negative : default 0.0
+        Excess over Coulomb [N·m].
+    viscous_positive : default 0.0
+        [N·m·s/rad]
+    viscous_negative : default 0.0
+        [N·m·s/rad]
+    stribeck : default 0.0
+        Of the gaussian decay [s²/rad²].
+    stribeck_velocity : default 1.0
+        Of the general decay [rad/s].
+    stribeck_exponent : default 1.0
+        Of the general decay [1].
+    load_friction : default 0.0
+        Dry friction per torque of the drive [1].
+    bristles : default False
+        Friction behind a spring (Dahl, LuGre).
+    bristle_stiffness : default 0.0
+        [N·m/rad]
+    bristle_damping : default 0.0
+        [N·m·s/rad]
+    weights : default []
+        Torque [N·m] and angle [rad] of each weight.
+    harmonics : default []
+        Order [1], cos and sin part [N·m].
+    """
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> dict[str, typing.Any]: ...
+    def __hash__(self) -> int: ...
+    def __init__(
+        self,
+        *,
+        inertia: float = 1.0,
+        link_inertia: float = 0.0,
+        load: float = 0.0,
+        torque_offset: float = 0.0,
+        torque_limit: float = 1e300,
+        decay: str = "gaussian",
+        coulomb_positive: float = 0.0,
+        coulomb_negative: float = 0.0,
+        static_positive: float = 0.0,
+        static_negative: float = 0.0,
+        viscous_positive: float = 0.0,
+        viscous_negative: float = 0.0,
+        stribeck: float = 0.0,
+        stribeck_velocity: float = 1.0,
+        stribeck_exponent: float = 1.0,
+        load_friction: float = 0.0,
+        bristles: bool = False,
+        bristle_stiffness: float = 0.0,
+        bristle_damping: float = 0.0,
+        weights: list[tuple[float, float]] = ...,
+        harmonics: list[tuple[float, float, float]] = ...,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
+    def asdict(self) -> dict[str, typing.Any]:
+        """
+        The fields as a dictionary.
+        """
+    def replace(
+        self,
+        *,
+        inertia: float = ...,
+        link_inertia: float = ...,
+        load: float = ...,
+        torque_offset: float = ...,
+        torque_limit: float = ...,
+        decay: str = ...,
+        coulomb_positive: float = ...,
+        coulomb_negative: float = ...,
+        static_positive: float = ...,
+        static_negative: float = ...,
+        viscous_positive: float = ...,
+        viscous_negative: float = ...,
+        stribeck: float = ...,
+        stribeck_velocity: float = ...,
+        stribeck_exponent: float = ...,
+        load_friction: float = ...,
+        bristles: bool = ...,
+        bristle_stiffness: float = ...,
+        bristle_damping: float = ...,
+        weights: list[tuple[float, float]] = ...,
+        harmonics: list[tuple[float, float, float]] = ...,
+    ) -> SimulatedJoint:
+        """
+        A copy with the given fields changed.
+        """
+    @property
+    def bristle_damping(self) -> float:
+        """
+        [N·m·s/rad]
+        """
+    @property
+    def bristle_stiffness(self) -> float:
+        """
+        [N·m/rad]
+        """
+    @property
+    def bristles(self) -> bool:
+        """
+        Friction behind a spring (Dahl, LuGre).
+        """
+    @property
+    def coulomb_negative(self) -> float:
+        """
+        [N·m]
+        """
+    @property
+    def coulomb_positive(self) -> float:
+        """
+        [N·m]
+        """
+    @property
+    def decay(self) -> str:
+        """
+        How static friction fades: "none", "gaussian" (4-1) or "general" (2-3).
+        """
+    @property
+    def harmonics(self) -> list[tuple[float, float, float]]:
+        """
+        Order [1], cos and sin part [N·m].
+        """
+    @property
+    def inertia(self) -> float:
+        """
+        Of the drive [kg·m²].
+        """
+    @property
+    def link_inertia(self) -> float:
+        """
+        Behind the torque sensor [kg·m²].
+        """
+    @property
+    def load(self) -> float:
+        """
+        Constant torque behind the sensor [N·m].
+        """
+    @property
+    def load_friction(self) -> float:
+        """
+        Dry friction per torque of the drive [1].
+        """
+    @property
+    def static_negative(self) -> float:
+        """
+        Excess over Coulomb [N·m].
+        """
+    @property
+    def static_positive(self) -> float:
+        """
+        Excess over Coulomb [N·m].
+        """
+    @property
+    def stribeck(self) -> float:
+        """
+        Of the gaussian decay [s²/rad²].
+        """
+    @property
+    def stribeck_exponent(self) -> float:
+        """
+        Of the general decay [1].
+        """
+    @property
+    def stribeck_velocity(self) -> float:
+        """
+        Of the general decay [rad/s].
+        """
+    @property
+    def torque_limit(self) -> float:
+        """
+        Of the drive [N·m].
+        """
+    @property
+    def torque_offset(self) -> float:
+        """
+        Constant torque in the drive [N·m].
+        """
+    @property
+    def viscous_negative(self) -> float:
+        """
+        [N·m·s/rad]
+        """
+    @property
+    def viscous_positive(self) -> float:
+        """
+        [N·m·s/rad]
+        """
+    @property
+    def weights(self) -> list[tuple[float, float]]:
+        """
+        Torque [N·m] and angle [rad] of each weight.
+        """
+
+class Sensors:
+    """
+    What is seen of a simulated joint. Everything is off by default: exact signals.
+
+    The torque sensor's gain and offset are the joint's: torque = gain · reading + offset. Its chain is
+    ripple, non-linearity and noise as torques at its input, then the filter, then the converter.
+
+    Parameters
+    ----------
+    encoder_counts : default 0.0
+        Counts of a motor turn, the lines of the encoder times 4; 0: exact position.
+    velocity : default 'exact'
+        "exact", "difference" (of the last two positions) or "counts" (6.3.1: over the time in which `velocity_counts` came in, held until then).
+    velocity_counts : default 5
+        Counts at least, for a new estimate of the velocity.
+    velocity_time : default 0.01
+        After which a new estimate is made in any case [s].
+    torque_noise : default 0.0
+        Standard deviation at the torque sensor's input [N·m], Gaussian, in each sample.
+    ripple : default 0.0
+        Amplitude [N·m] of a strain-wave gear's ripple.
+    ripple_order : default 2.0
+        Of the motor's angle.
+    ripple_phase : default 0.0
+        [rad]
+    nonlinearity : default 0.0
+        Largest deviation as a share of the full scale: a cubic, 0 at 0 and full scale.
+    full_scale : default 650.0
+        Of the torque sensor [N·m].
+    filter_order : default 0
+        Low-pass on the reading: 0 (none), 1, or 2 equal poles.
+    filter_frequency : default 5000.0
+        Of its poles [Hz].
+    converter_bits : default 0
+        Of the analog-to-digital converter; 0: none.
+    converter_range : default 1.0
+        It takes readings from -range to range.
+    converter_noise : default 0.0
+        Standard deviation of one conversion, in steps of the converter.
+    converter_samples : default 1
+        Conversions averaged for one reading (over-sampling).
+    """
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> dict[str, typing.Any]: ...
+    def __hash__(self) -> int: ...
+    def __init__(
+        self,
+        *,
+        encoder_counts: float = 0.0,
+        velocity: str = "exact",
+        velocity_counts: int = 5,
+        velocity_time: float = 0.01,
+        torque_noise: float = 0.0,
+        ripple: float = 0.0,
+        ripple_order: float = 2.0,
+        ripple_phase: float = 0.0,
+        nonlinearity: float = 0.0,
+        full_scale: float = 650.0,
+        filter_order: int = 0,
+        filter_frequency: float = 5000.0,
+        converter_bits: int = 0,
+        converter_range: float = 1.0,
+        converter_noise: float = 0.0,
+        converter_samples: int = 1,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
+    def asdict(self) -> dict[str, typing.Any]:
+        """
+        The fields as a dictionary.
+        """
+    def replace(
+        self,
+        *,
+        encoder_counts: float = ...,
+        velocity: str = ...,
+        velocity_counts: int = ...,
+        velocity_time: float = ...,
+        torque_noise: float = ...,
+        ripple: float = ...,
+        ripple_order: float = ...,
+        ripple_phase: float = ...,
+        nonlinearity: float = ...,
+        full_scale: float = ...,
+        filter_order: int = ...,
+        filter_frequency: float = ...,
+        converter_bits: int = ...,
+        converter_range: float = ...,
+        converter_noise: float = ...,
+        converter_samples: int = ...,
+    ) -> Sensors:
+        """
+        A copy with the given fields changed.
+        """
+    @property
+    def converter_bits(self) -> int:
+        """
+        Of the analog-to-digital converter; 0: none.
+        """
+    @property
+    def converter_noise(self) -> float:
+        """
+        Standard deviation of one conversion, in steps of the converter.
+        """
+    @property
+    def converter_range(self) -> float:
+        """
+        It takes readings from -range to range.
+        """
+    @property
+    def converter_samples(self) -> int:
+        """
+        Conversions averaged for one reading (over-sampling).
+        """
+    @property
+    def encoder_counts(self) -> float:
+        """
+        Counts of a motor turn, the lines of the encoder times 4; 0: exact position.
+        """
+    @property
+    def filter_frequency(self) -> float:
+        """
+        Of its poles [Hz].
+        """
+    @property
+    def filter_order(self) -> int:
+        """
+        Low-pass on the reading: 0 (none), 1, or 2 equal poles.
+        """
+    @property
+    def full_scale(self) -> float:
+        """
+        Of the torque sensor [N·m].
+        """
+    @property
+    def nonlinearity(self) -> float:
+        """
+        Largest deviation as a share of the full scale: a cubic, 0 at 0 and full scale.
+        """
+    @property
+    def ripple(self) -> float:
+        """
+        Amplitude [N·m] of a strain-wave gear's ripple.
+        """
+    @property
+    def ripple_order(self) -> float:
+        """
+        Of the motor's angle.
+        """
+    @property
+    def ripple_phase(self) -> float:
+        """
+        [rad]
+        """
+    @property
+    def torque_noise(self) -> float:
+        """
+        Standard deviation at the torque sensor's input [N·m], Gaussian, in each sample.
+        """
+    @property
+    def velocity(self) -> str:
+        """
+        "exact", "difference" (of the last two positions) or "counts" (6.3.1: over the time in which `velocity_counts` came in, held until then).
+        """
+    @property
+    def velocity_counts(self) -> int:
+        """
+        Counts at least, for a new estimate of the velocity.
+        """
+    @property
+    def velocity_time(self) -> float:
+        """
+        After which a new estimate is made in any case [s].
+        """
+
+class ControlRun:
+    """
+    A controller at work, one step at a time.
+    """
+    def step(
+        self,
+        *,
+        time: typing.SupportsFloat | typing.SupportsIndex,
+        position: typing.SupportsFloat | typing.SupportsIndex,
+        velocity: typing.SupportsFloat | typing.SupportsIndex,
+        sensor: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        reference: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        reference_velocity: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        reference_acceleration: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+    ) -> float:
+        """
+        Return the torque [N·m] to hold until the next step.
+
+        Parameters
+        ----------
+        time, position, velocity : float
+            [s], [rad], [rad/s], as measured.
+        sensor : float
+            Raw reading of the torque sensor. Default 0.
+        reference, reference_velocity, reference_acceleration : float
+            Desired motion [rad], [rad/s], [rad/s²]. Default 0.
+        """
+    @property
+    def period(self) -> float: ...
+    @property
+    def saturations(self) -> int:
+        """
+        How often the limit cut the torque.
+        """
+    @property
+    def torque_limit(self) -> float: ...
+
+class OpenLoop:
+    """
+    No feedback: the trajectory is read as the torque.
+
+    Parameters
+    ----------
+    gain : default 1.0
+        Torque [N·m] per unit of the trajectory.
+    """
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> dict[str, typing.Any]: ...
+    def __hash__(self) -> int: ...
+    def __init__(self, *, gain: float = 1.0) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
+    def asdict(self) -> dict[str, typing.Any]:
+        """
+        The fields as a dictionary.
+        """
+    def replace(self, *, gain: float = ...) -> OpenLoop:
+        """
+        A copy with the given fields changed.
+        """
+    def start(
+        self,
+        period: typing.SupportsFloat | typing.SupportsIndex,
+        torque_limit: typing.SupportsFloat | typing.SupportsIndex = 1.7976931348623157e308,
+    ) -> ControlRun:
+        """
+        Start the controller: an object whose `step` gives one torque.
+
+        Parameters
+        ----------
+        period : float
+            Between steps [s].
+        torque_limit : float
+            On the magnitude of the torque [N·m]. Default: none.
+        """
+    @property
+    def gain(self) -> float:
+        """
+        Torque [N·m] per unit of the trajectory.
+        """
+
+class Pd:
+    """
+    Proportional and derivative feedback.
+
+    Parameters
+    ----------
+    stiffness : default 0.0
+        [N·m/rad]
+    damping : default 0.0
+        [N·m·s/rad]
+    """
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> dict[str, typing.Any]: ...
+    def __hash__(self) -> int: ...
+    def __init__(self, *, stiffness: float = 0.0, damping: float = 0.0) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
+    def asdict(self) -> dict[str, typing.Any]:
+        """
+        The fields as a dictionary.
+        """
+    def replace(self, *, stiffness: float = ..., damping: float = ...) -> Pd:
+        """
+        A copy with the given fields changed.
+        """
+    def start(
+        self,
+        period: typing.SupportsFloat | typing.SupportsIndex,
+        torque_limit: typing.SupportsFloat | typing.SupportsIndex = 1.7976931348623157e308,
+    ) -> ControlRun:
+        """
+        Start the controller: an object whose `step` gives one torque.
+
+        Parameters
+        ----------
+        period : float
+            Between steps [s].
+        torque_limit : float
+            On the magnitude of the torque [N·m]. Default: none.
+        """
+    @property
+    def damping(self) -> float:
+        """
+        [N·m·s/rad]
+        """
+    @property
+    def stiffness(self) -> float:
+        """
+        [N·m/rad]
+        """
+
+class Pid:
+    """
+    Proportional, integral and derivative feedback.
+
+    Parameters
+    ----------
+    stiffness : default 0.0
+        [N·m/rad]
+    integral : default 0.0
+        Of the error's integral [N·m/(rad·s)].
+    damping : default 0.0
+        [N·m·s/rad]
+    integral_limit : default 1000000.0
+        On the torque of the integral [N·m], against wind-up.
+    """
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> dict[str, typing.Any]: ...
+    def __hash__(self) -> int: ...
+    def __init__(
+        self,
+        *,
+        stiffness: float = 0.0,
+        integral: float = 0.0,
+        damping: float = 0.0,
+        integral_limit: float = 1000000.0,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
+    def asdict(self) -> dict[str, typing.Any]:
+        """
+        The fields as a dictionary.
+        """
+    def replace(
+        self,
+        *,
+        stiffness: float = ...,
+        integral: float = ...,
+        damping: float = ...,
+        integral_limit: float = ...,
+    ) -> Pid:
+        """
+        A copy with the given fields changed.
+        """
+    def start(
+        self,
+        period: typing.SupportsFloat | typing.SupportsIndex,
+        torque_limit: typing.SupportsFloat | typing.SupportsIndex = 1.7976931348623157e308,
+    ) -> ControlRun:
+        """
+        Start the controller: an object whose `step` gives one torque.
+
+        Parameters
+        ----------
+        period : float
+            Between steps [s].
+        torque_limit : float
+            On the magnitude of the torque [N·m]. Default: none.
+        """
+    @property
+    def damping(self) -> float:
+        """
+        [N·m·s/rad]
+        """
+    @property
+    def integral(self) -> float:
+        """
+        Of the error's integral [N·m/(rad·s)].
+        """
+    @property
+    def integral_limit(self) -> float:
+        """
+        On the torque of the integral [N·m], against wind-up.
+        """
+    @property
+    def stiffness(self) -> float:
+        """
+        [N·m/rad]
+        """
+
+class CompensatedPid:
+    """
+    PID with a fixed model: inertia and friction fed forward, the sensed torque fed back.
+
+    Parameters
+    ----------
+    stiffness : default 0.0
+        [N·m/rad]
+    integral : default 0.0
+        Of the error's integral [N·m/(rad·s)].
+    damping : default 0.0
+        [N·m·s/rad]
+    integral_limit : default 1000000.0
+        On the torque of the integral [N·m], against wind-up.
+    inertia : default 0.0
+        Estimate, of the drive [kg·m²].
+    coulomb : default 0.0
+        Estimate [N·m].
+    static : default 0.0
+        Estimate, excess over Coulomb [N·m].
+    stribeck : default 0.0
+        Estimate [s²/rad²].
+    viscous : default 0.0
+        Estimate [N·m·s/rad].
+    sensor_gain : default 1.0
+        Estimate [N·m per reading].
+    sensor_offset : default 0.0
+        Estimate [N·m].
+    torque_feedback : default True
+        Carry the link's torque as the torque sensor tells it.
+    friction_velocity : default 'measured'
+        Compensate friction for the "measured" velocity, or the "reference" one, which helps a joint that sticks.
+    """
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> dict[str, typing.Any]: ...
+    def __hash__(self) -> int: ...
+    def __init__(
+        self,
+        *,
+        stiffness: float = 0.0,
+        integral: float = 0.0,
+        damping: float = 0.0,
+        integral_limit: float = 1000000.0,
+        inertia: float = 0.0,
+        coulomb: float = 0.0,
+        static: float = 0.0,
+        stribeck: float = 0.0,
+        viscous: float = 0.0,
+        sensor_gain: float = 1.0,
+        sensor_offset: float = 0.0,
+        torque_feedback: bool = True,
+        friction_velocity: str = "measured",
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
+    def asdict(self) -> dict[str, typing.Any]:
+        """
+        The fields as a dictionary.
+        """
+    def replace(
+        self,
+        *,
+        stiffness: float = ...,
+        integral: float = ...,
+        damping: float = ...,
+        integral_limit: float = ...,
+        inertia: float = ...,
+        coulomb: float = ...,
+        static: float = ...,
+        stribeck: float = ...,
+        viscous: float = ...,
+        sensor_gain: float = ...,
+        sensor_offset: float = ...,
+        torque_feedback: bool = ...,
+        friction_velocity: str = ...,
+    ) -> CompensatedPid:
+        """
+        A copy with the given fields changed.
+        """
+    def start(
+        self,
+        period: typing.SupportsFloat | typing.SupportsIndex,
+        torque_limit: typing.SupportsFloat | typing.SupportsIndex = 1.7976931348623157e308,
+    ) -> ControlRun:
+        """
+        Start the controller: an object whose `step` gives one torque.
+
+        Parameters
+        ----------
+        period : float
+            Between steps [s].
+        torque_limit : float
+            On the magnitude of the torque [N·m]. Default: none.
+        """
+    @property
+    def coulomb(self) -> float:
+        """
+        Estimate [N·m].
+        """
+    @property
+    def damping(self) -> float:
+        """
+        [N·m·s/rad]
+        """
+    @property
+    def friction_velocity(self) -> str:
+        """
+        Compensate friction for the "measured" velocity, or the "reference" one, which helps a joint that sticks.
+        """
+    @property
+    def inertia(self) -> float:
+        """
+        Estimate, of the drive [kg·m²].
+        """
+    @property
+    def integral(self) -> float:
+        """
+        Of the error's integral [N·m/(rad·s)].
+        """
+    @property
+    def integral_limit(self) -> float:
+        """
+        On the torque of the integral [N·m], against wind-up.
+        """
+    @property
+    def sensor_gain(self) -> float:
+        """
+        Estimate [N·m per reading].
+        """
+    @property
+    def sensor_offset(self) -> float:
+        """
+        Estimate [N·m].
+        """
+    @property
+    def static(self) -> float:
+        """
+        Estimate, excess over Coulomb [N·m].
+        """
+    @property
+    def stiffness(self) -> float:
+        """
+        [N·m/rad]
+        """
+    @property
+    def stribeck(self) -> float:
+        """
+        Estimate [s²/rad²].
+        """
+    @property
+    def torque_feedback(self) -> bool:
+        """
+        Carry the link's torque as the torque sensor tells it.
+        """
+    @property
+    def viscous(self) -> float:
+        """
+        Estimate [N·m·s/rad].
+        """
+
+class AdaptiveRobust:
+    """
+    The decomposition-based adaptive and robust law (4-8 to 4-15).
+
+    With the filtered error r = ė + bandwidth · e it asks for the torque that its model of drive, friction
+    and sensed link torque gives, less an adaptive and a robust term. All at the output of the gear:
+    `from_motor_side` converts gains of the motor's side. With an encoder, adaptation gains of 0.001 and
+    more on the motor's side diverge; 0.0005 holds.
+
+    Parameters
+    ----------
+    bandwidth : default 80.0
+        lambda [1/s]
+    robust_term : default True
+        Whether the robust term acts.
+    robust_torque : default 5.05
+        rho, outside the boundary layer [N·m].
+    boundary : default 0.008910891089108912
+        epsilon, on r [rad/s]; inside the term is linear.
+    adaptation : default False
+        Whether friction is adapted.
+    adaptation_dry : default 0.0
+        Gain of the terms in the velocity's sign [N·m/rad].
+    adaptation_viscous : default 0.0
+        Gain of the terms in v and in the Stribeck coefficient [N·m·s²/rad³].
+    inertia : default 0.0
+        Estimate, of the drive [kg·m²].
+    coulomb : default 0.0
+        Estimate [N·m].
+    static : default 0.0
+        Estimate, excess over Coulomb [N·m].
+    stribeck : default 0.0
+        Estimate [s²/rad²].
+    viscous : default 0.0
+        Estimate [N·m·s/rad].
+    sensor_gain : default 1.0
+        Estimate [N·m per reading].
+    sensor_offset : default 0.0
+        Estimate [N·m].
+    torque_feedback : default True
+        Carry the link's torque as the torque sensor tells it.
+    friction_velocity : default 'measured'
+        Compensate friction for the "measured" velocity, or the "reference" one, which helps a joint that sticks.
+    """
+    @staticmethod
+    def from_motor_side(
+        *,
+        gear_ratio: typing.SupportsFloat | typing.SupportsIndex,
+        bandwidth: typing.SupportsFloat | typing.SupportsIndex = 80.0,
+        robust_torque: typing.SupportsFloat | typing.SupportsIndex = 0.05,
+        boundary: typing.SupportsFloat | typing.SupportsIndex = 0.9,
+        adaptation_gain: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+    ) -> AdaptiveRobust:
+        """
+        Gains as on the motor's side of a gear, without estimates of the joint.
+
+        Defaults: Table 6-1 of the thesis, adaptation off (its table: 0.005, its code: 0.001).
+        """
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> dict[str, typing.Any]: ...
+    def __hash__(self) -> int: ...
+    def __init__(
+        self,
+        *,
+        bandwidth: float = 80.0,
+        robust_term: bool = True,
+        robust_torque: float = 5.05,
+        boundary: float = 0.008910891089108912,
+        adaptation: bool = False,
+        adaptation_dry: float = 0.0,
+        adaptation_viscous: float = 0.0,
+        inertia: float = 0.0,
+        coulomb: float = 0.0,
+        static: float = 0.0,
+        stribeck: float = 0.0,
+        viscous: float = 0.0,
+        sensor_gain: float = 1.0,
+        sensor_offset: float = 0.0,
+        torque_feedback: bool = True,
+        friction_velocity: str = "measured",
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
+    def asdict(self) -> dict[str, typing.Any]:
+        """
+        The fields as a dictionary.
+        """
+    def replace(
+        self,
+        *,
+        bandwidth: float = ...,
+        robust_term: bool = ...,
+        robust_torque: float = ...,
+        boundary: float = ...,
+        adaptation: bool = ...,
+        adaptation_dry: float = ...,
+        adaptation_viscous: float = ...,
+        inertia: float = ...,
+        coulomb: float = ...,
+        static: float = ...,
+        stribeck: float = ...,
+        viscous: float = ...,
+        sensor_gain: float = ...,
+        sensor_offset: float = ...,
+        torque_feedback: bool = ...,
+        friction_velocity: str = ...,
+    ) -> AdaptiveRobust:
+        """
+        A copy with the given fields changed.
+        """
+    def start(
+        self,
+        period: typing.SupportsFloat | typing.SupportsIndex,
+        torque_limit: typing.SupportsFloat | typing.SupportsIndex = 1.7976931348623157e308,
+    ) -> ControlRun:
+        """
+        Start the controller: an object whose `step` gives one torque.
+
+        Parameters
+        ----------
+        period : float
+            Between steps [s].
+        torque_limit : float
+            On the magnitude of the torque [N·m]. Default: none.
+        """
+    @property
+    def adaptation(self) -> bool:
+        """
+        Whether friction is adapted.
+        """
+    @property
+    def adaptation_dry(self) -> float:
+        """
+        Gain of the terms in the velocity's sign [N·m/rad].
+        """
+    @property
+    def adaptation_viscous(self) -> float:
+        """
+        Gain of the terms in v and in the Stribeck coefficient [N·m·s²/rad³].
+        """
+    @property
+    def bandwidth(self) -> float:
+        """
+        lambda [1/s]
+        """
+    @property
+    def boundary(self) -> float:
+        """
+        epsilon, on r [rad/s]; inside the term is linear.
+        """
+    @property
+    def coulomb(self) -> float:
+        """
+        Estimate [N·m].
+        """
+    @property
+    def friction_velocity(self) -> str:
+        """
+        Compensate friction for the "measured" velocity, or the "reference" one, which helps a joint that sticks.
+        """
+    @property
+    def inertia(self) -> float:
+        """
+        Estimate, of the drive [kg·m²].
+        """
+    @property
+    def robust_term(self) -> bool:
+        """
+        Whether the robust term acts.
+        """
+    @property
+    def robust_torque(self) -> float:
+        """
+        rho, outside the boundary layer [N·m].
+        """
+    @property
+    def sensor_gain(self) -> float:
+        """
+        Estimate [N·m per reading].
+        """
+    @property
+    def sensor_offset(self) -> float:
+        """
+        Estimate [N·m].
+        """
+    @property
+    def static(self) -> float:
+        """
+        Estimate, excess over Coulomb [N·m].
+        """
+    @property
+    def stribeck(self) -> float:
+        """
+        Estimate [s²/rad²].
+        """
+    @property
+    def torque_feedback(self) -> bool:
+        """
+        Carry the link's torque as the torque sensor tells it.
+        """
+    @property
+    def viscous(self) -> float:
+        """
+        Estimate [N·m·s/rad].
+        """
+
+class LugreObserver:
+    """
+    Friction compensated by an observer of its bristles (LuGre), around inertia and torque feedback.
+
+    Parameters
+    ----------
+    bandwidth : default 80.0
+        Of the tracking error [1/s].
+    bristle_stiffness : default 10000.0
+        sigma_0 [N·m/rad]
+    bristle_damping : default 0.0
+        sigma_1 [N·m·s/rad]
+    observer_gain : default 0.0
+        How much of the filtered error moves the bristles [1].
+    inertia : default 0.0
+        Estimate, of the drive [kg·m²].
+    coulomb : default 0.0
+        Estimate [N·m].
+    static : default 0.0
+        Estimate, excess over Coulomb [N·m].
+    stribeck : default 0.0
+        Estimate [s²/rad²].
+    viscous : default 0.0
+        Estimate [N·m·s/rad].
+    sensor_gain : default 1.0
+        Estimate [N·m per reading].
+    sensor_offset : default 0.0
+        Estimate [N·m].
+    torque_feedback : default True
+        Carry the link's torque as the torque sensor tells it.
+    friction_velocity : default 'measured'
+        Compensate friction for the "measured" velocity, or the "reference" one, which helps a joint that sticks.
+    """
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> dict[str, typing.Any]: ...
+    def __hash__(self) -> int: ...
+    def __init__(
+        self,
+        *,
+        bandwidth: float = 80.0,
+        bristle_stiffness: float = 10000.0,
+        bristle_damping: float = 0.0,
+        observer_gain: float = 0.0,
+        inertia: float = 0.0,
+        coulomb: float = 0.0,
+        static: float = 0.0,
+        stribeck: float = 0.0,
+        viscous: float = 0.0,
+        sensor_gain: float = 1.0,
+        sensor_offset: float = 0.0,
+        torque_feedback: bool = True,
+        friction_velocity: str = "measured",
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
+    def asdict(self) -> dict[str, typing.Any]:
+        """
+        The fields as a dictionary.
+        """
+    def replace(
+        self,
+        *,
+        bandwidth: float = ...,
+        bristle_stiffness: float = ...,
+        bristle_damping: float = ...,
+        observer_gain: float = ...,
+        inertia: float = ...,
+        coulomb: float = ...,
+        static: float = ...,
+        stribeck: float = ...,
+        viscous: float = ...,
+        sensor_gain: float = ...,
+        sensor_offset: float = ...,
+        torque_feedback: bool = ...,
+        friction_velocity: str = ...,
+    ) -> LugreObserver:
+        """
+        A copy with the given fields changed.
+        """
+    def start(
+        self,
+        period: typing.SupportsFloat | typing.SupportsIndex,
+        torque_limit: typing.SupportsFloat | typing.SupportsIndex = 1.7976931348623157e308,
+    ) -> ControlRun:
+        """
+        Start the controller: an object whose `step` gives one torque.
+
+        Parameters
+        ----------
+        period : float
+            Between steps [s].
+        torque_limit : float
+            On the magnitude of the torque [N·m]. Default: none.
+        """
+    @property
+    def bandwidth(self) -> float:
+        """
+        Of the tracking error [1/s].
+        """
+    @property
+    def bristle_damping(self) -> float:
+        """
+        sigma_1 [N·m·s/rad]
+        """
+    @property
+    def bristle_stiffness(self) -> float:
+        """
+        sigma_0 [N·m/rad]
+        """
+    @property
+    def coulomb(self) -> float:
+        """
+        Estimate [N·m].
+        """
+    @property
+    def friction_velocity(self) -> str:
+        """
+        Compensate friction for the "measured" velocity, or the "reference" one, which helps a joint that sticks.
+        """
+    @property
+    def inertia(self) -> float:
+        """
+        Estimate, of the drive [kg·m²].
+        """
+    @property
+    def observer_gain(self) -> float:
+        """
+        How much of the filtered error moves the bristles [1].
+        """
+    @property
+    def sensor_gain(self) -> float:
+        """
+        Estimate [N·m per reading].
+        """
+    @property
+    def sensor_offset(self) -> float:
+        """
+        Estimate [N·m].
+        """
+    @property
+    def static(self) -> float:
+        """
+        Estimate, excess over Coulomb [N·m].
+        """
+    @property
+    def stribeck(self) -> float:
+        """
+        Estimate [s²/rad²].
+        """
+    @property
+    def torque_feedback(self) -> bool:
+        """
+        Carry the link's torque as the torque sensor tells it.
+        """
+    @property
+    def viscous(self) -> float:
+        """
+        Estimate [N·m·s/rad].
+        """
+
+class Scenario:
+    """
+    What all simulations of a batch share.
+
+    Parameters
+    ----------
+    duration : default 1.0
+        [s]
+    control_period : default 0.001
+        A command is held so long [s].
+    integration_step : default 0.0005
+        [s]; a whole number of them is a control period.
+    sample_every : default 1
+        Control periods a recorded sample.
+    settling : default 0.0
+        Left out of the tracking error [s].
+    sensors : default Sensors(encoder_counts=0.0, velocity='exact', velocity_counts=5, velocity_time=0.01, torque_noise=0.0, ripple=0.0, ripple_order=2.0, ripple_phase=0.0, nonlinearity=0.0, full_scale=650.0, filter_order=0, filter_frequency=5000.0, converter_bits=0, converter_range=1.0, converter_noise=0.0, converter_samples=1)
+        What is seen of the joint.
+    """
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> dict[str, typing.Any]: ...
+    def __hash__(self) -> int: ...
+    def __init__(
+        self,
+        *,
+        duration: float = 1.0,
+        control_period: float = 0.001,
+        integration_step: float = 0.0005,
+        sample_every: int = 1,
+        settling: float = 0.0,
+        sensors: Sensors = ...,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
+    def asdict(self) -> dict[str, typing.Any]:
+        """
+        The fields as a dictionary.
+        """
+    def replace(
+        self,
+        *,
+        duration: float = ...,
+        control_period: float = ...,
+        integration_step: float = ...,
+        sample_every: int = ...,
+        settling: float = ...,
+        sensors: Sensors = ...,
+    ) -> Scenario:
+        """
+        A copy with the given fields changed.
+        """
+    @property
+    def control_period(self) -> float:
+        """
+        A command is held so long [s].
+        """
+    @property
+    def duration(self) -> float:
+        """
+        [s]
+        """
+    @property
+    def integration_step(self) -> float:
+        """
+        [s]; a whole number of them is a control period.
+        """
+    @property
+    def sample_every(self) -> int:
+        """
+        Control periods a recorded sample.
+        """
+    @property
+    def sensors(self) -> Sensors:
+        """
+        What is seen of the joint.
+        """
+    @property
+    def settling(self) -> float:
+        """
+        Left out of the tracking error [s].
+        """
+
+class Setup:
+    """
+    One simulation of a batch.
+
+    Parameters
+    ----------
+    joint : default SimulatedJoint(inertia=1.0, link_inertia=0.0, load=0.0, torque_offset=0.0, torque_limit=1e+300, decay='gaussian', coulomb_positive=0.0, coulomb_negative=0.0, static_positive=0.0, static_negative=0.0, viscous_positive=0.0, viscous_negative=0.0, stribeck=0.0, stribeck_velocity=1.0, stribeck_exponent=1.0, load_friction=0.0, bristles=False, bristle_stiffness=0.0, bristle_damping=0.0, weights=[], harmonics=[])
+        What is simulated.
+    controller : default OpenLoop(gain=1.0)
+        Any controller.
+    gear_ratio : default 1.0
+        Motor's angle per output angle.
+    sensor_gain : default 1.0
+        Torque per unit of the reading.
+    sensor_offset : default 0.0
+        [N·m]
+    position : default 0.0
+        At the start [rad].
+    velocity : default 0.0
+        At the start [rad/s].
+    seed : default 0
+        Of the noise.
+    """
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> dict[str, typing.Any]: ...
+    def __hash__(self) -> int: ...
+    def __init__(
+        self,
+        *,
+        joint: SimulatedJoint = ...,
+        controller: OpenLoop | Pd | Pid | CompensatedPid | AdaptiveRobust | LugreObserver = ...,
+        gear_ratio: float = 1.0,
+        sensor_gain: float = 1.0,
+        sensor_offset: float = 0.0,
+        position: float = 0.0,
+        velocity: float = 0.0,
+        seed: int = 0,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
+    def asdict(self) -> dict[str, typing.Any]:
+        """
+        The fields as a dictionary.
+        """
+    def replace(
+        self,
+        *,
+        joint: SimulatedJoint = ...,
+        controller: OpenLoop | Pd | Pid | CompensatedPid | AdaptiveRobust | LugreObserver = ...,
+        gear_ratio: float = ...,
+        sensor_gain: float = ...,
+        sensor_offset: float = ...,
+        position: float = ...,
+        velocity: float = ...,
+        seed: int = ...,
+    ) -> Setup:
+        """
+        A copy with the given fields changed.
+        """
+    @property
+    def controller(self) -> OpenLoop | Pd | Pid | CompensatedPid | AdaptiveRobust | LugreObserver:
+        """
+        Any controller.
+        """
+    @property
+    def gear_ratio(self) -> float:
+        """
+        Motor's angle per output angle.
+        """
+    @property
+    def joint(self) -> SimulatedJoint:
+        """
+        What is simulated.
+        """
+    @property
+    def position(self) -> float:
+        """
+        At the start [rad].
+        """
+    @property
+    def seed(self) -> int:
+        """
+        Of the noise.
+        """
+    @property
+    def sensor_gain(self) -> float:
+        """
+        Torque per unit of the reading.
+        """
+    @property
+    def sensor_offset(self) -> float:
+        """
+        [N·m]
+        """
+    @property
+    def velocity(self) -> float:
+        """
+        At the start [rad/s].
+        """
+
+class Outcome:
+    """
+    What came of one simulation.
+    """
+    @property
+    def peak_error(self) -> float:
+        """
+        Of tracking, after settling [rad].
+        """
+    @property
+    def rms_error(self) -> float:
+        """
+        Of tracking, after settling [rad].
+        """
+    @property
+    def saturations(self) -> int:
+        """
+        Control periods in which the torque limit cut the command.
+        """
+    @property
+    def signals(self) -> dict[str, typing.Any]:
+        """
+        Recorded and true signals by name.
+        """
+
 def friction_basis(
     key: str,
     velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -1148,6 +2569,20 @@ def minimise_separable(
     *,
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
 ) -> SeparableResult: ...
+def minimise_trials(
+    penalty: PenaltyFunction,
+    lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    *,
+    options: collections.abc.Sequence[GaOptions],
+    seeds: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+    random: bool = False,
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> list[TrialResult]:
+    """
+    Many genetic (or random) searches side by side, a thread each: the same bits as one by one.
+    """
+
 def model_names() -> tuple[typing.Any, ...]: ...
 def models() -> list[Model]:
     """
@@ -1195,6 +2630,18 @@ def robust_variance(
 def shapes() -> list[Shape]:
     """
     All shape parameters.
+    """
+
+def simulate_runs(
+    scenario: Scenario,
+    trajectory: Trajectory,
+    setups: collections.abc.Sequence[Setup],
+    *,
+    signals: bool,
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> list[Outcome]:
+    """
+    One Outcome a setup; RuntimeError when a loop is not stable.
     """
 
 def term(key: str) -> Term:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 BAD_USAGE = 2
 _MOST_WINDOWS = 1_000_000_000
-_TEXT = argparse.RawDescriptionHelpFormatter
+TEXT = argparse.RawDescriptionHelpFormatter
 
 
 class _Parser(argparse.ArgumentParser):
@@ -29,12 +29,16 @@ def parser() -> argparse.ArgumentParser:
         prog="jointid",
         description="Identify a robot joint's friction and torque sensor from a recording of ordinary motion.",
         epilog="example:\n  jointid identify run.csv --joint joint.toml --report report.html",
-        formatter_class=_TEXT,
+        formatter_class=TEXT,
     )
     main_parser.add_argument("--version", action="store_true", help="print the version and exit")
     commands = main_parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=_Parser)
-    for add in (_add_demo, _add_identify, _add_compare, _add_report, _add_info):
+    from jointid.cli_simulation import add_simulate
+    from jointid.cli_study import add_sweep
+
+    for add in (_add_demo, _add_identify, _add_compare, add_simulate, add_sweep, _add_report):
         add(commands)
+    _add_info(commands)
     return main_parser
 
 
@@ -43,7 +47,7 @@ def _add_demo(commands: Any) -> None:
         "demo",
         help="identify a real industrial robot's joint that ships with jointid",
         epilog="example:\n  jointid demo --output demo",
-        formatter_class=_TEXT,
+        formatter_class=TEXT,
     )
     demo.add_argument(
         "--output", default="demo", type=Path, help="folder for report.html and estimate.json"
@@ -62,9 +66,9 @@ def _add_identify(commands: Any) -> None:
             "  jointid identify log.csv --column position=enc1_rad --unit position=deg --windows 0.05s --json\n"
             "  jointid identify monday.csv tuesday.csv --joint joint.toml   (one fit, shared parameters)"
         ),
-        formatter_class=_TEXT,
+        formatter_class=TEXT,
     )
-    _several_recordings(identify)
+    several_recordings(identify)
     _identification_arguments(identify, method="ga")
     identify.add_argument(
         "--model",
@@ -87,9 +91,9 @@ def _add_compare(commands: Any) -> None:
             "  jointid compare monday.csv tuesday.csv wednesday.csv --joint joint.toml --save joint.toml\n"
             "one recording is cut into blocks; of several, whole recordings are held out"
         ),
-        formatter_class=_TEXT,
+        formatter_class=TEXT,
     )
-    _several_recordings(compare)
+    several_recordings(compare)
     _identification_arguments(compare, method="separable")
     compare.add_argument(
         "--model",
@@ -110,7 +114,7 @@ def _add_report(commands: Any) -> None:
             "example:\n  jointid identify run.csv --save estimate.json\n"
             "  jointid report estimate.json --output report.html"
         ),
-        formatter_class=_TEXT,
+        formatter_class=TEXT,
     )
     report.add_argument(
         "estimate", type=Path, help="estimate (.json), from identify --save or estimate.save"
@@ -126,16 +130,17 @@ def _add_info(commands: Any) -> None:
         "info",
         help="say what a recording holds",
         epilog="example:\n  jointid info run.csv",
-        formatter_class=_TEXT,
+        formatter_class=TEXT,
     )
     info.add_argument(
         "recording", type=Path, help="recording: .csv, .csv.gz, .npz, .mat or .parquet"
     )
-    _reading_arguments(info)
+    reading_arguments(info)
     info.add_argument("--json", action="store_true", help="for machines")
 
 
-def _several_recordings(command: argparse.ArgumentParser) -> None:
+def several_recordings(command: argparse.ArgumentParser) -> None:
+    """Add recordings and how they are read."""
     command.add_argument(
         "recordings",
         type=Path,
@@ -143,10 +148,11 @@ def _several_recordings(command: argparse.ArgumentParser) -> None:
         metavar="recording",
         help="recording: .csv, .csv.gz, .npz, .mat or .parquet; several are read alike",
     )
-    _reading_arguments(command)
+    reading_arguments(command)
 
 
-def _reading_arguments(command: argparse.ArgumentParser) -> None:
+def reading_arguments(command: argparse.ArgumentParser) -> None:
+    """Add how a recording is read."""
     for name, shown, told in (
         (
             "--column",
@@ -157,9 +163,7 @@ def _reading_arguments(command: argparse.ArgumentParser) -> None:
         ("--scale", "SIGNAL=FACTOR", "SI value of the file's 1, for a unit nobody knows"),
         ("--where", "COLUMN=VALUE", "keep only such rows"),
     ):
-        command.add_argument(
-            name, action="append", type=_pair, default=[], metavar=shown, help=told
-        )
+        command.add_argument(name, action="append", type=pair, default=[], metavar=shown, help=told)
 
 
 def _identification_arguments(command: argparse.ArgumentParser, *, method: str) -> None:
@@ -176,12 +180,12 @@ def _identification_arguments(command: argparse.ArgumentParser, *, method: str) 
     command.add_argument(
         "--set",
         action="append",
-        type=_pair,
+        type=pair,
         default=[],
         metavar="PARAMETER=VALUE",
         help="fix a parameter (SI)",
     )
-    command.add_argument("--seed", type=_seed, default=0, help="same seed, same bits (0)")
+    command.add_argument("--seed", type=whole_seed, default=0, help="same seed, same bits (0)")
     command.add_argument("--threads", type=int, default=0, help="0: all")
 
 
@@ -194,14 +198,16 @@ def _output_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument("--quiet", action="store_true", help="no progress bar")
 
 
-def _pair(text: str) -> tuple[str, str]:
+def pair(text: str) -> tuple[str, str]:
+    """Name and value of `name=value`."""
     name, separator, value = text.partition("=")
     if not separator or not name or not value:
         raise argparse.ArgumentTypeError(f"'{text}' is not of the form name=value")
     return name, value
 
 
-def _number_or_text(text: str) -> Any:
+def number_or_text(text: str) -> Any:
+    """An int, else a float, else the text."""
     for kind in (int, float):
         try:
             return kind(text)
@@ -214,9 +220,9 @@ def _windows(text: str) -> int | float | str:
     if text == "cumulative":
         return text
     value = (
-        _number_or_text(text.removesuffix("s").strip())
+        number_or_text(text.removesuffix("s").strip())
         if text.endswith("s")
-        else _number_or_text(text)
+        else number_or_text(text)
     )
     if isinstance(value, str):
         raise argparse.ArgumentTypeError(
@@ -227,8 +233,9 @@ def _windows(text: str) -> int | float | str:
     return float(value) if text.endswith("s") else value
 
 
-def _seed(text: str) -> int:
-    value = _number_or_text(text)
+def whole_seed(text: str) -> int:
+    """A seed."""
+    value = number_or_text(text)
     if not isinstance(value, int) or not 0 <= value < 2**64:
         raise argparse.ArgumentTypeError(f"'{text}' is no whole number from 0 to 2^64 - 1")
     return value
@@ -241,7 +248,7 @@ def load_all(paths: Sequence[Path], arguments: argparse.Namespace) -> list[Recor
     columns = {
         signal: int(header) if header.isdigit() else header for signal, header in arguments.column
     }
-    where = {column: _number_or_text(value) for column, value in arguments.where}
+    where = {column: number_or_text(value) for column, value in arguments.where}
     units = dict(arguments.unit)
     scale = _numbers("--scale", arguments.scale)
     return [
@@ -272,7 +279,7 @@ def _numbers(option: str, pairs: Sequence[tuple[str, str]]) -> dict[str, float]:
 
     numbers: dict[str, float] = {}
     for name, value in pairs:
-        number = _number_or_text(value)
+        number = number_or_text(value)
         if isinstance(number, str):
             raise InputError(f"{option} {name}={value}: '{value}' is not a number")
         numbers[name] = float(number)

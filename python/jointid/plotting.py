@@ -2,52 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import FrictionCurve
+from jointid.plotting_friction import friction_curves, sensitivity, torque_over_velocity
+from jointid.plotting_motion import signal, tracking_error, trajectory
+from jointid.plotting_search import adaptation
+from jointid.plotting_study import sweep
+from jointid.plotting_style import FITTED, MEASURED, SECOND, line_style, style
+from jointid.plotting_style import given_or_new as _axes
 from jointid.recording.recording import Recording
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# Okabe and Ito's palette: told apart by the colour-blind, and in grey print by lightness.
-MEASURED = "#999999"
-FITTED = "#D55E00"
-SECOND = "#0072B2"
-_STYLE: dict[str, Any] = {
-    "figure.dpi": 110,
-    "figure.constrained_layout.use": True,
-    "font.size": 9.0,
-    "axes.grid": True,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "grid.alpha": 0.3,
-    "legend.frameon": False,
-    "lines.linewidth": 1.5,
-}
-
-
-@contextmanager
-def style() -> Iterator[None]:
-    """Matplotlib settings of all our pictures, for the time of a `with` block."""
-    from matplotlib import rc_context
-
-    with rc_context(cast("Any", _STYLE)):
-        yield
-
-
-def _axes(axes: Axes | None) -> Axes:
-    if axes is not None:
-        return axes
-    from matplotlib import pyplot
-
-    with style():
-        return pyplot.subplots(figsize=(6.4, 4.0))[1]
+__all__ = [
+    "adaptation",
+    "convergence",
+    "friction_curves",
+    "friction_map",
+    "line_style",
+    "residuals",
+    "sensitivity",
+    "signal",
+    "style",
+    "sweep",
+    "torque_over_velocity",
+    "tracking_error",
+    "trajectory",
+    "window_means",
+]
 
 
 def _torque_unit(estimate: Estimate) -> str:
@@ -111,7 +98,7 @@ def friction_map(recording: Recording | None, estimate: Estimate, axes: Axes | N
     prismatic = estimate.settings["kind"] == "prismatic"
     axes.set_xlabel("velocity [m/s]" if prismatic else "velocity [rad/s]")
     axes.set_ylabel(f"friction [{_torque_unit(estimate)}]")
-    axes.legend(loc="upper left")
+    axes.legend(loc="upper left", frameon=False)
     return axes
 
 
@@ -137,7 +124,7 @@ def window_means(estimate: Estimate, axes: Axes | None = None) -> Axes:
     )
     axes.set_xlabel("time [s]")
     axes.set_ylabel(f"{signal}, window mean [{unit}]")
-    axes.legend(loc="best")
+    axes.legend(loc="best", frameon=False)
     return axes
 
 
@@ -196,9 +183,11 @@ def convergence(estimate: Estimate, axes: Axes | None = None) -> Axes:
     history = estimate.convergence
     axes.semilogy(history.generation, history.mean, color=MEASURED, label="population mean")
     axes.semilogy(history.generation, history.best, color=SECOND, label="best so far")
-    axes.axhline(estimate.penalty, color=FITTED, linestyle="--", label="after the polish")
+    polished = (estimate.settings["ga"] or {}).get("polish") and estimate.settings["method"] == "ga"
+    last = "after the polish" if polished else "the answer, not polished"
+    axes.axhline(estimate.penalty, color=FITTED, linestyle="--", label=last)
     axes.set_xlabel("generation")
     unit = _compared(estimate)[1]
     axes.set_ylabel(f"penalty [({unit}·s)²]")
-    axes.legend(loc="best")
+    axes.legend(loc="best", frameon=False)
     return axes

@@ -11,6 +11,7 @@ from jointid._core import GaOptions, Generation
 
 if TYPE_CHECKING:
     from jointid.comparison.comparison import ComparisonStep
+    from jointid.study.sweeping import StudyStep
 
 _WIDTH = 24
 _PERIOD = 0.1  # [s] between two drawings
@@ -92,3 +93,27 @@ class ComparisonProgress(_Bar):
     def __call__(self, step: ComparisonStep) -> None:
         """Show a fit."""
         self._draw(step.number / step.total, f"fit {step.number}/{step.total}, {step.model}")
+
+
+class StudyProgress(_Bar):
+    """A callback for `sweep` that draws a bar on a terminal, and nothing elsewhere.
+
+    Parameters
+    ----------
+    enabled : bool
+    stream : text file, optional
+        Default: standard error.
+    """
+
+    def __init__(self, *, enabled: bool = True, stream: TextIO | None = None) -> None:
+        super().__init__(enabled=enabled, stream=stream)
+        self._began = time.monotonic()
+        self._first: int | None = None
+
+    def __call__(self, step: StudyStep) -> None:
+        """Show the trials that are done, and how long the others will take."""
+        if self._first is None:
+            self._first = step.number - len(step.rows)
+        rate = (step.number - self._first) / max(time.monotonic() - self._began, 1e-6)
+        left = (step.total - step.number) / max(rate, 1e-6)
+        self._draw(step.number / step.total, f"trial {step.number}/{step.total}, {left:.0f} s left")

@@ -20,12 +20,14 @@ _RELATIVE, _ABSOLUTE = 1e-9, 1e-13
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
-    """Where a search ended, and how."""
+    """Where a search ended, and how; generations and evaluations are those before a polish."""
 
     best: Array
     convergence: Convergence | None
     status: str
     message: str
+    generations: int = 0
+    evaluations: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,25 +4,21 @@ from __future__ import annotations
 
 import time
 from collections.abc import Collection, Mapping, Sequence
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Prediction
-from jointid.identification.inference import infer, r_squared, relative_residual
-from jointid.identification.model_terms import Request, TermChoice, choose_terms
+from jointid.identification.inference import r_squared, relative_residual
+from jointid.identification.model_terms import TermChoice
+from jointid.identification.prepared import prepare
 from jointid.identification.problem import Problem, Windows, listed, whole_number
 from jointid.identification.search import Callback, Search, StatePath
-from jointid.identification.search_domain import SearchDomain, domain_for
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
 from jointid.recording.recording import Recording
-
-Array = NDArray[np.float64]
 
 
 def identify(
@@ -118,79 +114,33 @@ def identify(
         Ctrl-C, within 0.1 s.
     """
     started = time.perf_counter()
-    runs = listed(recordings)
-    if joint is not None and not isinstance(joint, Joint):
-        raise InputError(
-            f"joint must be a Joint, got {joint!r}; read a file with jointid.Joint.load"
-        )
-    if not isinstance(mask_standstill, bool):
-        raise InputError(f"mask_standstill must be True or False, got {mask_standstill!r}")
-    seed = whole_number("seed", seed, 0, 2**64 - 1)
     threads = whole_number("threads", threads, 0, 1024)
     search = Search(
         method=method,
         options=ga if ga is not None else _core.GaOptions(),
-        seed=seed,
+        seed=whole_number("seed", seed, 0, 2**64 - 1),
         threads=threads,
         callback=callback,
         checkpoint=checkpoint,
         resume=resume,
     )
-    request = Request(
+    prepared = prepare(
+        recordings,
+        joint,
         model=model,
-        residual=residual,
         asymmetric=asymmetric,
         ripple=ripple,
         harmonics=harmonics,
         load_friction=load_friction,
         per_recording=per_recording,
-    )
-    choice = choose_terms(runs, joint, request)
-    problem = Problem(
-        recordings=runs,
-        joint=joint,
-        choice=choice,
+        parameters=parameters,
+        residual=residual,
+        windows=windows,
         torque_hold=torque_hold,
         mask_standstill=mask_standstill,
         threads=threads,
     )
-    penalty = problem.penalty(windows)
-    domain = domain_for(penalty, joint, parameters, problem.peak_speed)
-    outcome = search.run(penalty, domain)
-    settings: dict[str, Any] = {
-        "version": _core.__version__,
-        "kind": runs[0].kind,
-        "method": method,
-        "model": choice.model,
-        "terms": list(choice.terms),
-        "asymmetric": choice.asymmetric,
-        "ripple": list(choice.ripple),
-        "harmonics": list(choice.harmonics),
-        "load_friction": choice.load_friction,
-        "per_recording": list(choice.per_recording),
-        "dropped": choice.dropped,
-        "residual": choice.residual,
-        "windows": penalty.window_duration,
-        "cumulative": penalty.cumulative,
-        "torque_hold": torque_hold,
-        "mask_standstill": mask_standstill,
-        "seed": seed,
-        "ga": None if method == "separable" else search.options.asdict(),
-        "bounds_from_data": list(domain.from_data),
-        "recordings": [{"name": run.name, "fingerprint": run.fingerprint} for run in runs],
-    }
-    return infer(
-        problem=problem,
-        penalty=penalty,
-        domain=domain,
-        best=outcome.best,
-        shifts=_window_shifts(problem, windows, penalty, domain, outcome.best),
-        convergence=outcome.convergence,
-        status=outcome.status,
-        message=outcome.message,
-        settings=settings,
-        seconds=time.perf_counter() - started,
-    )
+    return prepared.estimate(search, search.run(prepared.penalty, prepared.domain), started)
 
 
 def predict(estimate: Estimate, recording: Recording) -> Prediction:
@@ -234,27 +184,3 @@ def _predicting(estimate: Estimate, name: str) -> float:
         return estimate.parameters[name].value
     own = [p.value for key, p in estimate.parameters.items() if key.startswith(f"{name}[")]
     return float(np.mean(own))
-
-
-def _window_shifts(
-    problem: Problem,
-    windows: Windows,
-    penalty: _core.Penalty,
-    domain: SearchDomain,
-    best: Array,
-) -> tuple[Array | None, Array | None]:
-    """How the answer moves when windows are halved and doubled; None where such windows cannot be cut."""
-    options = problem.window_options(windows)
-    shifts: list[Array | None] = []
-    for factor in (0.5, 2.0):
-        try:
-            other = problem.parts(options.replace(factor=options.factor * factor))
-        except InputError:  # fewer windows than parameters, or longer than the recording
-            shifts.append(None)
-            continue
-        if other.window_count == penalty.window_count:
-            shifts.append(None)
-            continue
-        found = other.refit(domain.lower, domain.upper, best, threads=problem.threads)
-        shifts.append(found - best)
-    return shifts[0], shifts[1]

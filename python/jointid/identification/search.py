@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -73,18 +73,45 @@ class Search:
         """
         engine = Engine.of(penalty, domain, self.threads, self.method)
         if self.method == "separable":
-            found = _core.minimise_separable(
-                engine.form, domain.lower, domain.upper, threads=self.threads
-            )
-            told = f"separable optimum after {found.evaluations} shapes"
-            best, convergence, status = found.best, None, "converged"
-        else:
-            result = (self._random if self.method == "random" else self._genetic)(engine, domain)
-            convergence = _convergence(result)
-            best, status, told = self._finished(engine, domain, result, convergence)
-        return engine.verified(
-            Outcome(best=best, convergence=convergence, status=status, message=told), domain
+            return self.separable(engine, domain)
+        result = (self._random if self.method == "random" else self._genetic)(engine, domain)
+        convergence = _convergence(result)
+        outcome = self.concluded(engine, domain, result, int(convergence.generation[-1]))
+        return replace(outcome, convergence=convergence)
+
+    def separable(self, engine: Engine, domain: SearchDomain) -> Outcome:
+        """The outcome of the search by elimination."""
+        found = _core.minimise_separable(
+            engine.form, domain.lower, domain.upper, threads=self.threads
         )
+        told = f"separable optimum after {found.evaluations} shapes"
+        outcome = Outcome(
+            best=found.best,
+            convergence=None,
+            status="converged",
+            message=told,
+            evaluations=found.evaluations,
+        )
+        return engine.verified(outcome, domain)
+
+    def concluded(
+        self,
+        engine: Engine,
+        domain: SearchDomain,
+        result: _core.GaResult | _core.TrialResult,
+        generations: int,
+    ) -> Outcome:
+        """Where a search by populations ended: polished if it is to be, and verified."""
+        best, status, told = self._finished(engine, domain, result, generations)
+        outcome = Outcome(
+            best=best,
+            convergence=None,
+            status=status,
+            message=told,
+            generations=generations,
+            evaluations=result.evaluations,
+        )
+        return engine.verified(outcome, domain)
 
     def _random(self, engine: Engine, domain: SearchDomain) -> _core.GaResult:
         return _core.minimise_random(
@@ -125,11 +152,11 @@ class Search:
         self,
         engine: Engine,
         domain: SearchDomain,
-        result: _core.GaResult,
-        convergence: Convergence,
+        result: _core.GaResult | _core.TrialResult,
+        generations: int,
     ) -> tuple[Array, str, str]:
         """Best parameters, status and message after the polish, if there is one."""
-        told = f"{convergence.generation[-1]} generations, {result.evaluations} penalties"
+        told = f"{generations} generations, {result.evaluations} penalties"
         polish = self.options.polish and self.method == "ga"
         if result.stop == _core.Stop.observer:
             return result.best, "stopped", f"stopped by the callback after {told}"

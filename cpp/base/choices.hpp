@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace jointid::search {
+namespace jointid::base {
 
 /// Specialised for each enumeration: `field`, the option it belongs to, and `all`, its words in the
 /// order of its values.
@@ -34,4 +34,4 @@ Choice chosen(std::string_view asked) {
                                   .append(known));
 }
 
-}  // namespace jointid::search
+}  // namespace jointid::base

@@ -1,0 +1,103 @@
+"""Simulations per second: ours, alone and in batches, SciPy's `solve_ivp`, a plain Python loop. Markdown.
+
+Six seconds of the thesis's joint under PD control at 1 kHz, one integration step a period. Medians of runs in turn;
+look at the ratios, single times on a busy machine mean little.
+"""
+
+import argparse
+import math
+import statistics
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+from scipy.integrate import solve_ivp
+
+import jointid as jid
+
+TRUTH = {"coulomb": 25.0, "static": 20.0, "stribeck": 100.0, "viscous": 20.0}
+SENSOR = {"sensor_gain": 2.4, "sensor_offset": 15.0}
+MASS, WEIGHT = 2.472e-4 * 101**2 + 0.25, 3.0 * 9.817 * 0.25
+STIFFNESS, DAMPING, PERIOD, COUNT = 2e4, 500.0, 1e-3, 6000
+
+
+def friction(v: float) -> float:
+    """Of the truth, with the sign of the velocity and 0 at rest."""
+    level = TRUTH["coulomb"] + TRUTH["static"] * math.exp(-TRUTH["stribeck"] * v * v)
+    return math.copysign(level, v) * (v != 0.0) + TRUTH["viscous"] * v
+
+
+def slope(q: float, v: float, torque: float) -> float:
+    """Acceleration."""
+    return (torque - WEIGHT * math.sin(q) - friction(v)) / MASS
+
+
+def main(runs: int, batch: int) -> None:
+    """Time, in turn, and print the table."""
+    joint = jid.thesis_joint().with_parameters(TRUTH | SENSOR)
+    assert joint.link is not None
+    joint = joint.replace(link=replace(joint.link, angle=-math.pi / 2.0))
+    law = jid.Pd(stiffness=STIFFNESS, damping=DAMPING)
+    trajectory = jid.Trajectory.thesis(math.radians(60.0), cycle=3.0, duration=COUNT * PERIOD)
+    wanted, wanted_velocity, _ = (
+        each.tolist() for each in trajectory.sample([k * PERIOD for k in range(COUNT)])
+    )
+
+    def command(k: int, q: float, v: float) -> float:
+        asked = STIFFNESS * (wanted[k] - q) + DAMPING * (wanted_velocity[k] - v)
+        return float(max(-160.0, min(160.0, asked)))
+
+    def alone() -> None:
+        jid.simulate(joint, law, trajectory, integration_step=PERIOD)
+
+    def together(threads: int) -> None:
+        jid.simulate_batch(
+            joint, [law] * batch, trajectory, integration_step=PERIOD, threads=threads
+        )
+
+    def plain() -> None:
+        q = v = 0.0
+        for k in range(COUNT):
+            torque = command(k, q, v)
+            middle = v + 0.5 * PERIOD * slope(q, v, torque)
+            v += PERIOD * slope(q + 0.5 * PERIOD * v, middle, torque)
+            q += PERIOD * middle
+
+    def scipy() -> None:
+        state = [0.0, 0.0]
+        for k in range(COUNT // 20):  # a twentieth of the time is enough to know
+            torque = command(k, *state)
+            solved = solve_ivp(
+                lambda _, y, held: (y[1], slope(y[0], y[1], held)),
+                (0.0, PERIOD),
+                state,
+                args=(torque,),
+            )
+            state = solved.y[:, -1].tolist()
+
+    peers: dict[str, tuple[Callable[[], None], float]] = {
+        "jointid, one simulation": (alone, 1.0),
+        f"jointid, batch of {batch}, one thread": (lambda: together(1), batch),
+        f"jointid, batch of {batch}, all threads": (lambda: together(0), batch),
+        "plain Python loop": (plain, 1.0),
+        "SciPy solve_ivp, default tolerances": (scipy, 0.05),
+    }
+    seconds: dict[str, list[float]] = {name: [] for name in peers}
+    for _ in range(runs):
+        for name, (run, simulations) in peers.items():
+            began = time.perf_counter()
+            run()
+            seconds[name].append((time.perf_counter() - began) / simulations)
+    reference = statistics.median(seconds["jointid, one simulation"])
+    print("| what | one simulation [ms] | a second | against one of ours |\n|---|---|---|---|")
+    for name, values in seconds.items():
+        median = statistics.median(values)
+        print(f"| {name} | {median * 1e3:.3f} | {1 / median:.0f} | {reference / median:.3g} |")
+
+
+if __name__ == "__main__":
+    arguments = argparse.ArgumentParser(description=__doc__)
+    arguments.add_argument("--runs", type=int, default=7)
+    arguments.add_argument("--batch", type=int, default=64)
+    options = arguments.parse_args()
+    main(options.runs, options.batch)

@@ -1,0 +1,229 @@
+#pragma once
+// Several doubles side by side, so that one source serves one simulation and a batch of them. Each
+// lane does exactly the scalar arithmetic: a lane's bits do not depend on its neighbours.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "base/elementary.hpp"
+
+namespace jointid::base {
+
+// What generic code asks for, for a single number.
+inline double select(bool mask, double yes, double no) {
+  return mask ? yes : no;
+}
+inline bool any(bool mask) {
+  return mask;
+}
+inline double absolute(double x) {
+  return std::fabs(x);
+}
+inline double at_least(double x, double low) {
+  return x < low ? low : x;
+}
+
+namespace detail {
+
+#if defined(__GNUC__)
+// Pairs are what every x86-64 and every AArch64 has in one register.
+using Pair = double __attribute__((vector_size(16)));
+using PairMask = decltype(Pair{} < Pair{});
+inline Pair pick(PairMask mask, Pair yes, Pair no) {
+  return mask ? yes : no;
+}
+inline Pair both(double x) {
+  return Pair{x, x};
+}
+#else
+struct PairMask {
+  long long lane[2];
+  long long operator[](std::size_t i) const { return lane[i]; }
+};
+struct Pair {
+  double lane[2];
+  double operator[](std::size_t i) const { return lane[i]; }
+  double& operator[](std::size_t i) { return lane[i]; }
+};
+inline Pair operator+(Pair a, Pair b) {
+  return {{a[0] + b[0], a[1] + b[1]}};
+}
+inline Pair operator-(Pair a, Pair b) {
+  return {{a[0] - b[0], a[1] - b[1]}};
+}
+inline Pair operator*(Pair a, Pair b) {
+  return {{a[0] * b[0], a[1] * b[1]}};
+}
+inline Pair operator/(Pair a, Pair b) {
+  return {{a[0] / b[0], a[1] / b[1]}};
+}
+inline Pair operator-(Pair a) {
+  return {{-a[0], -a[1]}};
+}
+inline PairMask operator<(Pair a, Pair b) {
+  return {{-(a[0] < b[0]), -(a[1] < b[1])}};
+}
+inline PairMask operator==(Pair a, Pair b) {
+  return {{-(a[0] == b[0]), -(a[1] == b[1])}};
+}
+inline PairMask operator&(PairMask a, PairMask b) {
+  return {{a[0] & b[0], a[1] & b[1]}};
+}
+inline PairMask operator|(PairMask a, PairMask b) {
+  return {{a[0] | b[0], a[1] | b[1]}};
+}
+inline PairMask operator~(PairMask a) {
+  return {{~a[0], ~a[1]}};
+}
+inline Pair pick(PairMask mask, Pair yes, Pair no) {
+  return {{mask[0] ? yes[0] : no[0], mask[1] ? yes[1] : no[1]}};
+}
+inline Pair both(double x) {
+  return {{x, x}};
+}
+#endif
+
+}  // namespace detail
+
+/// True or false for each lane.
+template <std::size_t Pairs>
+struct LaneMask {
+  std::array<detail::PairMask, Pairs> pair;
+
+  friend LaneMask operator&(const LaneMask& a, const LaneMask& b) {
+    return of([&](std::size_t i) { return a.pair[i] & b.pair[i]; });
+  }
+  friend LaneMask operator|(const LaneMask& a, const LaneMask& b) {
+    return of([&](std::size_t i) { return a.pair[i] | b.pair[i]; });
+  }
+  friend LaneMask operator!(const LaneMask& a) {
+    return of([&](std::size_t i) { return ~a.pair[i]; });
+  }
+  template <class Make>
+  static LaneMask of(Make make) {
+    LaneMask result;
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      ((result.pair[I] = make(I)), ...);
+    }(std::make_index_sequence<Pairs>{});
+    return result;
+  }
+};
+
+/// 2 * Pairs doubles.
+template <std::size_t Pairs>
+struct Lanes {
+  static constexpr std::size_t width = 2 * Pairs;
+  using Mask = LaneMask<Pairs>;
+  std::array<detail::Pair, Pairs> pair;
+
+  Lanes() : Lanes(0.0) {}
+  Lanes(double same) { pair.fill(detail::both(same)); }  // a number among lanes stands for all
+
+  [[nodiscard]] double operator[](std::size_t i) const { return pair[i / 2][i % 2]; }
+  void set(std::size_t i, double value) { pair[i / 2][i % 2] = value; }
+
+  template <class Make>
+  static Lanes of(Make make) {
+    Lanes result;
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      ((result.pair[I] = make(I)), ...);
+    }(std::make_index_sequence<Pairs>{});
+    return result;
+  }
+  friend Lanes operator+(const Lanes& a, const Lanes& b) {
+    return of([&](std::size_t i) { return a.pair[i] + b.pair[i]; });
+  }
+  friend Lanes operator-(const Lanes& a, const Lanes& b) {
+    return of([&](std::size_t i) { return a.pair[i] - b.pair[i]; });
+  }
+  friend Lanes operator*(const Lanes& a, const Lanes& b) {
+    return of([&](std::size_t i) { return a.pair[i] * b.pair[i]; });
+  }
+  friend Lanes operator/(const Lanes& a, const Lanes& b) {
+    return of([&](std::size_t i) { return a.pair[i] / b.pair[i]; });
+  }
+  friend Lanes operator-(const Lanes& a) {
+    return of([&](std::size_t i) { return -a.pair[i]; });
+  }
+  friend Mask operator<(const Lanes& a, const Lanes& b) {
+    return Mask::of([&](std::size_t i) { return a.pair[i] < b.pair[i]; });
+  }
+  friend Mask operator==(const Lanes& a, const Lanes& b) {
+    return Mask::of([&](std::size_t i) { return a.pair[i] == b.pair[i]; });
+  }
+};
+
+template <std::size_t P>
+Lanes<P> select(const LaneMask<P>& mask, const Lanes<P>& yes, const Lanes<P>& no) {
+  return Lanes<P>::of(
+      [&](std::size_t i) { return detail::pick(mask.pair[i], yes.pair[i], no.pair[i]); });
+}
+template <std::size_t P>
+bool any(const LaneMask<P>& mask) {
+  detail::PairMask found = mask.pair[0];
+  for (std::size_t i = 1; i < P; ++i) found = found | mask.pair[i];
+  return (found[0] | found[1]) != 0;
+}
+template <std::size_t P>
+Lanes<P> absolute(const Lanes<P>& x) {
+  return each_lane(x, [](double value) { return std::fabs(value); });
+}
+template <std::size_t P>
+Lanes<P> at_least(const Lanes<P>& x, double low) {
+  return select(x < Lanes<P>(low), Lanes<P>(low), x);
+}
+
+/// A scalar function of each lane.
+template <std::size_t P, class Function>
+Lanes<P> each_lane(const Lanes<P>& x, Function function) {
+  std::array<double, 2 * P> values;
+  for (std::size_t i = 0; i < 2 * P; ++i) values[i] = x[i];
+  for (double& value : values) value = function(value);
+  Lanes<P> result;
+  for (std::size_t i = 0; i < 2 * P; ++i) result.set(i, values[i]);
+  return result;
+}
+template <std::size_t P>
+Lanes<P> exp(const Lanes<P>& x) {
+  return each_lane(x, [](double value) { return exp(value); });
+}
+template <std::size_t P>
+Lanes<P> cos(const Lanes<P>& x) {
+  return each_lane(x, [](double value) { return cos(value); });
+}
+template <std::size_t P>
+Lanes<P> sin(const Lanes<P>& x) {
+  return each_lane(x, [](double value) { return sin(value); });
+}
+template <std::size_t P>
+Lanes<P> pow(const Lanes<P>& x, const Lanes<P>& y) {
+  Lanes<P> result;
+  for (std::size_t i = 0; i < 2 * P; ++i) result.set(i, pow(x[i], y[i]));
+  return result;
+}
+
+/// One lane of a number, whatever it is.
+inline double lane(double x, std::size_t) {
+  return x;
+}
+template <std::size_t P>
+double lane(const Lanes<P>& x, std::size_t i) {
+  return x[i];
+}
+inline void set_lane(double& x, std::size_t, double value) {
+  x = value;
+}
+template <std::size_t P>
+void set_lane(Lanes<P>& x, std::size_t i, double value) {
+  x.set(i, value);
+}
+
+template <class Number>
+inline constexpr std::size_t lanes_of = 1;
+template <std::size_t P>
+inline constexpr std::size_t lanes_of<Lanes<P>> = Lanes<P>::width;
+
+}  // namespace jointid::base

@@ -1,0 +1,136 @@
+#include "bind/simulate.hpp"
+
+namespace jointid::bind {
+
+using namespace simulate;
+
+namespace {
+
+py::array_t<double> array_of(const std::vector<double>& values) {
+  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+py::dict signals_of(const Outcome& outcome) {
+  const Signals& s = outcome.signals;
+  py::dict result;
+  result["position"] = array_of(s.position);
+  result["velocity"] = array_of(s.velocity);
+  result["torque"] = array_of(s.torque);
+  result["reading"] = array_of(s.reading);
+  result["reference"] = array_of(s.reference);
+  result["true_position"] = array_of(s.true_position);
+  result["true_velocity"] = array_of(s.true_velocity);
+  result["true_acceleration"] = array_of(s.true_acceleration);
+  result["friction"] = array_of(s.friction);
+  result["link_torque"] = array_of(s.link_torque);
+  return result;
+}
+
+void bind_trajectory(py::module_& m) {
+  py::class_<Trajectory>(m, "Trajectory", "A desired motion; use it through jointid.Trajectory.")
+      .def_static("multisine", &Trajectory::multisine, py::kw_only(), py::arg("amplitude"),
+                  py::arg("frequency"), py::arg("phase"), py::arg("offset"), py::arg("duration"))
+      .def_static("sigmoid", &Trajectory::sigmoid, py::kw_only(), py::arg("distance"),
+                  py::arg("rise"), py::arg("duration"))
+      .def_static("step", &Trajectory::step, py::kw_only(), py::arg("distance"), py::arg("time"),
+                  py::arg("duration"))
+      .def_static("trapezoid", &Trajectory::trapezoid, py::kw_only(), py::arg("distance"),
+                  py::arg("velocity"), py::arg("acceleration"), py::arg("duration"))
+      .def_static("samples", &Trajectory::samples, py::kw_only(), py::arg("time"),
+                  py::arg("position"))
+      .def(
+          "at",
+          [](const Trajectory& trajectory, double time) {
+            const Reference wanted = trajectory.at(time);
+            return py::make_tuple(wanted.position, wanted.velocity, wanted.acceleration);
+          },
+          py::arg("time"), "Position, velocity and acceleration at a time.")
+      .def(
+          "sample",
+          [](const Trajectory& trajectory, const Eigen::VectorXd& time) {
+            Eigen::MatrixXd wanted(time.size(), 3);
+            for (Eigen::Index i = 0; i < time.size(); ++i) {
+              const Reference one = trajectory.at(time[i]);
+              wanted.row(i) << one.position, one.velocity, one.acceleration;
+            }
+            return wanted;
+          },
+          py::arg("time"), "Position, velocity and acceleration, shape (times, 3).")
+      .def_property_readonly("duration", &Trajectory::duration);
+}
+
+void bind_joint(py::module_& m) {
+  using model::Joint;
+  value(m, "SimulatedJoint", "A joint as the core simulates it: output side, SI.",
+        Field{"inertia", &Joint::inertia, "Of the drive [kg·m²]."},
+        Field{"link_inertia", &Joint::link_inertia, "Behind the torque sensor [kg·m²]."},
+        Field{"load", &Joint::load, "Constant torque behind the sensor [N·m]."},
+        Field{"torque_offset", &Joint::torque_offset, "Constant torque in the drive [N·m]."},
+        Field{"torque_limit", &Joint::torque_limit, "Of the drive [N·m]."},
+        Field{"decay", &Joint::decay,
+              "How static friction fades: \"none\", \"gaussian\" (4-1) or \"general\" (2-3)."},
+        Field{"coulomb_positive", &Joint::coulomb_positive, "[N·m]"},
+        Field{"coulomb_negative", &Joint::coulomb_negative, "[N·m]"},
+        Field{"static_positive", &Joint::static_positive, "Excess over Coulomb [N·m]."},
+        Field{"static_negative", &Joint::static_negative, "Excess over Coulomb [N·m]."},
+        Field{"viscous_positive", &Joint::viscous_positive, "[N·m·s/rad]"},
+        Field{"viscous_negative", &Joint::viscous_negative, "[N·m·s/rad]"},
+        Field{"stribeck", &Joint::stribeck, "Of the gaussian decay [s²/rad²]."},
+        Field{"stribeck_velocity", &Joint::stribeck_velocity, "Of the general decay [rad/s]."},
+        Field{"stribeck_exponent", &Joint::stribeck_exponent, "Of the general decay [1]."},
+        Field{"load_friction", &Joint::load_friction, "Dry friction per torque of the drive [1]."},
+        Field{"bristles", &Joint::bristles, "Friction behind a spring (Dahl, LuGre)."},
+        Field{"bristle_stiffness", &Joint::bristle_stiffness, "[N·m/rad]"},
+        Field{"bristle_damping", &Joint::bristle_damping, "[N·m·s/rad]"},
+        Field{"weights", &Joint::weights, "Torque [N·m] and angle [rad] of each weight."},
+        Field{"harmonics", &Joint::harmonics, "Order [1], cos and sin part [N·m]."});
+}
+
+void bind_scenario(py::module_& m) {
+  value(m, "Scenario", "What all simulations of a batch share.",
+        Field{"duration", &Scenario::duration, "[s]"},
+        Field{"control_period", &Scenario::control_period, "A command is held so long [s]."},
+        Field{"integration_step", &Scenario::integration_step,
+              "[s]; a whole number of them is a control period."},
+        Field{"sample_every", &Scenario::sample_every, "Control periods a recorded sample."},
+        Field{"settling", &Scenario::settling, "Left out of the tracking error [s]."},
+        Field{"sensors", &Scenario::sensors, "What is seen of the joint."});
+  value(m, "Setup", "One simulation of a batch.",
+        Field{"joint", &Setup::joint, "What is simulated."},
+        Field{"controller", &Setup::controller, "Any controller."},
+        Field{"gear_ratio", &Setup::gear_ratio, "Motor's angle per output angle."},
+        Field{"sensor_gain", &Setup::sensor_gain, "Torque per unit of the reading."},
+        Field{"sensor_offset", &Setup::sensor_offset, "[N·m]"},
+        Field{"position", &Setup::position, "At the start [rad]."},
+        Field{"velocity", &Setup::velocity, "At the start [rad/s]."},
+        Field{"seed", &Setup::seed, "Of the noise."});
+  py::class_<Outcome>(m, "Outcome", "What came of one simulation.")
+      .def_property_readonly("signals", &signals_of, "Recorded and true signals by name.")
+      .def_readonly("rms_error", &Outcome::rms_error, "Of tracking, after settling [rad].")
+      .def_readonly("peak_error", &Outcome::peak_error, "Of tracking, after settling [rad].")
+      .def_readonly("saturations", &Outcome::saturations,
+                    "Control periods in which the torque limit cut the command.");
+}
+
+}  // namespace
+
+void bind_simulate(py::module_& m) {
+  bind_trajectory(m);
+  bind_joint(m);
+  bind_sensors(m);
+  bind_controllers(m);
+  bind_scenario(m);
+  m.def(
+      "simulate_runs",
+      [](const Scenario& scenario, const Trajectory& trajectory, const std::vector<Setup>& setups,
+         bool signals, int threads) {
+        const py::gil_scoped_release nogil;
+        base::Pool pool(threads, SignalPoll{});
+        return simulate::simulate(scenario, trajectory, setups, signals, pool);
+      },
+      py::arg("scenario"), py::arg("trajectory"), py::arg("setups"), py::kw_only(),
+      py::arg("signals"), py::arg("threads") = 0,
+      "One Outcome a setup; RuntimeError when a loop is not stable.");
+}
+
+}  // namespace jointid::bind

@@ -1,0 +1,64 @@
+#pragma once
+// What the bindings of the simulator share: casters of choices and small tuples.
+
+#include <pybind11/numpy.h>
+
+#include "bind/bind.hpp"
+#include "bind/choices.hpp"
+#include "simulate/simulator.hpp"
+
+namespace jointid::bind {
+
+/// A field that a struct has from its base.
+template <class T, class M, class Base>
+Field<T, M> inherited(const char* name, M Base::* member, const char* text) {
+  return {name, static_cast<M T::*>(member), text};
+}
+
+void bind_sensors(py::module_& m);
+void bind_controllers(py::module_& m);
+
+}  // namespace jointid::bind
+
+namespace pybind11::detail {
+
+template <>
+struct type_caster<jointid::model::Decay> : jointid::bind::ChoiceCaster<jointid::model::Decay> {};
+template <>
+struct type_caster<jointid::simulate::VelocityEstimate>
+    : jointid::bind::ChoiceCaster<jointid::simulate::VelocityEstimate> {};
+template <>
+struct type_caster<jointid::simulate::FrictionVelocity>
+    : jointid::bind::ChoiceCaster<jointid::simulate::FrictionVelocity> {};
+
+template <>
+struct type_caster<jointid::model::Weight> {
+  PYBIND11_TYPE_CASTER(jointid::model::Weight, const_name("tuple[float, float]"));
+
+  bool load(handle given, bool) {
+    if (!isinstance<tuple>(given) || len(given) != 2) return false;
+    const auto pair = reinterpret_borrow<tuple>(given);
+    value = {pair[0].cast<double>(), pair[1].cast<double>()};
+    return true;
+  }
+  static handle cast(const jointid::model::Weight& weight, return_value_policy, handle) {
+    return make_tuple(weight.torque, weight.angle).release();
+  }
+};
+
+template <>
+struct type_caster<jointid::model::Harmonic> {
+  PYBIND11_TYPE_CASTER(jointid::model::Harmonic, const_name("tuple[float, float, float]"));
+
+  bool load(handle given, bool) {
+    if (!isinstance<tuple>(given) || len(given) != 3) return false;
+    const auto three = reinterpret_borrow<tuple>(given);
+    value = {three[0].cast<double>(), three[1].cast<double>(), three[2].cast<double>()};
+    return true;
+  }
+  static handle cast(const jointid::model::Harmonic& harmonic, return_value_policy, handle) {
+    return make_tuple(harmonic.order, harmonic.cos, harmonic.sin).release();
+  }
+};
+
+}  // namespace pybind11::detail

@@ -1,0 +1,63 @@
+#pragma once
+// Any of the controllers, and one of them at work: its state, its period, the limit on its torque.
+// The simulator and a session on a real joint step the same object.
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <variant>
+
+#include "simulate/adaptive_robust.hpp"
+#include "simulate/lugre_observer.hpp"
+#include "simulate/pid.hpp"
+
+namespace jointid::simulate {
+
+using Controller = std::variant<OpenLoop, Pd, Pid, CompensatedPid, AdaptiveRobust, LugreObserver>;
+
+class ControlRun {
+ public:
+  ControlRun(const Controller& controller, double period, double torque_limit)
+      : running_(std::visit([](const auto& law) -> Any { return begin(law); }, controller)),
+        period_(period),
+        torque_limit_(torque_limit) {
+    const base::Requirement require("controller");
+    require.above_zero("period", period);
+    require.that(torque_limit > 0.0, "torque_limit", torque_limit, "above 0");
+  }
+
+  /// The torque to hold until the next instant.
+  double step(ControlInput input) {
+    input.period = period_;
+    const double asked = std::visit(
+        [&](auto& running) { return running.config.law(running.state, input); }, running_);
+    if (std::fabs(asked) <= torque_limit_) return asked;
+    ++saturations_;
+    return std::clamp(asked, -torque_limit_, torque_limit_);
+  }
+
+  [[nodiscard]] double period() const { return period_; }
+  [[nodiscard]] double torque_limit() const { return torque_limit_; }
+  /// How often the limit cut the torque.
+  [[nodiscard]] long saturations() const { return saturations_; }
+
+ private:
+  template <class Law>
+  struct Running {
+    Law config;
+    typename Law::State state{};
+  };
+  template <class Law>
+  static Running<Law> begin(const Law& law) {
+    law.validate();
+    return {law, {}};
+  }
+  using Any = std::variant<Running<OpenLoop>, Running<Pd>, Running<Pid>, Running<CompensatedPid>,
+                           Running<AdaptiveRobust>, Running<LugreObserver>>;
+  Any running_;
+  double period_;
+  double torque_limit_;
+  long saturations_ = 0;
+};
+
+}  // namespace jointid::simulate

@@ -1,0 +1,72 @@
+#pragma once
+// What a controller believes of its joint, and the torque it gives for it.
+
+#include <array>
+#include <limits>
+#include <string_view>
+
+#include "base/choices.hpp"
+#include "base/elementary.hpp"
+#include "base/require.hpp"
+#include "simulate/trajectory.hpp"
+
+namespace jointid::simulate {
+
+/// The velocity that friction is compensated for. The measured one says nothing while the joint
+/// sticks; the desired one already says where it is to go.
+enum class FrictionVelocity { measured, reference };
+
+/// What a controller sees at one instant.
+struct ControlInput {
+  double time = 0.0;
+  double position = 0.0;
+  double velocity = 0.0;
+  double reading = 0.0;  ///< raw, of the torque sensor
+  Reference wanted{};
+  double period = 0.0;  ///< between instants
+};
+
+/// Estimates of the joint, output side, SI.
+struct Estimates {
+  double inertia = 0.0;  ///< of the drive
+  double coulomb = 0.0;
+  double static_excess = 0.0;
+  double stribeck = 0.0;
+  double viscous = 0.0;
+  double sensor_gain = 1.0;
+  double sensor_offset = 0.0;
+  bool torque_feedback = true;  ///< carry the link's torque as the sensor tells it
+  FrictionVelocity friction_velocity = FrictionVelocity::measured;
+
+  [[nodiscard]] double friction_speed(const ControlInput& input) const {
+    return friction_velocity == FrictionVelocity::reference ? input.wanted.velocity
+                                                            : input.velocity;
+  }
+  [[nodiscard]] double link_torque(const ControlInput& input) const {
+    return torque_feedback ? sensor_gain * input.reading + sensor_offset : 0.0;
+  }
+  [[nodiscard]] double fading(double velocity) const {
+    return base::exp(-(stribeck * velocity * velocity));
+  }
+  void validate_estimates(const base::Requirement& require) const {
+    require.at_least_zero("inertia", inertia);
+    require.at_least_zero("coulomb", coulomb);
+    require.at_least_zero("static", static_excess);
+    require.at_least_zero("stribeck", stribeck);
+    require.at_least_zero("viscous", viscous);
+    require.finite("sensor_gain", sensor_gain);
+    require.finite("sensor_offset", sensor_offset);
+  }
+};
+
+inline double sign_of(double x) {
+  return x > 0.0 ? 1.0 : (x < 0.0 ? -1.0 : 0.0);
+}
+
+}  // namespace jointid::simulate
+
+template <>
+struct jointid::base::Words<jointid::simulate::FrictionVelocity> {
+  static constexpr std::string_view field = "friction_velocity";
+  static constexpr std::array<std::string_view, 2> all{"measured", "reference"};
+};

@@ -1,0 +1,225 @@
+#include "simulate/simulator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <stdexcept>
+#include <string>
+
+#include "base/lanes.hpp"
+#include "simulate/motion.hpp"
+
+namespace jointid::simulate {
+
+namespace {
+
+using Wide = base::Lanes<4>;
+constexpr double kOutOfBounds = 1e12;  // radians: no motion, a loop that diverges
+constexpr std::size_t kBlock = 64;     // control periods between looks at the cancel flag
+
+std::int64_t rounded(double value) {
+  return static_cast<std::int64_t>(std::floor(value + 0.5));
+}
+
+template <class Number>
+JointOf<Number> joined(std::span<const Setup> setups) {
+  const model::Joint& first = setups.front().joint;
+  JointOf<Number> joint;
+  joint.decay = first.decay;
+  joint.bristles = first.bristles;
+  joint.weights.resize(first.weights.size());
+  joint.harmonics.resize(first.harmonics.size());
+  for (std::size_t i = 0; i < first.harmonics.size(); ++i) {
+    joint.harmonics[i].order = first.harmonics[i].order;
+  }
+  for (std::size_t lane = 0; lane < base::lanes_of<Number>; ++lane) {
+    const auto& source = setups[std::min(lane, setups.size() - 1)].joint;
+    model::each_number(joint, source,
+                       [&](Number& to, const double& from) { base::set_lane(to, lane, from); });
+  }
+  return joint;
+}
+
+void reserve(Signals& s, std::size_t samples) {
+  for (auto* signal :
+       {&s.position, &s.velocity, &s.torque, &s.reading, &s.reference, &s.true_position,
+        &s.true_velocity, &s.true_acceleration, &s.friction, &s.link_torque}) {
+    signal->reserve(samples);
+  }
+}
+
+/// One run's part of the loop: what is sampled, commanded and kept at a control instant.
+class Loop {
+ public:
+  Loop(const Scenario& scenario, const Setup& setup, Outcome& outcome, bool signals)
+      : sensors_(scenario.sensors, setup.gear_ratio, setup.sensor_gain, setup.sensor_offset,
+                 scenario.control_period, setup.seed),
+        control_(setup.controller, scenario.control_period, setup.joint.torque_limit),
+        outcome_(&outcome),
+        signals_(signals) {
+    if (signals_) {
+      const auto every = static_cast<std::size_t>(scenario.sample_every);
+      reserve(outcome.signals, (scenario.instants() + every - 1) / every);
+    }
+  }
+
+  double command(double time, const Reference& wanted, double position, double velocity,
+                 const Dynamics<double>& acting, bool sample, bool settled) {
+    if (!(std::fabs(position) < kOutOfBounds && std::fabs(velocity) < kOutOfBounds)) {
+      throw std::runtime_error("the motion leaves all bounds " + std::to_string(time) +
+                               " s after its start: the loop is not stable");
+    }
+    const Observation shown = sensors_.observe({time, position, velocity, acting.link_torque});
+    const double torque = control_.step(
+        {time, shown.position, shown.velocity, shown.reading, wanted, control_.period()});
+    outcome_->saturations = control_.saturations();
+    if (settled) {
+      const double error = position - wanted.position;
+      sum_ += error * error;
+      ++count_;
+      outcome_->peak_error = std::max(outcome_->peak_error, std::fabs(error));
+    }
+    if (sample && signals_) {
+      Signals& s = outcome_->signals;
+      s.position.push_back(shown.position);
+      s.velocity.push_back(shown.velocity);
+      s.torque.push_back(torque);
+      s.reading.push_back(shown.reading);
+      s.reference.push_back(wanted.position);
+      s.true_position.push_back(position);
+      s.true_velocity.push_back(velocity);
+      s.true_acceleration.push_back(acting.acceleration);
+      s.friction.push_back(acting.friction);
+      s.link_torque.push_back(acting.link_torque);
+    }
+    return torque;
+  }
+  void finish() {
+    outcome_->rms_error = count_ > 0 ? std::sqrt(sum_ / static_cast<double>(count_)) : 0.0;
+  }
+
+ private:
+  SensorChain sensors_;
+  ControlRun control_;
+  Outcome* outcome_;
+  bool signals_;
+  double sum_ = 0.0;
+  std::int64_t count_ = 0;
+};
+
+/// As many runs as Number has lanes, or fewer: the last is then repeated and thrown away.
+template <class Number>
+void run(const Scenario& scenario, const Trajectory& trajectory, std::span<const Setup> setups,
+         std::span<Outcome> outcomes, bool signals, const base::Cancel& cancel) {
+  const JointOf<Number> joint = joined<Number>(setups);
+  std::vector<Loop> loops;
+  loops.reserve(setups.size());
+  MotionOf<Number> motion;
+  for (std::size_t i = 0; i < base::lanes_of<Number>; ++i) {
+    const Setup& setup = setups[std::min(i, setups.size() - 1)];
+    base::set_lane(motion.position, i, setup.position);
+    base::set_lane(motion.velocity, i, setup.velocity);
+    if (i < setups.size()) loops.emplace_back(scenario, setup, outcomes[i], signals);
+  }
+  motion.fading = model::fading(joint, base::absolute(motion.velocity));
+  const int substeps = scenario.substeps();
+  const double step = scenario.control_period / substeps;
+  const auto every = static_cast<std::size_t>(scenario.sample_every);
+  const std::size_t instants = scenario.instants();
+  Number torque = 0.0;
+  for (std::size_t k = 0; k < instants; ++k) {
+    if (k % kBlock == 0) cancel.check();
+    const double time = static_cast<double>(k) * scenario.control_period;
+    const Reference wanted = trajectory.at(time);
+    const auto acting = dynamics(joint, motion, torque);
+    for (std::size_t i = 0; i < loops.size(); ++i) {
+      const Dynamics<double> own{base::lane(acting.acceleration, i), base::lane(acting.friction, i),
+                                 base::lane(acting.link_torque, i),
+                                 base::lane(acting.drive_torque, i)};
+      const double command = loops[i].command(time, wanted, base::lane(motion.position, i),
+                                              base::lane(motion.velocity, i), own, k % every == 0,
+                                              time >= scenario.settling);
+      base::set_lane(torque, i, command);
+    }
+    for (int s = 0; s < substeps; ++s) advance(joint, motion, torque, step);
+  }
+  for (auto& loop : loops) loop.finish();
+}
+
+/// Neighbours of one structure, at most as many as there are lanes.
+std::vector<std::span<const Setup>> groups(const std::vector<Setup>& setups) {
+  std::vector<std::span<const Setup>> result;
+  for (std::size_t begin = 0; begin < setups.size();) {
+    std::size_t end = begin + 1;
+    while (end < setups.size() && end - begin < Wide::width &&
+           model::same_structure(setups[begin].joint, setups[end].joint)) {
+      ++end;
+    }
+    result.emplace_back(setups.data() + begin, end - begin);
+    begin = end;
+  }
+  return result;
+}
+
+}  // namespace
+
+void Scenario::validate() const {
+  const base::Requirement require("Scenario");
+  require.above_zero("control_period", control_period);
+  require.above_zero("integration_step", integration_step);
+  require.above_zero("duration", duration);
+  require.that(duration / control_period <= 1e9, "duration", duration,
+               "at most 1e9 control periods");
+  require.that(rounded(duration / control_period) >= 1, "duration", duration,
+               "at least a control period");
+  const double ratio = control_period / integration_step;
+  require.that(ratio > 0.999999 && ratio <= 1e6, "integration_step", integration_step,
+               "at most the control period, and a millionth of it at least");
+  require.that(std::fabs(ratio - std::floor(ratio + 0.5)) < 1e-6 * ratio, "integration_step",
+               integration_step, "a whole part of the control period");
+  require.that(sample_every >= 1, "sample_every", sample_every, "at least 1");
+  require.at_least_zero("settling", settling);
+  sensors.validate();
+}
+
+std::size_t Scenario::instants() const {
+  return static_cast<std::size_t>(rounded(duration / control_period));
+}
+
+int Scenario::substeps() const {
+  return static_cast<int>(rounded(control_period / integration_step));
+}
+
+void Setup::validate() const {
+  const base::Requirement require("Setup");
+  joint.validate();
+  require.that(gear_ratio != 0.0 && std::isfinite(gear_ratio), "gear_ratio", gear_ratio,
+               "finite and not 0");
+  require.that(sensor_gain != 0.0 && std::isfinite(sensor_gain), "sensor_gain", sensor_gain,
+               "finite and not 0");
+  require.finite("sensor_offset", sensor_offset);
+  require.finite("position", position);
+  require.finite("velocity", velocity);
+}
+
+std::vector<Outcome> simulate(const Scenario& scenario, const Trajectory& trajectory,
+                              const std::vector<Setup>& setups, bool signals, base::Pool& pool) {
+  scenario.validate();
+  for (const auto& setup : setups) setup.validate();
+  std::vector<Outcome> outcomes(setups.size());
+  const auto parts = groups(setups);
+  pool.for_each(parts.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto first = static_cast<std::size_t>(parts[i].data() - setups.data());
+      const std::span<Outcome> own(outcomes.data() + first, parts[i].size());
+      if (parts[i].size() == 1) {
+        run<double>(scenario, trajectory, parts[i], own, signals, pool.cancel());
+      } else {
+        run<Wide>(scenario, trajectory, parts[i], own, signals, pool.cancel());
+      }
+    }
+  });
+  return outcomes;
+}
+
+}  // namespace jointid::simulate

@@ -1,0 +1,157 @@
+#include "simulate/trajectory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "base/elementary.hpp"
+#include "base/require.hpp"
+
+namespace jointid::simulate {
+
+namespace {
+
+constexpr double kPi = 0x1.921fb54442d18p+1;
+constexpr base::Requirement require("Trajectory");
+
+/// Second derivatives at the knots of the natural cubic spline (tridiagonal elimination).
+Eigen::VectorXd bends(const Eigen::VectorXd& time, const Eigen::VectorXd& position) {
+  const Eigen::Index n = time.size();
+  Eigen::VectorXd bend = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd upper = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index i = 1; i + 1 < n; ++i) {
+    const double before = time[i] - time[i - 1];
+    const double after = time[i + 1] - time[i];
+    const double turn =
+        (position[i + 1] - position[i]) / after - (position[i] - position[i - 1]) / before;
+    const double pivot = 2.0 * (before + after) - before * upper[i - 1];
+    upper[i] = after / pivot;
+    bend[i] = (6.0 * turn - before * bend[i - 1]) / pivot;
+  }
+  for (Eigen::Index i = n - 2; i > 0; --i) bend[i] -= upper[i] * bend[i + 1];
+  return bend;
+}
+
+}  // namespace
+
+Trajectory::Trajectory(Form form, double duration) : form_(std::move(form)), duration_(duration) {
+  require.above_zero("duration", duration);
+}
+
+Trajectory Trajectory::multisine(Eigen::VectorXd amplitude, Eigen::VectorXd frequency,
+                                 Eigen::VectorXd phase, double offset, double duration) {
+  if (amplitude.size() == 0 || amplitude.size() != frequency.size() ||
+      amplitude.size() != phase.size()) {
+    throw std::invalid_argument(
+        "Trajectory: amplitude, frequency and phase must have the same number of values, at least "
+        "one, got " +
+        std::to_string(amplitude.size()) + ", " + std::to_string(frequency.size()) + " and " +
+        std::to_string(phase.size()));
+  }
+  for (Eigen::Index i = 0; i < amplitude.size(); ++i) {
+    require.finite("amplitude", amplitude[i]);
+    require.above_zero("frequency", frequency[i]);
+    require.finite("phase", phase[i]);
+  }
+  require.finite("offset", offset);
+  return {Multisine{std::move(amplitude), std::move(frequency), std::move(phase), offset},
+          duration};
+}
+
+Trajectory Trajectory::sigmoid(double distance, double rise, double duration) {
+  require.finite("distance", distance);
+  require.above_zero("rise", rise);
+  return {Sigmoid{distance, rise}, duration};
+}
+
+Trajectory Trajectory::step(double distance, double time, double duration) {
+  require.finite("distance", distance);
+  require.at_least_zero("time", time);
+  return {Pieces{{-1.0, 0.0, 0.0, 0.0, 0.0}, {time, distance, 0.0, 0.0, 0.0}}, duration};
+}
+
+Trajectory Trajectory::trapezoid(double distance, double velocity, double acceleration,
+                                 double duration) {
+  require.finite("distance", distance);
+  require.above_zero("velocity", velocity);
+  require.above_zero("acceleration", acceleration);
+  const double sign = distance < 0.0 ? -1.0 : 1.0;
+  const double length = std::fabs(distance);
+  const double peak = std::min(velocity, std::sqrt(acceleration * length));
+  const double ramp = peak / acceleration;
+  const double cruise = length > 0.0 ? length / peak - ramp : 0.0;
+  const double covered = 0.5 * peak * ramp;
+  return {Pieces{{0.0, 0.0, 0.0, sign * acceleration, 0.0},
+                 {ramp, sign * covered, sign * peak, 0.0, 0.0},
+                 {ramp + cruise, sign * (covered + peak * cruise), sign * peak,
+                  -sign * acceleration, 0.0},
+                 {2.0 * ramp + cruise, distance, 0.0, 0.0, 0.0}},
+          duration};
+}
+
+Trajectory Trajectory::samples(const Eigen::VectorXd& time, const Eigen::VectorXd& position) {
+  const Eigen::Index n = time.size();
+  if (n < 2 || position.size() != n) {
+    throw std::invalid_argument(
+        "Trajectory: time and position must have the same number of samples, at least two, got " +
+        std::to_string(n) + " and " + std::to_string(position.size()));
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    require.finite("time", time[i]);
+    require.finite("position", position[i]);
+    if (i > 0) require.that(time[i] > time[i - 1], "time", time[i], "strictly increasing");
+  }
+  const Eigen::VectorXd bend = bends(time, position);
+  Pieces pieces;
+  pieces.reserve(static_cast<std::size_t>(n));
+  for (Eigen::Index i = 0; i + 1 < n; ++i) {
+    const double length = time[i + 1] - time[i];
+    const double slope =
+        (position[i + 1] - position[i]) / length - length * (2.0 * bend[i] + bend[i + 1]) / 6.0;
+    pieces.push_back(
+        {time[i] - time[0], position[i], slope, bend[i], (bend[i + 1] - bend[i]) / length});
+  }
+  pieces.push_back({time[n - 1] - time[0], position[n - 1], 0.0, 0.0, 0.0});
+  return {std::move(pieces), time[n - 1] - time[0]};
+}
+
+Reference Trajectory::at(double time) const {
+  return std::visit([&](const auto& form) { return value(form, time); }, form_);
+}
+
+Reference Trajectory::value(const Multisine& form, double time) {
+  Reference wanted{form.offset, 0.0, 0.0};
+  for (Eigen::Index i = 0; i < form.amplitude.size(); ++i) {
+    const double rate = form.frequency[i];
+    const double angle = rate * time + form.phase[i];
+    const double sine = form.amplitude[i] * base::sin(angle);
+    wanted.position += sine;
+    wanted.velocity += form.amplitude[i] * rate * base::cos(angle);
+    wanted.acceleration -= rate * rate * sine;
+  }
+  return wanted;
+}
+
+Reference Trajectory::value(const Sigmoid& form, double time) {
+  if (time >= form.rise) return {form.distance, 0.0, 0.0};
+  const double rate = kPi / form.rise;
+  const double angle = rate * std::max(time, 0.0);
+  const double half = 0.5 * form.distance;
+  return {half * (1.0 - base::cos(angle)), half * rate * base::sin(angle),
+          half * rate * rate * base::cos(angle)};
+}
+
+Reference Trajectory::value(const Pieces& form, double time) {
+  const auto after = std::upper_bound(form.begin(), form.end(), time,
+                                      [](double t, const Piece& piece) { return t < piece.start; });
+  if (after == form.begin()) return {form.front().position, 0.0, 0.0};
+  const Piece& piece = *(after - 1);
+  const double t = time - piece.start;
+  return {
+      piece.position + t * (piece.velocity + t * (0.5 * piece.acceleration + t * piece.jerk / 6.0)),
+      piece.velocity + t * (piece.acceleration + 0.5 * t * piece.jerk),
+      piece.acceleration + t * piece.jerk};
+}
+
+}  // namespace jointid::simulate

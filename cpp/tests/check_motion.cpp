@@ -1,0 +1,168 @@
+// One integration step: a stuck joint stays, friction takes energy only, the order holds through
+// reversals, bristles are stable at any stiffness.
+
+#include "simulate/motion.hpp"
+
+#include <bit>
+#include <cstdint>
+#include <string>
+
+#include "base/random.hpp"
+#include "check.hpp"
+#include "simulated.hpp"
+
+namespace jointid::tests {
+namespace {
+
+using model::Joint;
+using simulate::MotionOf;
+using Motion = MotionOf<double>;
+
+Joint thesis() {
+  return thesis_setup().joint;
+}
+
+std::uint64_t bits(double x) {
+  return std::bit_cast<std::uint64_t>(x);
+}
+
+/// Position after `time` under a torque of time.
+template <class Torque>
+Motion moved(const Joint& joint, Motion motion, double time, int steps, Torque torque) {
+  const double h = time / steps;
+  for (int k = 0; k < steps; ++k) simulate::advance(joint, motion, torque((k + 0.5) * h), h);
+  return motion;
+}
+
+CHECK_CASE("motion: below breakaway a resting joint keeps its bits") {
+  const Joint joint = thesis();
+  Motion motion;
+  motion.position = 0.123456789;
+  const auto position = bits(motion.position);
+  const double weight = simulate::gravity(joint, motion.position);
+  base::Random random(1, 0, 0, 0);
+  for (int k = 0; k < 10000; ++k) {
+    const double torque = weight + 44.999 * (2.0 * random.uniform() - 1.0);
+    simulate::advance(joint, motion, torque, 1e-3);
+    CHECK(bits(motion.position) == position);
+    CHECK(bits(motion.velocity) == 0);
+    CHECK(simulate::dynamics(joint, motion, torque).acceleration == 0.0);
+    CHECK_CLOSE(simulate::dynamics(joint, motion, torque).friction, torque - weight, 1e-12);
+  }
+  simulate::advance(joint, motion, weight + 45.001, 1e-3);
+  CHECK(motion.velocity > 0.0);
+}
+
+CHECK_CASE("motion: a joint that coasts stops, once, and stays") {
+  Joint joint = thesis();
+  joint.weights.clear();
+  Motion motion;
+  motion.velocity = 0.7;
+  int stops = 0;
+  for (int k = 0; k < 5000; ++k) {
+    const double before = motion.velocity;
+    simulate::advance(joint, motion, 0.0, 1e-3);
+    CHECK(motion.velocity >= 0.0);
+    CHECK(motion.velocity <= before);
+    if (before != 0.0 && motion.velocity == 0.0) ++stops;
+  }
+  CHECK(stops == 1);
+  CHECK(motion.velocity == 0.0);
+}
+
+CHECK_CASE("motion: asymmetric joints break away where their direction says") {
+  Joint joint = thesis();
+  joint.weights.clear();
+  joint.coulomb_negative = 5.0;
+  joint.static_negative = 1.0;
+  joint.load_friction = 0.5;
+  Motion motion;
+  simulate::advance(joint, motion, 89.0, 1e-3);  // 45 + half the torque
+  CHECK(motion.velocity == 0.0);
+  simulate::advance(joint, motion, -11.9, 1e-3);  // 6 + half the torque
+  CHECK(motion.velocity == 0.0);
+  simulate::advance(joint, motion, -12.1, 1e-3);
+  CHECK(motion.velocity < 0.0);
+}
+
+CHECK_CASE("motion: friction takes energy only, whatever the joint and the step") {
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    base::Random random(seed, 0, 0, 0);
+    const auto up_to = [&](double most) { return most * random.uniform(); };
+    Joint joint;
+    joint.inertia = 0.01 + up_to(3.0);
+    joint.coulomb_positive = up_to(50.0);
+    joint.coulomb_negative = up_to(50.0);
+    joint.static_positive = up_to(40.0);
+    joint.static_negative = up_to(40.0);
+    joint.viscous_positive = up_to(40.0);
+    joint.viscous_negative = up_to(40.0);
+    joint.stribeck = up_to(1000.0);
+    joint.load_friction = up_to(0.3);
+    joint.decay = seed % 3 == 0 ? model::Decay::general : model::Decay::gaussian;
+    joint.stribeck_velocity = 0.001 + up_to(1.0);
+    joint.stribeck_exponent = 0.3 + up_to(2.0);
+    joint.bristles = seed % 4 == 0;
+    joint.bristle_stiffness = 1.0 + up_to(1e6);
+    const double h = 1e-5 + up_to(5e-3);
+    Motion motion;
+    motion.velocity = 4.0 * random.uniform() - 2.0;
+    const auto stored = [&] {
+      const double spring =
+          joint.bristles ? 0.5 * joint.bristle_stiffness * motion.bristle * motion.bristle : 0.0;
+      return 0.5 * joint.inertia * motion.velocity * motion.velocity + spring;
+    };
+    for (int k = 0; k < 300; ++k) {
+      const double torque = k < 150 ? 100.0 * (random.uniform() - 0.5) : 0.0;
+      const double before = stored();
+      const double start = motion.position;
+      simulate::advance(joint, motion, torque, h);
+      // Nothing else acts: what is gained beyond the torque's work would be friction's.
+      const double gained = stored() - before - torque * (motion.position - start);
+      CHECK_WITH(gained <= 1e-11 * (1.0 + before),
+                 "seed " + std::to_string(seed) + ": " + std::to_string(gained));
+    }
+  }
+}
+
+CHECK_CASE("motion: second order, with reversals, under gravity and Stribeck friction") {
+  for (const bool bristles : {false, true}) {
+    Joint joint = thesis();
+    joint.bristles = bristles;
+    joint.bristle_stiffness = 2e3;
+    joint.bristle_damping = 50.0;
+    joint.harmonics = {{3.0, 0.5, 1.0}};
+    const auto torque = [](double time) { return 90.0 * base::sin(5.0 * time); };
+    const double fine = moved(joint, {}, 3.0, 192000, torque).position;
+    double first = 0.0;
+    double last = 0.0;
+    for (const int steps : {3000, 6000, 12000, 24000}) {
+      const double error = std::fabs(moved(joint, {}, 3.0, steps, torque).position - fine);
+      // Four is the second order's factor; where a reversal falls in its step makes it uneven, and
+      // with bristles a step's luck can be better than its order.
+      if (last > 0.0 && !bristles) CHECK_WITH(error < last / 2.5, std::to_string(last / error));
+      if (first == 0.0) first = error;
+      last = error;
+    }
+    CHECK_WITH(last < first / 30.0, std::to_string(first / last));
+    CHECK_CLOSE(last, 0.0, 1e-6);
+  }
+}
+
+CHECK_CASE("motion: stiff bristles do not blow up and hold the load") {
+  Joint joint = thesis();
+  joint.bristles = true;
+  joint.bristle_damping = 10.0;
+  for (const double stiffness : {1e3, 1e6, 1e9, 1e12}) {
+    joint.bristle_stiffness = stiffness;
+    Motion motion = moved(joint, {}, 2.0, 2000, [](double) { return 20.0; });
+    CHECK_WITH(std::fabs(motion.velocity) < 1e-3, std::to_string(stiffness));
+    CHECK_WITH(std::fabs(motion.position) < 60.0 / stiffness + 1e-3, std::to_string(stiffness));
+    motion = moved(joint, {}, 2.0, 2000, [](double time) { return 120.0 * base::sin(7.0 * time); });
+    CHECK(std::fabs(motion.velocity) < 10.0);
+    CHECK(std::fabs(stiffness * motion.bristle) < 46.0);
+  }
+}
+
+}  // namespace
+}  // namespace jointid::tests

@@ -1,0 +1,194 @@
+"""The command `sweep`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointid.cli_arguments import (
+    TEXT,
+    check_folder,
+    fixed_values,
+    load_all,
+    number_or_text,
+    pair,
+    reading_arguments,
+    whole_seed,
+)
+from jointid.cli_simulation import scenario_arguments, scenario_of
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from jointid.study.study_result import Study
+
+
+def add_sweep(commands: Any) -> None:
+    """Add the command's grammar."""
+    sweep = commands.add_parser(
+        "sweep",
+        help="identify with many settings, several times each",
+        epilog=(
+            "examples:\n"
+            "  jointid sweep run.csv --joint joint.toml --grid ga.population=20,50,100 --grid ga.generations=50,500\n"
+            "  jointid sweep run.csv --joint joint.toml --grid windows=100,400,1600 --trials 1 --table sweep.csv\n"
+            "  jointid sweep --simulate joint.toml --trajectory thesis:amplitude=60deg,cycle=3 \\\n"
+            "      --grid sensors.torque_noise=0.1,0.5,2 --trials 20 --output study.jsonl\n"
+            "  jointid sweep --simulate joint.toml … --output study.jsonl --resume   (goes on where it was)"
+        ),
+        formatter_class=TEXT,
+    )
+    sweep.add_argument(
+        "recordings",
+        type=Path,
+        nargs="*",
+        metavar="recording",
+        help="recording: .csv, .csv.gz, .npz, .mat or .parquet; several are fitted as one",
+    )
+    reading_arguments(sweep)
+    sweep.add_argument(
+        "--simulate",
+        type=Path,
+        metavar="JOINT",
+        help="instead of recordings: simulate this joint file's joint anew for each trial",
+    )
+    scenario_arguments(sweep)
+    sweep.add_argument("--joint", type=Path, help="joint file (.toml) of what is known")
+    sweep.add_argument(
+        "--grid",
+        action="append",
+        type=pair,
+        default=[],
+        metavar="SETTING=VALUE,…",
+        help="a setting to sweep, such as ga.population, windows, method, sensors.torque_noise",
+    )
+    sweep.add_argument("--trials", type=int, default=10, help="of each combination (10)")
+    for name, told in (
+        ("--ga", "default, thesis or thesis_code"),
+        ("--method", "ga (default), separable or random"),
+        ("--model", "friction model"),
+        ("--residual", "sensor or torque"),
+    ):
+        sweep.add_argument(name, help=told)
+    sweep.add_argument("--windows", type=number_or_text, help="number (400) or duration (0.05) [s]")
+    sweep.add_argument(
+        "--set",
+        action="append",
+        type=pair,
+        default=[],
+        metavar="PARAMETER=VALUE",
+        help="fix a parameter (SI)",
+    )
+    sweep.add_argument("--stderr", action="store_true", help="standard errors, too")
+    sweep.add_argument(
+        "--tracking",
+        action="store_true",
+        help="of --simulate: track again with what was identified",
+    )
+    sweep.add_argument("--seed", type=whole_seed, default=0, help="of the first trial (0)")
+    sweep.add_argument("--threads", type=int, help="0: all")
+    sweep.add_argument("--workers", type=int, help="processes to spread the trials over")
+    sweep.add_argument("--output", type=Path, help="a .jsonl file that grows with each trial")
+    sweep.add_argument("--resume", action="store_true", help="go on with the file of --output")
+    sweep.add_argument("--table", type=Path, help="write the table here: .csv or .parquet")
+    sweep.add_argument(
+        "--plot", type=Path, help="draw the penalty over the first settings: .png, .pdf"
+    )
+    sweep.add_argument("--json", action="store_true", help="print the summary as JSON")
+    sweep.add_argument("--quiet", action="store_true", help="no progress bar")
+
+
+def sweep(arguments: argparse.Namespace) -> None:
+    """Identify with many settings."""
+    from jointid.errors import InputError
+    from jointid.joint.joint import Joint
+    from jointid.progress import StudyProgress
+    from jointid.study import sweeping
+
+    for option in ("output", "table", "plot"):
+        check_folder(f"--{option}", getattr(arguments, option))
+    if arguments.table is not None and arguments.table.suffix not in (".csv", ".parquet"):
+        raise InputError(f"--table {arguments.table}: a table is written as .csv or .parquet")
+    if (arguments.simulate is None) == (not arguments.recordings):
+        raise InputError("give recordings, or --simulate JOINT, one of the two")
+    fixed = fixed_values(arguments)
+    options = {
+        name: getattr(arguments, name)
+        for name in ("ga", "method", "model", "residual", "windows")
+        if getattr(arguments, name) is not None
+    }
+    subject: Any
+    if arguments.simulate is not None:
+        subject = scenario_of(arguments.simulate, arguments)
+    else:
+        subject = load_all(arguments.recordings, arguments)
+    with (
+        _workers(arguments.workers) as executor,
+        StudyProgress(enabled=not arguments.quiet) as progress,
+    ):
+        study = sweeping.sweep(
+            subject,
+            Joint.load(arguments.joint) if arguments.joint is not None else None,
+            grid=_grid(arguments.grid),
+            trials=arguments.trials,
+            seed=arguments.seed,
+            stderr=arguments.stderr,
+            tracking=arguments.tracking,
+            executor=executor,
+            threads=arguments.threads,
+            callback=progress,
+            output=arguments.output,
+            resume=arguments.resume,
+            **options,
+            **({"parameters": fixed} if fixed else {}),
+        )
+    _write(study, arguments)
+
+
+def _write(study: Study, arguments: argparse.Namespace) -> None:
+    from jointid.plotting_study import sweep as draw
+
+    if arguments.table is not None:
+        study.save(arguments.table)
+    if arguments.plot is not None:
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(6.4, 4.0), constrained_layout=True)
+        y = study.swept[1] if len(study.swept) > 1 else None
+        draw(study, y=y, axes=figure.subplots())
+        figure.savefig(arguments.plot, dpi=160)
+    summary = study.summary()
+    print(json.dumps(summary.asdict(), indent=1, ensure_ascii=False) if arguments.json else summary)
+
+
+def _workers(count: int | None) -> Executor | nullcontext[None]:
+    from jointid.errors import InputError
+
+    if count is None:
+        return nullcontext()
+    if not 1 <= count <= 1024:
+        raise InputError(f"--workers must be 1 to 1024, got {count}")
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    # A fresh interpreter each: a fork of a process with threads may hang.
+    return ProcessPoolExecutor(count, mp_context=get_context("spawn"))
+
+
+def _grid(pairs: list[tuple[str, str]]) -> dict[str, list[Any]]:
+    from jointid.errors import InputError
+
+    grid: dict[str, list[Any]] = {}
+    for name, values in pairs:
+        if name in grid:
+            raise InputError(f"--grid {name} is given twice")
+        grid[name] = [_value(text) for text in values.split(",")]
+    return grid
+
+
+def _value(text: str) -> Any:
+    words = {"true": True, "false": False, "none": None}
+    return words[text] if text in words else number_or_text(text)

@@ -1,0 +1,162 @@
+"""An identification ready to search: recordings, terms, windows and domain put together."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.errors import InputError
+from jointid.estimate.estimate import Estimate
+from jointid.identification.engine import Outcome
+from jointid.identification.inference import infer
+from jointid.identification.model_terms import Request, TermChoice, choose_terms
+from jointid.identification.problem import Problem, Windows, listed, whole_number
+from jointid.identification.search import Search
+from jointid.identification.search_domain import SearchDomain, domain_for
+from jointid.joint.joint import Joint
+from jointid.joint.parameters import Parameter
+from jointid.recording.recording import Recording
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Prepared:
+    """What to search, and in which domain.
+
+    Attributes
+    ----------
+    problem : Problem
+    penalty : Penalty
+        The direct sum over the windows.
+    domain : SearchDomain
+    windows : int, float, str, WindowOptions or None
+        As they were asked for.
+    """
+
+    problem: Problem
+    penalty: _core.Penalty
+    domain: SearchDomain
+    windows: Windows
+
+    def estimate(self, search: Search, outcome: Outcome, started: float) -> Estimate:
+        """All that follows from where a search ended: intervals, checks, warnings.
+
+        `started` is a reading of `time.perf_counter`.
+        """
+        return infer(
+            problem=self.problem,
+            penalty=self.penalty,
+            domain=self.domain,
+            best=outcome.best,
+            shifts=self._window_shifts(outcome.best),
+            convergence=outcome.convergence,
+            status=outcome.status,
+            message=outcome.message,
+            settings=self._settings(search),
+            seconds=time.perf_counter() - started,
+        )
+
+    def _settings(self, search: Search) -> dict[str, Any]:
+        problem, penalty, choice = self.problem, self.penalty, self.problem.choice
+        runs = problem.recordings
+        return {
+            "version": _core.__version__,
+            "kind": runs[0].kind,
+            "method": search.method,
+            "model": choice.model,
+            "terms": list(choice.terms),
+            "asymmetric": choice.asymmetric,
+            "ripple": list(choice.ripple),
+            "harmonics": list(choice.harmonics),
+            "load_friction": choice.load_friction,
+            "per_recording": list(choice.per_recording),
+            "dropped": choice.dropped,
+            "residual": choice.residual,
+            "windows": penalty.window_duration,
+            "cumulative": penalty.cumulative,
+            "torque_hold": problem.torque_hold,
+            "mask_standstill": problem.mask_standstill,
+            "seed": search.seed,
+            "ga": None if search.method == "separable" else search.options.asdict(),
+            "bounds_from_data": list(self.domain.from_data),
+            "recordings": [{"name": run.name, "fingerprint": run.fingerprint} for run in runs],
+        }
+
+    def _window_shifts(self, best: Array) -> tuple[Array | None, Array | None]:
+        """How the answer moves when windows are halved and doubled; None where such cannot be cut."""
+        problem, domain = self.problem, self.domain
+        options = problem.window_options(self.windows)
+        shifts: list[Array | None] = []
+        for factor in (0.5, 2.0):
+            try:
+                other = problem.parts(options.replace(factor=options.factor * factor))
+            except InputError:  # fewer windows than parameters, or longer than the recording
+                shifts.append(None)
+                continue
+            if other.window_count == self.penalty.window_count:
+                shifts.append(None)
+                continue
+            found = other.refit(domain.lower, domain.upper, best, threads=problem.threads)
+            shifts.append(found - best)
+        return shifts[0], shifts[1]
+
+
+def prepare(
+    recordings: Recording | Sequence[Recording],
+    joint: Joint | None = None,
+    *,
+    model: str | None = None,
+    asymmetric: bool | None = None,
+    ripple: Collection[float] | None = None,
+    harmonics: Collection[float] | None = None,
+    load_friction: bool | None = None,
+    per_recording: Collection[str] = (),
+    parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
+    residual: str | None = None,
+    windows: Windows = None,
+    torque_hold: str | None = None,
+    mask_standstill: bool = True,
+    threads: int = 0,
+) -> Prepared:
+    """Put an identification together; parameters as in `identify`.
+
+    Raises
+    ------
+    InputError
+        Anything that cannot be used, in one sentence.
+    """
+    runs = listed(recordings)
+    if joint is not None and not isinstance(joint, Joint):
+        raise InputError(
+            f"joint must be a Joint, got {joint!r}; read a file with jointid.Joint.load"
+        )
+    if not isinstance(mask_standstill, bool):
+        raise InputError(f"mask_standstill must be True or False, got {mask_standstill!r}")
+    request = Request(
+        model=model,
+        residual=residual,
+        asymmetric=asymmetric,
+        ripple=ripple,
+        harmonics=harmonics,
+        load_friction=load_friction,
+        per_recording=per_recording,
+    )
+    choice: TermChoice = choose_terms(runs, joint, request)
+    problem = Problem(
+        recordings=runs,
+        joint=joint,
+        choice=choice,
+        torque_hold=torque_hold,
+        mask_standstill=mask_standstill,
+        threads=whole_number("threads", threads, 0, 1024),
+    )
+    penalty = problem.penalty(windows)
+    domain = domain_for(penalty, joint, parameters, problem.peak_speed)
+    return Prepared(problem=problem, penalty=penalty, domain=domain, windows=windows)

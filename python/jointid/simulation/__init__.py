@@ -1,0 +1,1 @@
+"""Simulation: a joint in closed loop, its sensors, controllers and desired motions."""

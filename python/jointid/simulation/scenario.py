@@ -1,0 +1,177 @@
+"""A closed loop with everything but the seed decided: what a study simulates again and again."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
+from typing import Any, Self, get_args
+
+from jointid import _core
+from jointid.errors import InputError
+from jointid.joint.joint import Joint
+from jointid.joint.link import Link
+from jointid.joint.parameters import suggestion
+from jointid.simulation.arguments import Controller
+from jointid.simulation.batch import SimulatedBatch, simulate_batch
+from jointid.simulation.plant import Bristle, control_estimates
+from jointid.simulation.trajectory import Trajectory
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """Joint, controller, trajectory and sensors: all of a simulation but its seed.
+
+    Parameters
+    ----------
+    joint : Joint
+        The simulated one, with its true parameters.
+    controller : OpenLoop, Pd, Pid, CompensatedPid, AdaptiveRobust or LugreObserver
+    trajectory : Trajectory
+    sensors : Sensors
+        Default: exact signals.
+    duration, control_period, sample_period, integration_step, payload, bristle, position, velocity
+        As in `simulate`.
+
+    Raises
+    ------
+    InputError
+        Joint, controller, trajectory or sensors are something else.
+    """
+
+    joint: Joint
+    controller: Controller
+    trajectory: Trajectory
+    sensors: _core.Sensors = field(default_factory=_core.Sensors)
+    duration: float | None = field(default=None, kw_only=True)
+    control_period: float = field(default=1e-3, kw_only=True)
+    sample_period: float | None = field(default=None, kw_only=True)
+    integration_step: float | None = field(default=None, kw_only=True)
+    payload: Link | float = field(default=0.0, kw_only=True)
+    bristle: Bristle | None = field(default=None, kw_only=True)
+    position: float | None = field(default=None, kw_only=True)
+    velocity: float = field(default=0.0, kw_only=True)
+
+    def __post_init__(self) -> None:
+        known: dict[str, tuple[type, ...]] = {
+            "joint": (Joint,),
+            "controller": get_args(Controller),
+            "trajectory": (Trajectory,),
+            "sensors": (_core.Sensors,),
+        }
+        for name, kinds in known.items():
+            if not isinstance(getattr(self, name), kinds):
+                wanted = ", ".join(kind.__name__ for kind in kinds)
+                raise InputError(
+                    f"Scenario: {name} is {getattr(self, name)!r}; one of {wanted} is expected"
+                )
+
+    def simulate(
+        self,
+        seeds: int | Sequence[int] = 0,
+        *,
+        controllers: Controller | Sequence[Controller] | None = None,
+        recordings: bool = True,
+        threads: int = 0,
+    ) -> SimulatedBatch:
+        """Simulate, once for each seed or controller; each is the same, bit for bit, as `simulate`.
+
+        Parameters
+        ----------
+        seeds : int or sequence of int
+            Of the sensors' noise. Default 0.
+        controllers : optional
+            Instead of the scenario's own; as many as seeds, or one.
+        recordings : bool
+            Whether to keep the signals. Default True.
+        threads : int
+            0 (default): all.
+
+        Raises
+        ------
+        InputError
+            As in `simulate`.
+        """
+        return simulate_batch(
+            self.joint,
+            self.controller if controllers is None else controllers,
+            self.trajectory,
+            duration=self.duration,
+            control_period=self.control_period,
+            sample_period=self.sample_period,
+            integration_step=self.integration_step,
+            sensors=self.sensors,
+            payload=self.payload,
+            bristle=self.bristle,
+            position=self.position,
+            velocity=self.velocity,
+            seeds=seeds,
+            recordings=recordings,
+            threads=threads,
+        )
+
+    def options(self) -> list[str]:
+        """Names that `changed` knows; ``truth.NAME`` is a true parameter of the joint."""
+        own = [item.name for item in fields(self)]
+        for part in ("sensors", "controller"):
+            own += [f"{part}.{name}" for name in getattr(self, part).asdict()]
+        return own + [f"truth.{name}" for name in self.joint.parameters]
+
+    def changed(self, changes: Mapping[str, Any]) -> Self:
+        """Return the scenario with other fields, ``sensors.FIELD``, ``controller.FIELD`` or ``truth.PARAMETER``.
+
+        Whole fields are changed first, then what is inside them.
+
+        Raises
+        ------
+        InputError
+            A name that is not known, or a value that cannot be used.
+        """
+        known = self.options()
+        for name in changes:
+            if name not in known and "." not in name:
+                raise InputError(f"Scenario: '{name}' is no field; {suggestion(name, known)}")
+        scenario = replace(self, **{n: v for n, v in changes.items() if "." not in n})
+        inside: dict[str, dict[str, Any]] = {}
+        for name, value in changes.items():
+            part, _, field_name = name.partition(".")
+            if field_name:
+                inside.setdefault(part, {})[field_name] = value
+        for part, values in inside.items():
+            scenario = scenario._with(part, values)
+        return scenario
+
+    def _with(self, part: str, values: Mapping[str, Any]) -> Self:
+        if part == "truth":
+            return replace(self, joint=self.joint.with_parameters(values))
+        if part not in ("sensors", "controller"):
+            raise InputError(
+                f"Scenario: '{part}.{next(iter(values))}' is not known; what is inside 'sensors', "
+                "'controller' or 'truth' can be changed"
+            )
+        try:
+            return replace(self, **{part: getattr(self, part).replace(**values)})
+        except (ValueError, TypeError) as error:
+            raise InputError(f"Scenario: {error}") from None
+
+    @property
+    def truth(self) -> dict[str, float]:
+        """True values of the joint's parameters, where they have one [SI]."""
+        values = ((name, p.value) for name, p in self.joint.parameters.items())
+        return {name: value for name, value in values if value is not None}
+
+    def believing(self, joint: Joint) -> Controller:
+        """Return the controller with what `control_estimates` reads from a joint, e.g. an estimate's.
+
+        Raises
+        ------
+        InputError
+            The controller uses no estimates, or the joint lacks a value.
+        """
+        estimates = control_estimates(joint)
+        used = {n: v for n, v in estimates.items() if n in self.controller.asdict()}
+        if "coulomb" not in used:
+            raise InputError(
+                f"Scenario: {type(self.controller).__name__} uses no estimates of friction, so there is "
+                "nothing to improve; use CompensatedPid, AdaptiveRobust or LugreObserver"
+            )
+        return self.controller.replace(**used)

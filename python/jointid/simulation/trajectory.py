@@ -1,0 +1,263 @@
+"""Desired motions of a joint."""
+
+import functools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from jointid import _core
+from jointid.errors import InputError
+from jointid.recording.recording import Recording
+
+FloatArray = npt.NDArray[np.float64]
+
+_MAKE: dict[str, Callable[..., _core.Trajectory]] = {
+    "multisine": _core.Trajectory.multisine,
+    "sigmoid": _core.Trajectory.sigmoid,
+    "step": _core.Trajectory.step,
+    "trapezoid": _core.Trajectory.trapezoid,
+    "samples": _core.Trajectory.samples,
+}
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """A desired motion over time; made by the class methods.
+
+    For open-loop control the values are torques [N·m] instead of angles.
+
+    Parameters
+    ----------
+    form : str
+        What the class methods are named after.
+    arguments : tuple
+        Names and values that the core builds it from.
+    """
+
+    form: str
+    arguments: tuple[tuple[str, Any], ...]
+
+    @classmethod
+    def thesis(
+        cls, amplitude: float = math.radians(20.0), *, cycle: float = 6.0, duration: float = 12.0
+    ) -> Self:
+        """Return amplitude / 1.3 · (sin wt − ½ sin 2wt), which starts at rest (thesis 6-1).
+
+        Parameters
+        ----------
+        amplitude : float
+            [rad]. Default 20°.
+        cycle : float
+            Time of a cycle [s]. Default 6.
+        duration : float
+            [s]. Default 12.
+        """
+        rate = 2.0 * math.pi / _positive("cycle", cycle)
+        size = _number("amplitude", amplitude) / 1.3
+        return cls._sines((size, -0.5 * size), (rate, 2.0 * rate), (0.0, 0.0), 0.0, duration)
+
+    @classmethod
+    def sine(
+        cls, amplitude: float, frequency: float, *, offset: float = 0.0, duration: float
+    ) -> Self:
+        """Return offset + amplitude · sin(2π · frequency · t).
+
+        Parameters
+        ----------
+        amplitude, offset : float
+            [rad]
+        frequency : float
+            [Hz]
+        duration : float
+            [s]
+        """
+        rate = 2.0 * math.pi * _positive("frequency", frequency)
+        return cls._sines((_number("amplitude", amplitude),), (rate,), (0.0,), offset, duration)
+
+    @classmethod
+    def multisine(
+        cls,
+        amplitude: float,
+        *,
+        lowest: float,
+        highest: float,
+        count: int = 8,
+        offset: float = 0.0,
+        duration: float,
+    ) -> Self:
+        """Return sines of equal size, evenly spaced in frequency, with Schroeder's phases.
+
+        Parameters
+        ----------
+        amplitude : float
+            Largest deviation from the start [rad].
+        lowest, highest : float
+            Frequencies of the first and the last sine [Hz].
+        count : int
+            How many sines. Default 8.
+        offset : float
+            Where it starts [rad]. Default 0.
+        duration : float
+            [s]
+        """
+        if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= 10_000:
+            raise InputError(
+                f"Trajectory: count is {count!r}; a whole number from 1 to 10000 is expected"
+            )
+        low, high = _positive("lowest", lowest), _positive("highest", highest)
+        if low > high:
+            raise InputError(f"Trajectory: lowest is {low!r}, above highest {high!r}; swap them")
+        rate = 2.0 * np.pi * np.linspace(low, high, count)
+        number = np.arange(count)
+        phase = -np.pi * number * (number + 1) / count
+        # Sampled finely enough that the peak is found to a few thousandths.
+        time = np.linspace(0.0, _positive("duration", duration), int(20 * high * duration) + 2)
+        shape = np.sin(np.outer(time, rate) + phase).sum(axis=1) - np.sin(phase).sum()
+        size = _number("amplitude", amplitude) / float(np.abs(shape).max())
+        start = offset - size * float(np.sin(phase).sum())
+        return cls._sines(
+            (size,) * count, tuple(rate.tolist()), tuple(phase.tolist()), start, duration
+        )
+
+    @classmethod
+    def sigmoid(cls, distance: float, *, rise: float, duration: float) -> Self:
+        """Return a move by `distance` in the time `rise`: half a cosine, then rest.
+
+        Parameters
+        ----------
+        distance : float
+            [rad]
+        rise, duration : float
+            [s]
+        """
+        return cls._made("sigmoid", distance=distance, rise=rise, duration=duration)
+
+    @classmethod
+    def step(cls, distance: float, *, time: float = 0.0, duration: float) -> Self:
+        """Return a jump by `distance` [rad] at `time` [s]."""
+        return cls._made("step", distance=distance, time=time, duration=duration)
+
+    @classmethod
+    def trapezoid(
+        cls, distance: float, *, velocity: float, acceleration: float, duration: float
+    ) -> Self:
+        """Return a move by `distance` with trapezoidal velocity, then rest.
+
+        Parameters
+        ----------
+        distance : float
+            [rad]
+        velocity : float
+            At most [rad/s].
+        acceleration : float
+            [rad/s²]
+        duration : float
+            [s]
+        """
+        return cls._made(
+            "trapezoid",
+            distance=distance,
+            velocity=velocity,
+            acceleration=acceleration,
+            duration=duration,
+        )
+
+    @classmethod
+    def from_samples(cls, time: npt.ArrayLike, position: npt.ArrayLike) -> Self:
+        """Return the natural cubic spline through samples; its clock starts at the first.
+
+        Parameters
+        ----------
+        time : array_like, shape (n,)
+            [s], strictly increasing.
+        position : array_like, shape (n,)
+            [rad]
+        """
+        return cls._made(
+            "samples", time=_samples("time", time), position=_samples("position", position)
+        )
+
+    @classmethod
+    def from_recording(cls, recording: Recording) -> Self:
+        """Return what a recording, read from a file perhaps, was to follow: its reference, else its position."""
+        followed = recording.position if recording.reference is None else recording.reference
+        return cls.from_samples(recording.time, followed)
+
+    @property
+    def duration(self) -> float:
+        """How long it lasts [s]."""
+        return self.core.duration
+
+    @functools.cached_property
+    def core(self) -> _core.Trajectory:
+        """The core's object."""
+        return _MAKE[self.form](**dict(self.arguments))
+
+    def sample(self, time: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return position [rad], velocity [rad/s] and acceleration [rad/s²] at some times [s]."""
+        wanted = self.core.sample(np.asarray(time, dtype=np.float64))
+        return wanted[:, 0], wanted[:, 1], wanted[:, 2]
+
+    @classmethod
+    def _sines(
+        cls,
+        amplitude: Sequence[float],
+        frequency: Sequence[float],
+        phase: Sequence[float],
+        offset: float,
+        duration: float,
+    ) -> Self:
+        return cls._made(
+            "multisine",
+            amplitude=tuple(amplitude),
+            frequency=tuple(frequency),
+            phase=tuple(phase),
+            offset=offset,
+            duration=duration,
+        )
+
+    @classmethod
+    def _made(cls, form: str, **arguments: Any) -> Self:
+        for name, value in arguments.items():
+            if not isinstance(value, tuple):
+                arguments[name] = _number(name, value)
+        trajectory = cls(form, tuple(arguments.items()))
+        try:
+            _ = trajectory.core  # what is wrong is told now
+        except ValueError as error:
+            raise InputError(str(error)) from None
+        return trajectory
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.form, self.arguments)
+
+
+def _number(name: str, value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
+        raise InputError(f"Trajectory: {name} is {value!r}; a number is expected")
+    return float(value)
+
+
+def _positive(name: str, value: object) -> float:
+    number = _number(name, value)
+    if not (0.0 < number < math.inf):
+        raise InputError(f"Trajectory: {name} is {number!r}; more than 0 is expected")
+    return number
+
+
+def _samples(name: str, values: npt.ArrayLike) -> tuple[float, ...]:
+    try:
+        array = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"Trajectory: {name} does not hold numbers; an array of floats is expected"
+        ) from None
+    if array.ndim != 1:
+        raise InputError(
+            f"Trajectory: {name} has the shape {array.shape}; one dimension is expected"
+        )
+    return tuple(array.tolist())

@@ -1,0 +1,68 @@
+"""What a study is of: the first line of its file, and the fingerprint that tells studies apart."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from jointid import _core
+from jointid.errors import InputError
+from jointid.joint.parameters import finite_number
+from jointid.simulation.scenario import Scenario
+from jointid.study import study_file
+from jointid.study.work import Work
+
+
+def header_of_work(work: Work, trials: int, truth: Mapping[str, float] | None) -> dict[str, Any]:
+    """The first line of the study's file.
+
+    Raises
+    ------
+    InputError
+        The truth is no mapping of names to numbers.
+    """
+    subject = work.subject
+    simulated = isinstance(subject, Scenario)
+    settings: dict[str, Any] = {
+        "subject": repr(subject)
+        if isinstance(subject, Scenario)
+        else [{"name": run.name, "fingerprint": run.fingerprint} for run in subject],
+        "joint": None if work.joint is None else repr(work.joint),
+        "options": {name: repr(value) for name, value in sorted(work.common.items())},
+        "stderr": work.stderr,
+        "tracking": work.tracking,
+        "version": _core.__version__,
+    }
+    header = {
+        "format": study_file.FORMAT,
+        "schema": study_file.SCHEMA,
+        "version": _core.__version__,
+        "swept": list(work.cells[0].labels),
+        "cells": [cell.labels for cell in work.cells],
+        "seed": work.seed,
+        "settings": settings,
+    }
+    values = [{n: repr(v) for n, v in cell.values.items()} for cell in work.cells]
+    holds = [] if simulated else [(run.kind, run.torque_hold, repr(run.gaps)) for run in subject]  # type: ignore[union-attr]
+    text = json.dumps([header, values, holds], sort_keys=True)
+    fingerprint = hashlib.sha256(text.encode()).hexdigest()[:16]
+    settings["fingerprint"] = fingerprint
+    return header | {"fingerprint": fingerprint, "trials": trials, "truth": _truth(work, truth)}
+
+
+def _truth(work: Work, given: Mapping[str, float] | None) -> dict[str, float]:
+    """What is known to be true of all recordings."""
+    if given is not None:
+        if not isinstance(given, Mapping):
+            raise InputError(f"truth is {given!r}; a mapping of parameters to numbers is expected")
+        return {str(name): finite_number("truth", str(name), v) for name, v in given.items()}
+    if isinstance(work.subject, Scenario):
+        return work.subject.truth
+    tables = [dict(run.truth or {}) for run in work.subject]
+    return {
+        name: float(value)
+        for name, value in tables[0].items()
+        if isinstance(value, int | float) and all(table.get(name) == value for table in tables)
+    }

@@ -1,0 +1,73 @@
+"""One trial of a study, as it stands in the study's file and in its table."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, field, fields
+from typing import Any
+
+REFUSED = "refused"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Row:
+    """What came of one identification; the same bits wherever it was done.
+
+    Attributes
+    ----------
+    cell, trial : int
+        Which combination of settings, which repetition.
+    seed : int
+        Of the search, and of the noise of a simulated recording: `identify` with it gives this row.
+    status : str
+        "converged", "stopped", or "refused" where these settings cannot be used here.
+    message : str
+    penalty : float
+        At the answer; not a number when refused.
+    evaluations, generations : int
+        Of the search.
+    values, stderr : dict of str to float
+        Parameters, and their standard errors if they were asked for [SI].
+    tracking : dict of str to float
+        Root mean square of the tracking error [rad] with the scenario's estimates ("before"), the
+        identified ones ("after"), and the true ones ("true"), if they were asked for.
+    """
+
+    cell: int
+    trial: int
+    seed: int
+    status: str
+    message: str = ""
+    penalty: float = math.nan
+    evaluations: int = 0
+    generations: int = 0
+    values: dict[str, float] = field(default_factory=dict)
+    stderr: dict[str, float] = field(default_factory=dict)
+    tracking: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def place(self) -> tuple[int, int]:
+        """Cell and trial."""
+        return self.cell, self.trial
+
+    def asdict(self) -> dict[str, Any]:
+        """For a file; numbers keep all their bits."""
+        return asdict(self)
+
+    @classmethod
+    def of(cls, record: dict[str, Any]) -> Row:
+        """The row of a record.
+
+        Raises
+        ------
+        KeyError, TypeError, ValueError
+            The record is not of a row.
+        """
+        numbers = {"values", "stderr", "tracking"}
+        known: dict[str, Any] = {item.name: record[item.name] for item in fields(cls)}
+        for name in numbers:
+            known[name] = {key: float(value) for key, value in known[name].items()}
+        for name in ("cell", "trial", "seed", "evaluations", "generations"):
+            known[name] = int(known[name])
+        known["penalty"] = float(known["penalty"])
+        return cls(**known)

@@ -1,0 +1,196 @@
+"""Does the trials of a study: what trials have in common is made once."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from jointid import _core
+from jointid.errors import InputError
+from jointid.estimate.estimate import Estimate
+from jointid.identification.engine import Engine, Outcome
+from jointid.identification.prepared import Prepared, prepare
+from jointid.identification.search import Search
+from jointid.recording.recording import Recording
+from jointid.simulation.arguments import Controller
+from jointid.simulation.scenario import Scenario
+from jointid.study.row import REFUSED, Row
+from jointid.study.work import Place, Work
+
+_Found = tuple[Row, Estimate | None]
+
+
+def run_chunk(work: Work, places: Sequence[Place]) -> list[Row]:
+    """The rows of some trials: what is sent to another process or machine."""
+    return [row for rows in Runner(work).run(places) for row in rows]
+
+
+class Runner:
+    """Does trials one group after the other, and keeps the last penalty for the next group.
+
+    Parameters
+    ----------
+    work : Work
+    """
+
+    def __init__(self, work: Work) -> None:
+        self._work = work
+        self._ready: tuple[object, Prepared, Engine] | None = None
+
+    def run(self, places: Sequence[Place]) -> Iterator[list[Row]]:
+        """Rows of these trials, group by group as they are done.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            Ctrl-C.
+        """
+        work, subject = self._work, self._work.subject
+        if isinstance(subject, Scenario):
+            for _, group in itertools.groupby(places, key=lambda place: work.world(place[0])):
+                yield from self._simulated(list(group), subject)
+            return
+        for analysis, group in itertools.groupby(places, key=lambda p: work.analysis(p[0])):
+            found = self._searched(list(group), subject, analysis)
+            yield [row for row, _ in found]
+
+    def _simulated(self, places: list[Place], subject: Scenario) -> Iterator[list[Row]]:
+        """Trials of one world: its recordings simulated side by side, then each identified."""
+        work = self._work
+        world = work.world(places[0][0])
+        trials = sorted({trial for _, trial in places})
+        try:
+            scenario = work.cells[places[0][0]].scenario(subject)
+            seeds = [work.seed + trial for trial in trials]
+            batch = scenario.simulate(seeds, threads=work.threads)
+        except InputError as error:
+            yield [self._refused(place, error) for place in places]
+            return
+        recordings = dict(zip(trials, batch.recordings, strict=True))
+        for (trial, analysis), group in itertools.groupby(
+            places, key=lambda place: (place[1], work.analysis(place[0]))
+        ):
+            key = world, trial, analysis
+            found = self._searched(list(group), (recordings[trial],), key, scenario)
+            yield self._tracked(found, scenario) if work.tracking else [row for row, _ in found]
+
+    def _searched(
+        self,
+        places: list[Place],
+        recordings: tuple[Recording, ...],
+        key: object,
+        scenario: Scenario | None = None,
+    ) -> list[_Found]:
+        """Trials on one penalty, side by side."""
+        work = self._work
+        options = work.cells[places[0][0]].options(work.common)
+        method = options.pop("method", "ga")
+        joint = scenario.joint if scenario is not None and work.joint is None else work.joint
+        started = time.perf_counter()
+        try:
+            searches = [
+                Search(
+                    method=method,
+                    options=work.cells[cell].genetic(work.common),
+                    seed=work.seed + trial,
+                    threads=work.threads,
+                    callback=None,
+                )
+                for cell, trial in places
+            ]
+            if self._ready is None or self._ready[0] != key:
+                self._ready = None  # not two at a time
+                prepared = prepare(recordings, joint, **options, threads=work.threads)
+                engine = Engine.of(prepared.penalty, prepared.domain, work.threads, method)
+                self._ready = key, prepared, engine
+            _, prepared, engine = self._ready
+            outcomes = _outcomes(searches, prepared, engine)
+        except InputError as error:
+            return [(self._refused(place, error), None) for place in places]
+        return [
+            self._found(place, prepared, search, outcome, started)
+            for place, search, outcome in zip(places, searches, outcomes, strict=True)
+        ]
+
+    def _found(
+        self, place: Place, prepared: Prepared, search: Search, outcome: Outcome, started: float
+    ) -> _Found:
+        work = self._work
+        row = Row(
+            cell=place[0],
+            trial=place[1],
+            seed=search.seed,
+            status=outcome.status,
+            message=outcome.message,
+            penalty=prepared.penalty(outcome.best),
+            evaluations=outcome.evaluations,
+            generations=outcome.generations,
+            values=dict(zip(prepared.penalty.names, outcome.best.tolist(), strict=True)),
+        )
+        if not (work.stderr or work.tracking):
+            return row, None
+        estimate = prepared.estimate(search, outcome, started)
+        if work.stderr:
+            known = ((name, p.stderr) for name, p in estimate.parameters.items())
+            row = replace(row, stderr={name: e for name, e in known if e is not None})
+        return row, estimate
+
+    def _tracked(self, found: list[_Found], scenario: Scenario) -> list[Row]:
+        """Rows with the tracking error before, after, and with the true parameters."""
+        seed = found[0][0].seed
+        laws = {"before": scenario.controller, "true": scenario.believing(scenario.joint)}
+        errors = {name: self._error(scenario, law, seed) for name, law in laws.items()}
+        rows = []
+        for row, estimate in found:
+            after = math.nan
+            if estimate is not None:
+                after = self._error(scenario, scenario.believing(estimate.joint), seed)
+            rows.append(
+                replace(
+                    row,
+                    tracking={
+                        "before": errors["before"],
+                        "after": after,
+                        "true": errors["true"],
+                    },
+                )
+            )
+        return rows
+
+    def _error(self, scenario: Scenario, law: Controller, seed: int) -> float:
+        try:
+            batch = scenario.simulate(seed, controllers=law, recordings=False, threads=1)
+        except InputError:  # a loop that is not stable with these estimates
+            return math.inf
+        return float(batch.error[0])
+
+    def _refused(self, place: Place, error: InputError) -> Row:
+        return Row(
+            cell=place[0],
+            trial=place[1],
+            seed=self._work.seed + place[1],
+            status=REFUSED,
+            message=str(error),
+        )
+
+
+def _outcomes(searches: list[Search], prepared: Prepared, engine: Engine) -> list[Outcome]:
+    domain = prepared.domain
+    if searches[0].method == "separable":
+        return [search.separable(engine, domain) for search in searches]
+    results = _core.minimise_trials(
+        engine.form,
+        domain.lower,
+        domain.upper,
+        options=[search.options for search in searches],
+        seeds=[search.seed for search in searches],
+        random=searches[0].method == "random",
+        threads=searches[0].threads,
+    )
+    return [
+        search.concluded(engine, domain, result, result.generations)
+        for search, result in zip(searches, results, strict=True)
+    ]

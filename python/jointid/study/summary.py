@@ -1,0 +1,222 @@
+"""A study in a table of one line a cell: mean, spread, bias, success."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from jointid.errors import InputError
+from jointid.study.row import REFUSED, Row
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from jointid.study.study_result import Study
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CellSummary:
+    """What the trials of a cell have in common, and how they differ.
+
+    Attributes
+    ----------
+    labels : dict
+        The swept settings.
+    trials, refused : int
+        Done, and of them refused.
+    reason : str
+        Why the first of them was refused.
+    converged : float
+        Share of the trials that ended as converged.
+    penalty : float
+        Median.
+    mean, spread : dict of str to float
+        Of each parameter over the trials; the spread is the standard deviation [SI].
+    bias, scatter : dict of str to float
+        Mean and spread against the truth, as shares of it; empty where it is not known.
+    success : float or None
+        Share of the trials with every parameter near enough to the truth.
+    tracking : dict of str to float
+        Medians of the tracking errors [rad].
+    """
+
+    labels: dict[str, Any]
+    trials: int
+    refused: int
+    reason: str
+    converged: float
+    penalty: float
+    mean: dict[str, float]
+    spread: dict[str, float]
+    bias: dict[str, float]
+    scatter: dict[str, float]
+    success: float | None
+    tracking: dict[str, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Summary:
+    """A study's cells in numbers; `print` shows a table.
+
+    Attributes
+    ----------
+    cells : tuple of CellSummary
+    within : float
+        What counts as success.
+    """
+
+    cells: tuple[CellSummary, ...]
+    within: float
+
+    def asdict(self) -> dict[str, Any]:
+        """For a machine: what is not a number, or not known, is None."""
+        cells = [{n: _known(v) for n, v in _record(cell).items()} for cell in self.cells]
+        return {"within": self.within, "cells": cells}
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One line a cell; a column `NAME_mean`, `NAME_spread`, `NAME_bias`, `NAME_scatter` a parameter."""
+        import pandas as pd
+
+        return pd.DataFrame([_record(cell) for cell in self.cells])
+
+    def __str__(self) -> str:
+        header, body = _texts(self)
+        widths = [max(len(line[i]) for line in [header, *body]) for i in range(len(header))]
+        lines = [
+            "  ".join(text.rjust(width) for text, width in zip(line, widths, strict=True))
+            for line in [header, *body]
+        ]
+        for cell in self.cells:
+            if cell.refused:
+                told = ", ".join(f"{name} {label}" for name, label in cell.labels.items())
+                lines.append(f"{told}: {cell.refused} refused: {cell.reason}")
+        return "\n".join(line.rstrip() for line in lines)
+
+    def to_html(self) -> str:
+        """The table of `print`, for a notebook."""
+        header, body = _texts(self)
+        head = "".join(f"<th>{escape(text)}</th>" for text in header)
+        rows = (
+            "<tr>" + "".join(f"<td>{escape(text)}</td>" for text in line) + "</tr>" for line in body
+        )
+        return f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table>"
+
+
+def summarise(study: Study, within: float) -> Summary:
+    """Summarise each cell; see `Study.summary`.
+
+    Raises
+    ------
+    InputError
+        `within` is not positive.
+    """
+    if isinstance(within, bool) or not isinstance(within, int | float) or not within > 0.0:
+        raise InputError(f"within is {within!r}; a share above 0, such as 0.05, is expected")
+    mine: list[list[Row]] = [[] for _ in study.cells]
+    for row in study.rows:
+        mine[row.cell].append(row)
+    cells = (_cell(study, number, rows, within) for number, rows in enumerate(mine))
+    return Summary(cells=tuple(cells), within=float(within))
+
+
+def _cell(study: Study, number: int, rows: Sequence[Row], within: float) -> CellSummary:
+    done = [row for row in rows if row.status != REFUSED]
+    values = {
+        name: np.array([row.values[name] for row in done])
+        for name in (done[0].values if done else ())
+    }
+    true = {n: v for n, v in study.truth_of(number).items() if n in values and v != 0.0}
+    ratios = {name: values[name] / value - 1.0 for name, value in true.items()}
+    near = [np.abs(ratio) <= within for ratio in ratios.values()]
+    tracking = {
+        name: float(np.median([row.tracking[name] for row in done]))
+        for name in (done[0].tracking if done else ())
+    }
+    return CellSummary(
+        labels=study.cells[number],
+        trials=len(rows),
+        refused=len(rows) - len(done),
+        reason=next((row.message for row in rows if row.status == REFUSED), ""),
+        converged=_share([row.status == "converged" for row in rows]),
+        penalty=float(np.median([row.penalty for row in done])) if done else math.nan,
+        mean={name: _mean(v) for name, v in values.items()},
+        spread={name: _deviation(v) for name, v in values.items()},
+        bias={name: _mean(r) for name, r in ratios.items()},
+        scatter={name: _deviation(r) for name, r in ratios.items()},
+        success=_share(np.all(near, axis=0).tolist() if done else []) if near else None,
+        tracking=tracking,
+    )
+
+
+def _known(value: Any) -> Any:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _share(flags: Sequence[bool]) -> float:
+    return sum(flags) / len(flags) if flags else math.nan
+
+
+def _mean(values: np.ndarray[Any, np.dtype[np.float64]]) -> float:
+    """Of equal values, that value: a mean may round it."""
+    return float(values[0] if np.ptp(values) == 0.0 else values.mean())
+
+
+def _deviation(values: np.ndarray[Any, np.dtype[np.float64]]) -> float:
+    if len(values) < 2:
+        return math.nan
+    return 0.0 if np.ptp(values) == 0.0 else float(values.std(ddof=1))
+
+
+def _record(cell: CellSummary) -> dict[str, Any]:
+    record: dict[str, Any] = dict(cell.labels)
+    for name in ("trials", "refused", "converged", "penalty", "success"):
+        record[name] = getattr(cell, name)
+    for kind in ("mean", "spread", "bias", "scatter"):
+        record |= {f"{name}_{kind}": value for name, value in getattr(cell, kind).items()}
+    return record | {f"tracking_{name}": value for name, value in cell.tracking.items()}
+
+
+def _texts(summary: Summary) -> tuple[list[str], list[list[str]]]:
+    """Header and lines; a parameter as bias ± scatter [%] where its truth is known, else mean ± spread."""
+    cells = summary.cells
+    swept = list(cells[0].labels) if cells else []
+    names = list(dict.fromkeys(name for cell in cells for name in cell.mean))
+    names = [name for name in names if not _fixed(cells, name)] or names
+    success = any(cell.success is not None for cell in cells)
+    tracking = list(dict.fromkeys(name for cell in cells for name in cell.tracking))
+    header = [*swept, "trials", "converged", "penalty"]
+    header += [f"within {100.0 * summary.within:g} %"] if success else []
+    header += [f"{name} [%]" if any(name in c.bias for c in cells) else name for name in names]
+    header += [f"tracking {name} [rad]" for name in tracking]
+    body = []
+    for cell in cells:
+        line = [str(label) for label in cell.labels.values()]
+        line += [str(cell.trials), _percent(cell.converged), f"{cell.penalty:.4g}"]
+        line += [_percent(cell.success)] if success else []
+        line += [_parameter(cell, name) for name in names]
+        line += [f"{cell.tracking.get(name, math.nan):.3g}" for name in tracking]
+        body.append(line)
+    return header, body
+
+
+def _fixed(cells: Sequence[CellSummary], name: str) -> bool:
+    """Whether a parameter has the same value, to the bit, wherever it was."""
+    means = {cell.mean[name] for cell in cells if name in cell.mean}
+    return len(means) == 1 and not any(cell.spread.get(name, 0.0) > 0.0 for cell in cells)
+
+
+def _parameter(cell: CellSummary, name: str) -> str:
+    if name in cell.bias:
+        return f"{100.0 * cell.bias[name]:+.2f} ± {100.0 * cell.scatter[name]:.2f}"
+    if name in cell.mean:
+        return f"{cell.mean[name]:.4g} ± {cell.spread[name]:.2g}"
+    return ""
+
+
+def _percent(share: float | None) -> str:
+    return "" if share is None or math.isnan(share) else f"{100.0 * share:.0f} %"

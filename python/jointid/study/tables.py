@@ -1,0 +1,100 @@
+"""A study as a tidy table: one row a trial, one column a quantity."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointid.errors import InputError
+from jointid.files import write_whole
+
+if TYPE_CHECKING:
+    from jointid.study.study_result import Study
+
+
+def columns(study: Study) -> dict[str, list[Any]]:
+    """All columns: swept settings, the trial, how it ended, and every number it gave."""
+    rows = study.rows
+    table: dict[str, list[Any]] = {
+        name: [study.cells[row.cell][name] for row in rows] for name in study.swept
+    }
+    for name in ("trial", "seed", "status", "penalty", "evaluations", "generations"):
+        table[name] = [getattr(row, name) for row in rows]
+    for name in study.parameters:
+        table[name] = [row.values.get(name, math.nan) for row in rows]
+    if any(row.stderr for row in rows):
+        for name in study.parameters:
+            table[f"{name}_stderr"] = [row.stderr.get(name, math.nan) for row in rows]
+    for name in ("before", "after", "true"):
+        if any(row.tracking for row in rows):
+            table[f"tracking_{name}"] = [row.tracking.get(name, math.nan) for row in rows]
+    if any(row.status == "refused" for row in rows):
+        table["message"] = [row.message for row in rows]
+    return table
+
+
+def save(study: Study, path: Path) -> None:
+    """Write the table, or the study itself, by the path's extension.
+
+    Raises
+    ------
+    InputError
+        Another extension, or the folder does not exist.
+    """
+    if not path.parent.is_dir():
+        raise InputError(f"{path}: the folder {path.parent} does not exist")
+    writers = {".csv": _csv, ".parquet": _parquet, ".jsonl": _lines}
+    if path.suffix not in writers:
+        raise InputError(f"{path}: a study is saved as {', '.join(writers)}")
+    write_whole(path, writers[path.suffix](study))
+
+
+def _csv(study: Study) -> bytes:
+    table = columns(study)
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(table)
+    for row in zip(*table.values(), strict=True):
+        writer.writerow(["" if _missing(value) else _text(value) for value in row])
+    return text.getvalue().encode()
+
+
+def _missing(value: Any) -> bool:
+    return value is None or (isinstance(value, float) and math.isnan(value))
+
+
+def _text(value: Any) -> str:
+    return repr(value) if isinstance(value, float) else str(value)
+
+
+def _parquet(study: Study) -> bytes:
+    try:
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+    except ModuleNotFoundError as error:
+        raise InputError(
+            "Parquet files need pyarrow; install it with: pip install 'jointid[parquet]'"
+        ) from error
+    sink = pa.BufferOutputStream()
+    mixed = {name: _one_kind(values) for name, values in columns(study).items()}
+    pq.write_table(pa.table(mixed), sink)
+    return bytes(sink.getvalue())
+
+
+def _one_kind(values: list[Any]) -> list[Any]:
+    """Values of one type: a column of labels that mixes them becomes text."""
+    kinds = {type(value) for value in values if value is not None}
+    if kinds <= {int, float} or len(kinds) < 2:
+        return values
+    return [None if value is None else str(value) for value in values]
+
+
+def _lines(study: Study) -> bytes:
+    from jointid.study.study_result import header_of
+
+    records = [header_of(study), *(row.asdict() for row in study.rows)]
+    return "".join(json.dumps(r, ensure_ascii=False) + "\n" for r in records).encode()

@@ -1,0 +1,92 @@
+"""The work of a study: which trials there are, in which order, in which parts."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from jointid.joint.joint import Joint
+from jointid.recording.recording import Recording
+from jointid.simulation.scenario import Scenario
+from jointid.study.grid import Cell, is_option
+
+Place = tuple[int, int]  # cell and trial
+
+# What a chunk costs beside the candidates of its searches, in candidates (0.1 µs each).
+_TRIAL, _SIMULATION = 10_000, 100_000
+_CHUNK = 2_000_000
+_PER_SAMPLE = 13  # a long recording is not sent, or prepared, for a little work
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Work:
+    """What is to be done, but for which trials: it goes to the machine that does them.
+
+    Attributes
+    ----------
+    subject : tuple of Recording, or Scenario
+    joint : Joint or None
+    common : dict of str to object
+        Arguments of `identify`, alike in all cells.
+    cells : tuple of Cell
+    seed : int
+        Trial t has the seed `seed` + t.
+    stderr, tracking : bool
+    threads : int
+    """
+
+    subject: tuple[Recording, ...] | Scenario
+    joint: Joint | None
+    common: dict[str, Any]
+    cells: tuple[Cell, ...]
+    seed: int
+    stderr: bool
+    tracking: bool
+    threads: int
+
+    def ordered(self, trials: int, done: Iterable[Place]) -> list[Place]:
+        """What is left to do, with what can share a recording or a penalty side by side."""
+        left = set(itertools.product(range(len(self.cells)), range(trials))) - set(done)
+        simulated = isinstance(self.subject, Scenario)
+
+        def key(place: Place) -> tuple[Any, ...]:
+            cell, trial = place
+            world, analysis = self.world(cell), self.analysis(cell)
+            return (world, trial, analysis, cell) if simulated else (analysis, cell, trial)
+
+        return sorted(left, key=key)
+
+    def world(self, cell: int) -> str:
+        """What the cell changes in the scenario, as a key."""
+        labels = self.cells[cell].labels
+        return repr([(n, label) for n, label in labels.items() if not is_option(n)])
+
+    def analysis(self, cell: int) -> str:
+        """What the cell changes in the penalty or the method, as a key."""
+        labels = self.cells[cell].labels
+        mine = [n for n in labels if is_option(n) and n.partition(".")[0] != "ga"]
+        return repr([(n, labels[n]) for n in mine])
+
+    def chunks(self, places: Sequence[Place]) -> Iterator[tuple[Place, ...]]:
+        """Parts of the work that each take some tenths of a second, and at least a trial."""
+        limit = _CHUNK
+        if not isinstance(self.subject, Scenario):
+            limit = max(limit, _PER_SAMPLE * sum(len(run) for run in self.subject))
+        chunk: list[Place] = []
+        cost = 0
+        for place in places:
+            more = self._cost(place[0])
+            if chunk and cost + more > limit:
+                yield tuple(chunk)
+                chunk, cost = [], 0
+            chunk.append(place)
+            cost += more
+        if chunk:
+            yield tuple(chunk)
+
+    def _cost(self, cell: int) -> int:
+        options = self.cells[cell].genetic(self.common)
+        fixed = _TRIAL + (_SIMULATION if isinstance(self.subject, Scenario) else 0)
+        return options.population * options.islands * (options.generations + 1) + fixed

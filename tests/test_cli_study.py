@@ -1,0 +1,162 @@
+"""The commands `simulate` and `sweep`."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+import jointid as jid
+from jointid.cli import main
+from jointid.demo import data_folder
+
+WELL = str(data_folder() / "well_excited.csv.gz")
+TRUTH = {
+    "coulomb": 25.0,
+    "static": 20.0,
+    "stribeck": 100.0,
+    "viscous": 20.0,
+    "sensor_gain": 2.4,
+    "sensor_offset": 15.0,
+}
+WIDE = "thesis:amplitude=60deg,cycle=3,duration=6"
+
+Printed = pytest.CaptureFixture[str]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("joints")
+    joint = jid.thesis_joint()
+    joint.save(path / "unknown.toml")
+    joint.with_parameters(TRUTH).save(path / "true.toml")
+    joint.with_parameters(TRUTH | {"coulomb": 10.0, "sensor_gain": 1.0}).save(path / "guess.toml")
+    return path
+
+
+def test_simulate_identify_simulate_closes_the_ring(
+    folder: Path, tmp_path: Path, capsys: Printed
+) -> None:
+    run, found = str(tmp_path / "run.csv"), str(tmp_path / "found.toml")
+    true, guess = str(folder / "true.toml"), str(folder / "guess.toml")
+    common = ["simulate", true, "--trajectory", WIDE, "--sensor", "torque_noise=0.5", "--json"]
+    assert main([*common, "--believe", guess, "--output", run]) == 0
+    before = json.loads(capsys.readouterr().out)
+    assert before["truth"]["coulomb"] == 25.0
+    known = str(folder / "unknown.toml")
+    assert main(["identify", run, "--joint", known, "--save", found, "--quiet"]) == 0
+    capsys.readouterr()
+    assert main([*common, "--believe", found]) == 0
+    after = json.loads(capsys.readouterr().out)
+    assert after["tracking_error"] < before["tracking_error"] / 3.0
+
+
+def test_the_recording_is_that_of_the_library(
+    folder: Path, tmp_path: Path, capsys: Printed
+) -> None:
+    path = tmp_path / "run.npz"
+    words = ["simulate", str(folder / "true.toml"), "--controller", "pd", "--output", str(path)]
+    words += ["--gain", "stiffness=8000", "--gain", "damping=400", "--control-period", "0.002"]
+    words += ["--trajectory", "sine:amplitude=30deg,frequency=0.5,duration=2", "--seed", "7"]
+    assert main([*words, "--sensor", "torque_noise=0.1"]) == 0
+    assert "tracking error" in capsys.readouterr().out
+    wanted = jid.simulate(
+        jid.thesis_joint().with_parameters(TRUTH),
+        jid.Pd(stiffness=8000.0, damping=400.0),
+        jid.Trajectory.sine(0.5235987755982988, 0.5, duration=2.0),
+        control_period=0.002,
+        sensors=jid.Sensors(torque_noise=0.1),
+        seed=7,
+    )
+    assert jid.load(path).fingerprint == wanted.fingerprint
+    again = ["simulate", str(folder / "true.toml"), "--trajectory", str(path), "--json"]
+    assert main(again) == 0
+    assert json.loads(capsys.readouterr().out)["samples"] == 1998  # to the last of its samples
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--trajectory", "helix"], "neither a file nor one of"),
+        (["--trajectory", "sine:amplitude"], "not of the form name=value"),
+        (["--trajectory", "sine:amplitude=1,hertz=1,duration=1"], "unexpected option 'hertz'"),
+        (["--controller", "pdd"], "did you mean 'pd'"),
+        (["--controller", "pd"], "needs --gain stiffness"),
+        (["--controller", "pd", "--gain", "stiffness=1", "--believe", "x"], "compensates nothing"),
+        (["--gain", "bandwith=3"], "no field 'bandwith'"),
+        (["--gain", "bandwidth=3", "--gain", "bandwidth=4"], "given twice"),
+        (["--sensor", "torque_noise=-1"], "torque_noise"),
+        (["--control-period", "0"], "more than 0"),
+        (["--output", "nowhere/run.csv"], "does not exist"),
+        (["--output", "run.xyz"], "--output"),
+        (["--believe", "nowhere.toml"], "nowhere.toml"),
+    ],
+)
+def test_simulate_refuses_in_a_line(
+    folder: Path, words: list[str], told: str, capsys: Printed
+) -> None:
+    assert main(["simulate", str(folder / "true.toml"), *words]) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert error.count("\n") == 1
+
+
+def test_simulate_says_what_a_joint_file_lacks(folder: Path, capsys: Printed) -> None:
+    assert main(["simulate", str(folder / "unknown.toml")]) == 2
+    assert "has no value" in capsys.readouterr().err
+
+
+def test_sweep_prints_writes_draws_and_goes_on(
+    folder: Path, tmp_path: Path, capsys: Printed
+) -> None:
+    joint = str(folder / "unknown.toml")
+    words = ["sweep", WELL, "--joint", joint, "--grid", "ga.population=8,12", "--windows", "100"]
+    words += ["--grid", "method=ga,random", "--quiet"]
+    output, table, plot = (tmp_path / name for name in ("s.jsonl", "s.csv", "s.png"))
+    files = ["--output", str(output), "--table", str(table), "--plot", str(plot)]
+    assert main([*words, *files, "--trials", "2"]) == 0
+    shown = capsys.readouterr().out
+    assert shown.splitlines()[0].split()[:2] == ["ga.population", "method"]
+    assert len(table.read_text().splitlines()) == 9
+    assert plot.read_bytes().startswith(b"\x89PNG")
+    assert main([*words, "--output", str(output), "--trials", "3"]) == 2
+    assert "exists" in capsys.readouterr().err
+    resumed = [*words, "--output", str(output), "--trials", "3", "--resume", "--json"]
+    assert main([*resumed, "--workers", "2"]) == 0
+    cells = json.loads(capsys.readouterr().out)["cells"]
+    assert [cell["trials"] for cell in cells] == [3] * 4
+    assert len(jid.Study.load(output)) == 12
+
+
+def test_sweep_simulates(folder: Path, capsys: Printed) -> None:
+    words = ["sweep", "--simulate", str(folder / "true.toml"), "--trajectory", WIDE, "--tracking"]
+    words += ["--believe", str(folder / "guess.toml"), "--grid", "sensors.torque_noise=0.1,1"]
+    assert main([*words, "--trials", "2", "--json", "--quiet"]) == 0
+    for cell in json.loads(capsys.readouterr().out)["cells"]:
+        assert cell["tracking_after"] < cell["tracking_before"] / 3.0
+        assert cell["success"] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ([], "give recordings, or --simulate"),
+        ([WELL, "--simulate", "true.toml"], "one of the two"),
+        ([WELL, "--grid", "windows=10", "--grid", "windows=20"], "given twice"),
+        ([WELL, "--grid", "windos=10"], "did you mean"),
+        ([WELL, "--grid", "windows"], "not of the form name=value"),
+        ([WELL, "--table", "x.xlsx"], "written as .csv or .parquet"),
+        ([WELL, "--workers", "0"], "--workers must be 1 to"),
+        ([WELL, "--resume"], "output="),
+        ([WELL, "--ga", "best"], "ga must be"),
+        ([WELL, "--trials", "0"], "trials must be"),
+    ],
+)
+def test_sweep_refuses_in_a_line(words: list[str], told: str, capsys: Printed) -> None:
+    try:
+        code = main(["sweep", *words])
+    except SystemExit as ended:  # the grammar's own refusals
+        code = int(str(ended.code))
+    assert code == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert error.count("\n") == 1

@@ -1,0 +1,154 @@
+"""Pictures say what the numbers are: curves, units, legends; what cannot be drawn is refused in a sentence."""
+
+import math
+from collections.abc import Iterator
+
+import matplotlib
+import numpy as np
+import pytest
+
+matplotlib.use("Agg")
+from closed_loop import TRUTH, thesis_joint, well_excited, wrong_controller
+from matplotlib import pyplot
+from matplotlib.axes import Axes
+
+import jointid as jid
+
+TRUE = thesis_joint().with_parameters(TRUTH)
+
+
+@pytest.fixture(autouse=True)
+def _closed() -> Iterator[None]:
+    yield
+    pyplot.close("all")
+
+
+@pytest.fixture(scope="module")
+def run() -> jid.SimulatedRecording:
+    return jid.simulate(TRUE, wrong_controller(), well_excited(3.0))
+
+
+def _at(axes: Axes, curve: int, velocity: float) -> float:
+    x, y = (np.asarray(values, dtype=float) for values in axes.lines[curve].get_data())
+    known = np.isfinite(y)
+    return float(np.interp(velocity, x[known], y[known]))
+
+
+def _legend(axes: Axes) -> list[str]:
+    legend = axes.get_legend()
+    assert legend is not None
+    return [text.get_text() for text in legend.get_texts()]
+
+
+def test_friction_curves_are_the_models(run: jid.SimulatedRecording) -> None:
+    estimate = jid.identify(run, thesis_joint())
+    axes = jid.plot.friction_curves({"true": TRUE, "found": estimate}, peak=0.4)
+    wanted = 25.0 + 20.0 * math.exp(-100.0 * 0.2**2) + 20.0 * 0.2
+    assert _at(axes, 0, 0.2) == pytest.approx(wanted, abs=1e-3)
+    assert _at(axes, 0, -0.2) == pytest.approx(-wanted, abs=1e-3)
+    assert _at(axes, 1, 0.2) == pytest.approx(wanted, rel=0.01)
+    assert axes.get_ylabel() == "friction [N·m]"
+    assert _legend(axes) == ["true", "found"]
+
+
+def test_curves_differ_without_colour() -> None:
+    axes = jid.plot.friction_curves({str(number): TRUE for number in range(6)})
+    dashes = [str(jid.plot.line_style(number)["linestyle"]) for number in range(6)]
+    assert len(axes.lines) == len(set(dashes)) == 6
+
+
+@pytest.mark.parametrize(
+    ("name", "slope"), [("coulomb", 2.5), ("sensor_offset", 1.5), ("sensor_gain", 0.24 * 4.0)]
+)
+def test_sensitivity_shifts_the_curve(name: str, slope: float) -> None:
+    axes = jid.plot.sensitivity(TRUE, name, reading=4.0)
+    for speed in (0.01, 0.3, 0.59):
+        middle, above, below = (_at(axes, curve, speed) for curve in range(3))
+        assert above - middle == pytest.approx(slope, abs=1e-9)
+        assert middle - below == pytest.approx(slope, abs=1e-9)
+
+
+def test_sensitivity_reaches_beyond_the_bounds() -> None:
+    joint = thesis_joint().with_parameters({**TRUTH, "viscous": 40.0})  # its upper bound
+    axes = jid.plot.sensitivity(joint, "viscous")
+    assert _at(axes, 1, 0.5) - _at(axes, 0, 0.5) == pytest.approx(2.0, abs=1e-3)
+
+
+def test_convergence_claims_no_polish_that_was_not(run: jid.SimulatedRecording) -> None:
+    options = jid.GaOptions(population=20, generations=5)
+    for polish, told in ((True, "after the polish"), (False, "the answer, not polished")):
+        estimate = jid.identify(run, thesis_joint(), ga=options.replace(polish=polish))
+        assert _legend(jid.plot.convergence(estimate))[-1] == told
+
+
+def test_style_leaves_a_notebook_drawing() -> None:
+    # A back end that is loaded inside the block turns drawing on for good.
+    before = matplotlib.is_interactive()
+    try:
+        matplotlib.interactive(False)
+        with jid.plot.style():
+            matplotlib.interactive(True)
+        assert matplotlib.is_interactive()
+        assert matplotlib.rcParams["axes.spines.top"]
+    finally:
+        matplotlib.interactive(before)
+
+
+def test_tracking_error_tells_its_root_mean_square(run: jid.SimulatedRecording) -> None:
+    axes = jid.plot.tracking_error({"before": run})
+    late = run.tracking_error()[len(run.time) // 6 :]
+    assert f"{1e3 * math.sqrt(float(np.mean(late**2))):.2g}" in _legend(axes)[0]
+    assert axes.get_ylabel() == "position less reference [mrad]"
+    drawn = np.asarray(axes.lines[0].get_ydata(), dtype=float)
+    assert drawn == pytest.approx(1e3 * run.tracking_error())
+
+
+def test_subtracting_the_sensor_leaves_friction_and_drive(run: jid.SimulatedRecording) -> None:
+    axes = jid.plot.torque_over_velocity(run, sensed_by=TRUE, curve=TRUE)
+    inertia = jid.control_estimates(TRUE)["inertia"]
+    left = run.truth.signals["friction"] + inertia * run.truth.signals["acceleration"]
+    drawn = np.asarray(axes.lines[0].get_ydata(), dtype=float)
+    fast = np.abs(run.velocity) > 0.2
+    assert drawn[fast] == pytest.approx(left[fast], abs=1.0)  # of 60
+    assert axes.get_ylabel() == "torque less sensed link torque [N·m]"
+
+
+def test_adaptation_draws_the_law_that_acts(run: jid.SimulatedRecording) -> None:
+    seen: list[jid.Generation] = []
+    options = jid.GaOptions.thesis().replace(population=20, generations=40)
+    jid.identify(run, thesis_joint(), ga=options, callback=seen.append)
+    axes = jid.plot.adaptation(options, seen)
+    for law, points in ((0, 1), (2, 3)):
+        corner, probability = (
+            np.asarray(values, dtype=float) for values in axes.lines[law].get_data()
+        )
+        diversity, applied = (
+            np.asarray(values, dtype=float) for values in axes.lines[points].get_data()
+        )
+        assert applied == pytest.approx(np.interp(diversity, corner, probability), abs=1e-12)
+
+
+def test_trajectory_and_signal_carry_units(run: jid.SimulatedRecording) -> None:
+    motion = jid.plot.trajectory(well_excited(), "acceleration")
+    assert motion.get_ylabel() == "desired acceleration [rad/s²]"
+    assert jid.plot.signal({"a": run, "b": run}, "torque").get_ylabel() == "torque [N·m]"
+
+
+def test_what_cannot_be_drawn_is_told(run: jid.SimulatedRecording) -> None:
+    plain = jid.Recording(time=run.time, position=run.position, torque=run.torque)
+    with pytest.raises(jid.InputError, match="no reference"):
+        jid.plot.tracking_error(plain)
+    with pytest.raises(jid.InputError, match="sensor cannot be subtracted"):
+        jid.plot.torque_over_velocity(plain, sensed_by=TRUE)
+    with pytest.raises(jid.InputError, match="no values for its friction"):
+        jid.plot.friction_curves({"empty": jid.thesis_joint()})
+    with pytest.raises(jid.InputError, match="'stribeck_velocity' has no value"):
+        jid.plot.sensitivity(TRUE, "stribeck_velocity")
+    with pytest.raises(jid.InputError, match="has no sensor"):
+        jid.plot.signal(plain, "sensor")
+    with pytest.raises(jid.InputError, match="'speed' is not known"):
+        jid.plot.signal(run, "speed")
+    with pytest.raises(jid.InputError, match="'jerk'"):
+        jid.plot.trajectory(well_excited(), "jerk")
+    with pytest.raises(jid.InputError, match="no recording"):
+        jid.plot.tracking_error({})

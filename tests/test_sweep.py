@@ -1,0 +1,519 @@
+"""Studies: the same rows wherever and in how many goes they are done, and nothing lost on the way."""
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import jointid as jid
+from jointid import _core
+from jointid.demo import data_folder
+from jointid.study.row import Row
+
+GRID = {"ga.population": [8, 12], "ga.generations": [5, 15]}
+TRUTH = {
+    "coulomb": 25.0,
+    "static": 20.0,
+    "stribeck": 100.0,
+    "viscous": 20.0,
+    "sensor_gain": 2.4,
+    "sensor_offset": 15.0,
+}
+
+
+@pytest.fixture(scope="module")
+def recording() -> jid.Recording:
+    return jid.load(data_folder() / "well_excited.csv.gz")
+
+
+@pytest.fixture(scope="module")
+def joint() -> jid.Joint:
+    return jid.thesis_joint()
+
+
+@pytest.fixture(scope="module")
+def scenario(joint: jid.Joint) -> jid.Scenario:
+    true = joint.with_parameters(TRUTH)
+    estimates = jid.control_estimates(true) | {"coulomb": 10.0, "viscous": 10.0}
+    return jid.Scenario(
+        true,
+        jid.AdaptiveRobust(**estimates),
+        jid.Trajectory.thesis(1.0, cycle=3.0, duration=6.0),
+        jid.Sensors(torque_noise=0.5),
+        control_period=2e-3,
+    )
+
+
+@pytest.fixture(scope="module")
+def study(recording: jid.Recording, joint: jid.Joint) -> jid.Study:
+    return jid.sweep(recording, joint, grid=GRID, trials=3, seed=5, windows=200, truth=TRUTH)
+
+
+class _AtOnce(Executor):
+    """Does the work in this process; counts the parts."""
+
+    def __init__(self) -> None:
+        self.parts = 0
+
+    def submit(self, fn: Any, /, *arguments: Any, **keywords: Any) -> Future[Any]:
+        self.parts += 1
+        future: Future[Any] = Future()
+        future.set_result(fn(*arguments, **keywords))
+        return future
+
+
+def test_a_row_is_what_identify_gives_with_its_seed(
+    recording: jid.Recording, joint: jid.Joint, study: jid.Study
+) -> None:
+    assert study.complete
+    assert [row.place for row in study.rows] == [(c, t) for c in range(4) for t in range(3)]
+    for row in study.rows:
+        cell = study.cells[row.cell]
+        options = jid.GaOptions(
+            population=cell["ga.population"], generations=cell["ga.generations"]
+        )
+        estimate = jid.identify(recording, joint, ga=options, windows=200, seed=row.seed)
+        assert row.seed == 5 + row.trial
+        assert row.values == {n: p.value for n, p in estimate.parameters.items()}
+        assert row.status == estimate.status
+        assert estimate.convergence is not None
+        assert row.evaluations == estimate.convergence.evaluations[-1]
+        assert row.penalty == pytest.approx(estimate.penalty, rel=1e-12)
+
+
+@pytest.mark.parametrize("method", ["random", "separable"])
+def test_other_methods_are_those_of_identify(
+    recording: jid.Recording, joint: jid.Joint, method: str
+) -> None:
+    options = jid.GaOptions(population=20, generations=10)
+    found = jid.sweep(recording, joint, trials=2, method=method, ga=options, stderr=True)
+    for row in found.rows:
+        wanted = jid.identify(recording, joint, method=method, ga=options, seed=row.seed)
+        assert row.values == {n: p.value for n, p in wanted.parameters.items()}
+        errors = {n: p.stderr for n, p in wanted.parameters.items() if p.stderr is not None}
+        assert row.stderr == errors
+
+
+def test_threads_and_executors_give_the_same_bits(
+    recording: jid.Recording, joint: jid.Joint, study: jid.Study
+) -> None:
+    again: dict[str, Any] = {"grid": GRID, "trials": 3, "seed": 5, "windows": 200}
+    for threads in (1, 2, 7):
+        assert jid.sweep(recording, joint, threads=threads, **again).rows == study.rows
+    at_once = _AtOnce()
+    assert jid.sweep(recording, joint, executor=at_once, **again).rows == study.rows
+    assert at_once.parts > 0
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        assert jid.sweep(recording, joint, executor=pool, **again).rows == study.rows
+
+
+def test_a_dask_cluster_of_processes_gives_the_same_bits(
+    scenario: jid.Scenario, recording: jid.Recording, joint: jid.Joint, study: jid.Study
+) -> None:
+    distributed = pytest.importorskip("distributed")
+    simulated: dict[str, Any] = {"grid": {"sensors.torque_noise": [0.1, 1.0]}, "trials": 3}
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        there = jid.sweep(scenario, executor=client.get_executor(), **simulated)
+        grid = jid.sweep(
+            recording,
+            joint,
+            grid=GRID,
+            trials=3,
+            seed=5,
+            windows=200,
+            executor=client.get_executor(),
+        )
+    assert there.rows == jid.sweep(scenario, **simulated).rows
+    assert grid.rows == study.rows
+
+
+def test_a_scenario_is_simulated_anew_for_each_trial(scenario: jid.Scenario) -> None:
+    study = jid.sweep(
+        scenario,
+        grid={"sensors.torque_noise": [0.0, 1.0], "truth.coulomb": [20.0, 30.0]},
+        trials=2,
+        seed=3,
+        tracking=True,
+    )
+    for row in study.rows:
+        cell = study.cells[row.cell]
+        changed = scenario.changed(cell)
+        recording = jid.simulate(
+            scenario.joint.with_parameters({"coulomb": cell["truth.coulomb"]}),
+            scenario.controller,
+            scenario.trajectory,
+            sensors=jid.Sensors(torque_noise=cell["sensors.torque_noise"]),
+            control_period=2e-3,
+            seed=row.seed,
+        )
+        estimate = jid.identify(recording, changed.joint, seed=row.seed)
+        assert row.values == {n: p.value for n, p in estimate.parameters.items()}
+        after = changed.simulate(row.seed, controllers=changed.believing(estimate.joint))
+        assert row.tracking["after"] == after.error[0]
+        assert row.tracking["after"] < 0.5 * row.tracking["before"]
+        assert row.values["coulomb"] == pytest.approx(study.truth_of(row.cell)["coulomb"], rel=0.02)
+    noisy = study.column("sensors.torque_noise") > 0.0
+    coulomb = study.column("coulomb")
+    assert len(set(coulomb[noisy])) == 4  # each trial has noise of its own
+    assert coulomb[~noisy][::2] == pytest.approx(coulomb[~noisy][1::2], rel=1e-9)
+
+
+def test_presets_and_labelled_values_make_cells(
+    scenario: jid.Scenario, recording: jid.Recording, joint: jid.Joint
+) -> None:
+    slow = jid.Trajectory.thesis(0.5, cycle=6.0, duration=6.0)
+    found = jid.sweep(
+        scenario,
+        grid={"trajectory": {"wide": scenario.trajectory, "slow": slow}},
+        trials=1,
+        ga=jid.GaOptions(population=10, generations=5),
+    )
+    assert [cell["trajectory"] for cell in found.cells] == ["wide", "slow"]
+    assert found.rows[0].values != found.rows[1].values
+    presets = jid.sweep(
+        recording, joint, grid={"ga": ["default", "thesis"], "ga.generations": [5]}, trials=1
+    )
+    text = jid.identify(recording, joint, ga=jid.GaOptions.thesis().replace(generations=5))
+    assert presets.rows[1].values == {n: p.value for n, p in text.parameters.items()}
+
+
+def test_one_cell_needs_no_grid(recording: jid.Recording, joint: jid.Joint) -> None:
+    found = jid.sweep(recording, joint, trials=2)
+    assert (len(found.cells), len(found)) == (1, 2)
+    assert "coulomb" in str(found)
+
+
+def test_trials_side_by_side_are_the_searches_one_by_one() -> None:
+    rng = np.random.default_rng(1)
+    time_, position = np.arange(400) * 0.01, np.cumsum(rng.normal(size=400)) * 0.01
+    recording = jid.Recording(time=time_, position=position, torque=rng.normal(size=400))
+    core = _core.Recording(
+        time=recording.time,
+        position=recording.position,
+        velocity=recording.velocity,
+        torque=np.asarray(recording.torque),
+        sensor=None,
+        torque_hold=_core.Hold.linear,
+        gap_after=[],
+    )
+    penalty = _core.Penalty(
+        recordings=[core],
+        terms=["inertia", "coulomb", "viscous"],
+        windows=_core.WindowOptions(),
+        residual=_core.Residual.torque,
+    )
+    low, high = np.zeros(3), np.full(3, 5.0)
+    sizes = [jid.GaOptions(population=n, generations=g) for n, g in ((6, 9), (40, 3), (10, 70))]
+    seeds = [3, 2**63, 0]
+    for random in (False, True):
+        many = _core.minimise_trials(
+            penalty, low, high, options=sizes, seeds=seeds, random=random, threads=2
+        )
+        single = _core.minimise_random if random else _core.minimise_genetic
+        for options, seed, found in zip(sizes, seeds, many, strict=True):
+            alone = single(penalty, low, high, options=options, seed=seed)
+            assert found.best.tolist() == alone.best.tolist()
+            assert (found.penalty, found.evaluations) == (alone.penalty, alone.evaluations)
+            assert (found.stop, found.generations) == (alone.stop, alone.history[-1].number)
+    with pytest.raises(ValueError, match="as many, got 3 and 1"):
+        _core.minimise_trials(penalty, low, high, options=sizes, seeds=[1])
+
+
+def test_what_cannot_be_used_here_is_refused_there_only(
+    recording: jid.Recording, joint: jid.Joint
+) -> None:
+    found = jid.sweep(recording, joint, grid={"windows": [50, 1e9]}, trials=2)
+    assert [row.status for row in found.rows] == ["converged", "converged", "refused", "refused"]
+    assert "refused" in str(found)
+    assert np.isnan(found.column("penalty")[2:]).all()
+    assert found.column("message")[3]
+    with pytest.raises(jid.InputError, match="window"):
+        jid.sweep(recording, joint, grid={"windows": [1e9]}, trials=2)
+
+
+@pytest.mark.parametrize(
+    ("keywords", "told"),
+    [
+        ({"grid": {"ga.populaton": [20]}}, "'ga.populaton' cannot be swept; did you mean"),
+        ({"grid": {"sensors.torque_noise": [1.0]}}, "give a jointid.Scenario"),
+        ({"grid": {"windows": 100}}, "a list of values is expected"),
+        ({"grid": {"windows": []}}, "has no values"),
+        ({"grid": {"windows": [100, 100]}}, "a value twice"),
+        ({"grid": {"ga": [jid.GaOptions()]}}, "which a table cannot show"),
+        ({"grid": {"ga.population": [1]}}, "population"),
+        ({"grid": {"method": ["simplex"]}}, "method 'simplex' is not known"),
+        ({"grid": [("windows", 3)]}, "a mapping from a setting's name"),
+        ({"trials": 0}, "trials must be 1 to"),
+        ({"seed": 2**64 - 1, "trials": 2}, "seed must be 0 to"),
+        ({"seed": -1}, "seed must be 0 to"),
+        ({"sed": 1}, "'sed' is no option"),
+        ({"ga": "thesys"}, "ga must be GaOptions or one of"),
+        ({"tracking": True}, "give a jointid.Scenario"),
+        ({"resume": True}, "give it as output="),
+        ({"output": "x.csv"}, "grows in a .jsonl file"),
+        ({"output": "nowhere/x.jsonl"}, "does not exist"),
+        ({"executor": 3}, "a concurrent.futures.Executor is expected"),
+        ({"callback": 3}, "callback must be callable"),
+        ({"truth": 3}, "truth is 3"),
+        ({"truth": {"coulomb": "much"}}, "coulomb is 'much'"),
+        ({"stderr": 1}, "stderr must be True or False"),
+    ],
+)
+def test_wrong_input_is_told_in_a_sentence(
+    recording: jid.Recording, joint: jid.Joint, keywords: dict[str, Any], told: str
+) -> None:
+    with pytest.raises(jid.InputError, match=told) as error:
+        jid.sweep(recording, joint, **keywords)
+    assert "\n" not in str(error.value)
+
+
+def test_a_scenario_refuses_what_it_has_not(scenario: jid.Scenario, joint: jid.Joint) -> None:
+    with pytest.raises(jid.InputError, match=r"did you mean 'sensors\.torque_noise'"):
+        jid.sweep(scenario, grid={"sensors.torque_nois": [1.0]})
+    with pytest.raises(jid.InputError, match="Scenario: controller is 3"):
+        jid.Scenario(joint, 3, scenario.trajectory)  # type: ignore[arg-type]
+    with pytest.raises(jid.InputError, match="uses no estimates"):
+        jid.sweep(scenario.changed({"controller": jid.Pd(stiffness=1.0)}), tracking=True)
+    with pytest.raises(jid.InputError, match="is no field"):
+        scenario.changed({"controler": jid.Pd()})
+    with pytest.raises(jid.InputError, match="torque_noise"):
+        scenario.changed({"sensors.torque_noise": -1.0})
+
+
+def test_the_table_is_the_same_in_every_form(study: jid.Study, tmp_path: Path) -> None:
+    frame = study.to_pandas()
+    assert list(frame.columns) == list(study.columns)
+    assert frame["coulomb"].tolist() == [row.values["coulomb"] for row in study.rows]
+    study.save(tmp_path / "table.csv")
+    with (tmp_path / "table.csv").open(newline="") as file:
+        lines = list(csv.DictReader(file))
+    assert [float(line["coulomb"]) for line in lines] == frame["coulomb"].tolist()
+    study.save(tmp_path / "table.parquet")
+    parquet = pytest.importorskip("pyarrow.parquet").read_table(tmp_path / "table.parquet")
+    assert parquet.to_pydict()["penalty"] == frame["penalty"].tolist()
+    study.save(tmp_path / "study.jsonl")
+    back = jid.Study.load(tmp_path / "study.jsonl")
+    assert back.rows == study.rows
+    assert (back.cells, back.truth, back.trials) == (study.cells, study.truth, study.trials)
+    with pytest.raises(jid.InputError, match=r"saved as \.csv, \.parquet, \.jsonl"):
+        study.save(tmp_path / "table.xlsx")
+    with pytest.raises(jid.InputError, match="no column 'colomb'"):
+        study.column("colomb")
+
+
+def test_the_summary_counts_right(study: jid.Study) -> None:
+    summary = study.summary(within=0.02)
+    for number, cell in enumerate(summary.cells):
+        mine = [row for row in study.rows if row.cell == number]
+        values = np.array([row.values["static"] for row in mine])
+        true = study.truth["static"]
+        assert cell.mean["static"] == pytest.approx(values.mean(), rel=1e-15)
+        assert cell.bias["static"] == pytest.approx(values.mean() / true - 1.0, abs=1e-12)
+        near = [
+            all(abs(row.values[n] / v - 1.0) <= 0.02 for n, v in study.truth.items() if v)
+            for row in mine
+        ]
+        assert cell.success == pytest.approx(np.mean(near))
+    frame = summary.to_pandas()
+    assert len(frame) == 4
+    assert len(json.loads(json.dumps(summary.asdict()))["cells"]) == 4
+
+
+class _Interrupt:
+    """Raises after some trials, as Ctrl-C would."""
+
+    def __init__(self, after: int) -> None:
+        self.after = after
+
+    def __call__(self, step: jid.StudyStep) -> None:
+        if step.number >= self.after:
+            raise KeyboardInterrupt
+
+
+def test_ctrl_c_keeps_what_is_done(
+    recording: jid.Recording, joint: jid.Joint, tmp_path: Path
+) -> None:
+    again: dict[str, Any] = {"grid": {"windows": [50, 100, 200]}, "trials": 2}
+    whole = jid.sweep(recording, joint, **again)
+    path = tmp_path / "study.jsonl"
+    with pytest.raises(KeyboardInterrupt) as interrupted:
+        jid.sweep(recording, joint, callback=_Interrupt(2), output=path, **again)
+    assert isinstance(interrupted.value, jid.StudyInterruptedError)
+    kept = interrupted.value.study
+    assert not kept.complete
+    assert all(row in whole.rows for row in kept.rows)
+    assert jid.Study.load(path).rows == kept.rows
+    seen: list[Row] = []
+    rest = jid.sweep(
+        recording,
+        joint,
+        output=path,
+        resume=True,
+        callback=lambda step: seen.extend(step.rows),
+        **again,
+    )
+    assert rest.rows == whole.rows
+    assert sorted(r.place for r in [*kept.rows, *seen]) == [r.place for r in whole.rows]
+    assert jid.Study.load(path).rows == whole.rows
+
+
+def test_a_callback_stops(recording: jid.Recording, joint: jid.Joint) -> None:
+    found = jid.sweep(
+        recording, joint, grid={"windows": [50, 100, 200]}, trials=1, callback=lambda _: True
+    )
+    assert len(found) == 1
+    assert not found.complete
+
+
+def test_more_trials_are_added_to_a_finished_file(
+    recording: jid.Recording, joint: jid.Joint, tmp_path: Path
+) -> None:
+    path = tmp_path / "study.jsonl"
+    few = jid.sweep(recording, joint, grid=GRID, trials=1, output=path)
+    more = jid.sweep(recording, joint, grid=GRID, trials=3, output=path, resume=True)
+    assert more.rows == jid.sweep(recording, joint, grid=GRID, trials=3).rows
+    assert all(row in more.rows for row in few.rows)
+    assert jid.Study.load(path).trials == 3
+    fewer = jid.sweep(recording, joint, grid=GRID, trials=2, output=path, resume=True)
+    assert len(fewer) == 8
+
+
+def test_a_torn_line_is_done_again(
+    recording: jid.Recording, joint: jid.Joint, tmp_path: Path
+) -> None:
+    path = tmp_path / "study.jsonl"
+    whole = jid.sweep(recording, joint, grid=GRID, trials=2, output=path)
+    content = path.read_bytes()
+    for cut in (len(content) - 1, len(content) - 40, content.find(b"\n") + 1):
+        path.write_bytes(content[:cut])
+        assert jid.sweep(recording, joint, grid=GRID, trials=2, output=path, resume=True).rows == (
+            whole.rows
+        )
+        assert sorted(path.read_bytes().splitlines()[1:]) == sorted(content.splitlines()[1:])
+
+
+def test_another_studys_file_is_left_alone(
+    recording: jid.Recording, joint: jid.Joint, tmp_path: Path
+) -> None:
+    path = tmp_path / "study.jsonl"
+    jid.sweep(recording, joint, grid=GRID, trials=1, output=path)
+    content = path.read_bytes()
+    changes: list[tuple[dict[str, Any], str]] = [
+        ({"grid": GRID}, "go on with it by resume=True"),
+        ({"grid": {"ga.population": [8]}, "resume": True}, "other swept settings"),
+        ({"grid": GRID | {"ga.population": [8]}, "resume": True}, "other values of the grid"),
+        ({"grid": GRID, "seed": 1, "resume": True}, "another seed"),
+        ({"grid": GRID, "windows": 77, "resume": True}, "another options"),
+    ]
+    for keywords, told in changes:
+        with pytest.raises(jid.InputError, match=told):
+            jid.sweep(recording, joint, trials=1, output=path, **keywords)
+    other = recording.crop(0.0, 6.0)
+    with pytest.raises(jid.InputError, match="another subject"):
+        jid.sweep(other, joint, grid=GRID, trials=1, output=path, resume=True)
+    assert path.read_bytes() == content
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"{}\n", b"[1]\n", b"not json\n", b'{"format": "jointid-study"}\n', b"\xff\n"]
+)
+def test_a_file_that_is_no_study_is_refused(content: bytes, tmp_path: Path) -> None:
+    path = tmp_path / "study.jsonl"
+    path.write_bytes(content)
+    with pytest.raises(jid.InputError, match=r"study\.jsonl"):
+        jid.Study.load(path)
+
+
+_LONG = """
+import sys
+import jointid as jid
+from jointid.demo import data_folder
+recording = jid.load(data_folder() / "well_excited.csv.gz")
+try:
+    jid.sweep(
+        recording,
+        jid.thesis_joint(),
+        grid={"windows": list(range(50, 450, 10))},
+        trials=4,
+        ga="thesis",
+        output=sys.argv[1],
+        resume=True,
+        threads=2,
+    )
+except jid.StudyInterruptedError as interrupted:
+    print(len(interrupted.study))
+    raise SystemExit(130)
+"""
+
+
+@pytest.fixture(scope="module")
+def long_study(recording: jid.Recording, joint: jid.Joint) -> jid.Study:
+    windows = list(range(50, 450, 10))
+    return jid.sweep(recording, joint, grid={"windows": windows}, trials=4, ga="thesis")
+
+
+def _lines(path: Path) -> Iterator[str]:
+    return iter(path.read_text().splitlines() if path.exists() else [])
+
+
+@pytest.mark.parametrize("kill", [signal.SIGKILL, signal.SIGINT])
+def test_a_killed_study_goes_on(
+    kill: signal.Signals, long_study: jid.Study, tmp_path: Path
+) -> None:
+    path = tmp_path / "study.jsonl"
+    kills = 0
+    for _ in range(20):
+        begun = len(list(_lines(path)))
+        child = subprocess.Popen(
+            [sys.executable, "-c", _LONG, str(path)], stdout=subprocess.PIPE, text=True
+        )
+        while child.poll() is None and len(list(_lines(path))) < begun + 20:
+            time.sleep(0.002)
+        if child.poll() is None:
+            os.kill(child.pid, kill)
+            kills += 1
+        told, _ = child.communicate(timeout=60)
+        if child.returncode == 0:
+            break
+        if kill == signal.SIGINT:
+            assert child.returncode in (130, -signal.SIGINT)
+            if child.returncode == 130:
+                assert int(told) == len(jid.Study.load(path))
+    assert kills > 0
+    assert jid.Study.load(path).rows == long_study.rows
+    rows = [json.loads(line) for line in _lines(path)]
+    places = [(row["cell"], row["trial"]) for row in rows if "cell" in row]
+    assert len(places) == len(set(places)) == 160
+
+
+def test_a_plot_shows_each_cell(study: jid.Study) -> None:
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    try:
+        heat = jid.plot.sweep(study, value="error.coulomb")
+        assert len(heat.texts) == 4
+        assert (heat.get_xlabel(), heat.get_ylabel()) == ("ga.population", "ga.generations")
+        axes = pyplot.subplots()[1]
+        assert jid.plot.sweep(study, "ga.generations", value="static", axes=axes) is axes
+        assert "N·m" in axes.get_ylabel()
+        with pytest.raises(jid.InputError, match="has not swept 'windows'"):
+            jid.plot.sweep(study, "windows")
+        with pytest.raises(jid.InputError, match="knows no truth of"):
+            jid.plot.sweep(study, value="error.inertia")
+    finally:
+        pyplot.close("all")
