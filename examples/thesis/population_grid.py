@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 from scenario import (
     NOISE,
     TRUTH,
-    Penalty,
-    all_within,
     controller,
     errors,
     first_recording,
@@ -59,18 +57,23 @@ def run_grid(
     trials: int,
 ) -> Cells:
     """Search with every pair of settings."""
-    penalty = Penalty(first_recording(), hanging_joint())
+    study = jid.sweep(
+        first_recording(),
+        hanging_joint(),
+        grid={"ga.population": populations, "ga.generations": generations},
+        ga=options,
+        trials=trials,
+    )
     cells: Cells = {}
-    for population in populations:
-        for count in generations:
-            settings = options.replace(population=population, generations=count)
-            found = [penalty.genetic(settings, trial)[0] for trial in range(trials)]
-            missed = [errors(values) for values in found]
-            cells[population, count] = Cell(
-                mean={name: float(np.mean([values[name] for values in found])) for name in TRUTH},
-                good=sum(all_within(values) for values in found),
-                wrong={name: float(np.mean([abs(e[name]) for e in missed])) for name in TRUTH},
-            )
+    for number, (labels, summary) in enumerate(
+        zip(study.cells, study.summary().cells, strict=True)
+    ):
+        missed = [errors(row.values) for row in study.rows if row.cell == number]
+        cells[labels["ga.population"], labels["ga.generations"]] = Cell(
+            mean={name: summary.mean[name] for name in TRUTH},
+            good=round(summary.success * trials) if summary.success is not None else 0,
+            wrong={name: float(np.mean([abs(e[name]) for e in missed])) for name in TRUTH},
+        )
     return cells
 
 

@@ -1,0 +1,221 @@
+"""`make study`, fourth part: the joint simulated, identified, and simulated again; writes docs/accuracy.md.
+
+Every figure is over seeds of the sensors' noise, failures and all; nothing is left out.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import jointid as jid
+from jointid.files import write_whole
+
+TRUTH = {
+    "coulomb": 25.0,
+    "static": 20.0,
+    "stribeck": 100.0,
+    "viscous": 20.0,
+    "sensor_gain": 2.4,
+    "sensor_offset": 15.0,
+}
+# Table 6-3's initial estimates, in the order above.
+INITIAL = dict(zip(TRUTH, (10.0, 20.0, 200.0, 10.0, 1.0, 0.0), strict=True))
+NOISE = jid.Sensors(torque_noise=0.5)
+# 12 bit over ±217 readings, 16 conversions averaged 8 times; 2000 lines on the motor's shaft.
+CHAIN = NOISE.replace(
+    encoder_counts=8000,
+    velocity="counts",
+    converter_bits=12,
+    converter_range=217.34,
+    converter_noise=3.0,
+    converter_samples=128,
+)
+EVERYTHING = CHAIN.replace(ripple=2.6, nonlinearity=0.0014, filter_order=2, filter_frequency=5e3)
+PRESETS = {
+    "default": jid.GaOptions(),
+    "thesis(), 100 × 1000": jid.GaOptions.thesis(),
+    "thesis(), 200 × 1500": jid.GaOptions.thesis().replace(population=200, generations=1500),
+    "thesis_code(), 100 × 1000": jid.GaOptions.thesis_code(),
+    "thesis_code(), 200 × 1500": jid.GaOptions.thesis_code().replace(
+        population=200, generations=1500
+    ),
+}
+WANTED = {"noise 0.5 N·m": (2.0, 3.0), "encoder and converter, too": (4.0, 6.0)}  # [%]; stribeck
+
+
+def scenario(friction_velocity: str, control_period: float = 1e-3) -> jid.Scenario:
+    """The thesis's joint, its link hanging, ±60° in cycles of 3 s, on the initial estimates."""
+    joint = known_joint()
+    true = joint.with_parameters(TRUTH)
+    law = jid.AdaptiveRobust(**(jid.control_estimates(true) | INITIAL))
+    return jid.Scenario(
+        true,
+        law.replace(friction_velocity=friction_velocity),
+        jid.Trajectory.thesis(math.radians(60.0), cycle=3.0, duration=12.0),
+        NOISE,
+        control_period=control_period,
+    )
+
+
+def known_joint() -> jid.Joint:
+    """What a user knows of it."""
+    joint = jid.thesis_joint()
+    assert joint.link is not None
+    return joint.replace(link=replace(joint.link, angle=-math.pi / 2.0))
+
+
+def accuracy(trials: int) -> list[str]:
+    """Bias and spread of each parameter, ours beside the thesis's presets, on the same recordings."""
+    study = jid.sweep(
+        scenario("reference"),
+        known_joint(),
+        grid={
+            "sensors": {"noise 0.5 N·m": NOISE, "encoder and converter, too": CHAIN},
+            "ga": PRESETS,
+        },
+        trials=trials,
+        seed=1000,
+    )
+    lines = []
+    for sensors, (limit, stribeck_limit) in WANTED.items():
+        lines += [
+            f"\n### {sensors}\n",
+            f"Relative error [%] over {trials} recordings: mean ± standard deviation (worst).\n",
+            f"| search | {' | '.join(TRUTH)} | all within 5 % |",
+            f"|{'---|' * (len(TRUTH) + 2)}",
+        ]
+        for number, cell in enumerate(study.cells):
+            if cell["sensors"] != sensors:
+                continue
+            mine = [row for row in study.rows if row.cell == number]
+            errors = {
+                name: np.array([100.0 * (row.values[name] / true - 1.0) for row in mine])
+                for name, true in TRUTH.items()
+            }
+            shown = [
+                f"{e.mean():+.2f} ± {e.std(ddof=1):.2f} ({np.abs(e).max():.2f})"
+                for e in errors.values()
+            ]
+            near = np.all([np.abs(e) <= 5.0 for e in errors.values()], axis=0)
+            lines.append(f"| {cell['ga']} | {' | '.join(shown)} | {near.sum()} of {trials} |")
+            if cell["ga"] == "default":
+                worst = {name: float(np.abs(e).max()) for name, e in errors.items()}
+                limits = {n: stribeck_limit if n == "stribeck" else limit for n in worst}
+                held = all(worst[name] <= limits[name] for name in worst)
+                verdict = f"\nWanted of the default: {limit:g} % (stribeck {stribeck_limit:g} %) in every recording: "
+                verdict += "holds." if held else "does not hold."
+        lines.append(verdict)
+    return lines
+
+
+def ring(trials: int) -> list[str]:
+    """Tracking error with the initial estimates, the identified, and the true ones."""
+    lines = [
+        f"\nRMS tracking error [rad] after the first sixth, medians of {trials} seeds; the ratio of "
+        "each run to its own run with the "
+        "true parameters.\n",
+        "| friction compensated at | control | sensors | before | after | true | after / true, worst |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for velocity in ("reference", "measured"):
+        for period in (1e-3, 2e-3):
+            study = jid.sweep(
+                scenario(velocity, period),
+                known_joint(),
+                grid={
+                    "sensors": {
+                        "noise": NOISE,
+                        "encoder and converter": CHAIN,
+                        "and ripple, non-linearity": EVERYTHING,
+                    }
+                },
+                trials=trials,
+                seed=2000,
+                tracking=True,
+            )
+            for number, cell in enumerate(study.cells):
+                mine = [row.tracking for row in study.rows if row.cell == number]
+                ratio = np.array([t["after"] / t["true"] for t in mine])
+                before, after, true = (
+                    float(np.median([t[name] for t in mine]))
+                    for name in ("before", "after", "true")
+                )
+                lines.append(
+                    f"| {velocity} velocity | {1e3 * period:g} ms | {cell['sensors']} | {before:.2e} "
+                    f"| {after:.2e} | {true:.2e} | "
+                    f"{np.median(ratio):.3f}, {ratio.max():.3f} |"
+                )
+    return lines
+
+
+def grid() -> list[str]:
+    """The thesis's grid, and the closed loops with its averaged estimates."""
+    base = scenario("reference")
+    recording = base.simulate(0).recordings[0]
+    sizes = {
+        "ga.population": [20, 50, 100, 200],
+        "ga.generations": [20, 50, 100, 500, 1000, 1500],
+    }
+    seconds = []
+    for _ in range(3):
+        began = time.perf_counter()
+        study = jid.sweep(recording, known_joint(), grid=sizes, trials=10, ga="thesis")
+        summary = study.summary()
+        laws = [base.controller.replace(**_believed(cell.mean)) for cell in summary.cells]
+        runs = base.simulate(0, controllers=laws, recordings=False)
+        seconds.append(time.perf_counter() - began)
+    candidates = int(study.column("evaluations").sum())
+    return [
+        f"\n{len(study)} genetic searches, {candidates / 1e6:.1f} million candidates, and "
+        f"{len(runs.error)} closed-loop simulations "
+        f"with the averaged estimates: {np.median(seconds):.2f} s (median of {len(seconds)}; "
+        "`jid.sweep`, all threads).",
+    ]
+
+
+def _believed(mean: dict[str, float]) -> dict[str, Any]:
+    return {name: mean[name] for name in TRUTH}
+
+
+def main(trials: int, ring_trials: int, output: Path) -> None:
+    """All of it, as a page."""
+    lines = [
+        "# Accuracy on the simulated joint\n",
+        "Written by `benchmarks/ring_study.py` (`make study`); do not edit. The joint is "
+        "`thesis_joint()` with the link hanging down, moved "
+        "±60° for 12 s by the adaptive-robust controller on Table 6-3's initial estimates (10, 20, "
+        "200, 10, 1, 0) with adaptation off; "
+        "the truth is 25, 20, 100, 20, 2.4, 15. `identify` is called with the joint and nothing else.",
+        "\n## What comes out, and how it spreads",
+        *accuracy(trials),
+        "\nThe presets' searches are not polished: they stop on the ridge between gain and offset. "
+        "What the thesis says about them, and what "
+        "of it holds, is in [thesis.md](thesis.md).",
+        "\n## The ring closed: simulate, identify, simulate again",
+        *ring(ring_trials),
+        "\nRipple is not modelled here: `ripple=(2,)` takes its bias away. With friction compensated "
+        "at the measured velocity, as the "
+        "thesis has it, a joint that sticks gets no help, whatever the estimates; the error then is "
+        "mostly that of sticking, and differs "
+        "from run to run by chance.",
+        "\n## The thesis's grid",
+        *grid(),
+    ]
+    write_whole(output, ("\n".join(lines) + "\n").encode())
+    print(output.read_text())
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--trials", type=int, default=100)
+    parser.add_argument("--ring-trials", type=int, default=20)
+    parser.add_argument("--output", type=Path, default=Path("docs/accuracy.md"))
+    chosen = parser.parse_args()
+    main(chosen.trials, chosen.ring_trials, chosen.output)
