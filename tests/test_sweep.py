@@ -511,6 +511,14 @@ def test_a_plot_shows_each_cell(study: jid.Study) -> None:
         axes = pyplot.subplots()[1]
         assert jid.plot.sweep(study, "ga.generations", value="static", axes=axes) is axes
         assert "N·m" in axes.get_ylabel()
+        worst = jid.plot.sweep(study, value="error.worst", statistic="worst")
+        errors = [
+            max(abs(100.0 * (row.values[n] / v - 1.0)) for n, v in TRUTH.items())
+            for row in study.rows
+        ]
+        assert max(float(text.get_text()) for text in worst.texts) == pytest.approx(
+            max(errors), rel=0.01
+        )
         with pytest.raises(jid.InputError, match="has not swept 'windows'"):
             jid.plot.sweep(study, "windows")
         with pytest.raises(jid.InputError, match="knows no truth of"):

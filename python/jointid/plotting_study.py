@@ -45,7 +45,8 @@ def sweep(
         the other settings are taken together.
     value : str
         A column of the study's table (``"penalty"``, a parameter, ``"tracking_after"``, …), or
-        ``"error.NAME"``: a parameter's relative error [%]. Default ``"penalty"``.
+        ``"error.NAME"``: a parameter's relative error [%]; ``"error.worst"``: the largest of them.
+        Default ``"penalty"``.
     statistic : str
         "median" (default), "mean", "spread", "best" or "worst" of the trials; for an error, of its size.
     axes : Axes, optional
@@ -87,6 +88,11 @@ def _values(study: Study, value: str) -> tuple[Array, str]:
         if column.dtype.kind not in "fiu":
             raise InputError(f"'{value}' is a column of texts; one of numbers can be drawn")
         return column.astype(np.float64), _title(study, value)
+    if name == "worst":
+        known = sorted(set(study.truth_of(0)) & set(study.parameters))
+        if not known:
+            raise InputError("the study knows no truth; give sweep(truth={...})")
+        return np.max([_values(study, f"error.{n}")[0] for n in known], axis=0), "worst error [%]"
     found = study.column(name).astype(np.float64)
     try:
         true = np.array([study.truth_of(row.cell)[name] for row in study.rows])
