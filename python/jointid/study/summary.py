@@ -207,7 +207,7 @@ def _texts(summary: Summary) -> tuple[list[str], list[list[str]]]:
 def _fixed(cells: Sequence[CellSummary], name: str) -> bool:
     """Whether a parameter has the same value, but for rounding, wherever it was."""
     means = [cell.mean[name] for cell in cells if name in cell.mean]
-    alike = max(means) - min(means) <= 1e-14 * abs(means[0])
+    alike = max(means) - min(means) <= 1e-12 * abs(means[0])
     return alike and not any(cell.spread.get(name, 0.0) > 0.0 for cell in cells)
 
 
