@@ -6,8 +6,11 @@ using namespace simulate;
 
 namespace {
 
+/// Closed to writing, so that a recording may take it as it is.
 py::array_t<double> array_of(const std::vector<double>& values) {
-  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+  py::array_t<double> array(static_cast<py::ssize_t>(values.size()), values.data());
+  array.attr("flags").attr("writeable") = false;
+  return array;
 }
 
 py::dict signals_of(const Outcome& outcome) {

@@ -28,14 +28,21 @@ def json_mapping(argument: str, mapping: Mapping[str, Any]) -> Mapping[str, Any]
     """Return a read-only copy of a mapping, as JSON would give it back, or refuse it."""
     if not isinstance(mapping, Mapping):
         raise InputError(f"{argument} is a {type(mapping).__name__}; a mapping is expected")
-    copy = {}
-    for key, value in mapping.items():
+    for key in mapping:
         if not isinstance(key, str):
             raise InputError(f"{argument}: the key {key!r} is not a string")
-        try:
-            copy[key] = json.loads(json.dumps(value, allow_nan=False))
-        except (TypeError, ValueError, RecursionError):
-            raise InputError(
-                f"{argument}: {key!r} holds no JSON value (text, finite number, list, mapping)"
-            ) from None
-    return MappingProxyType(copy)
+    try:
+        return MappingProxyType(json.loads(json.dumps(dict(mapping), allow_nan=False)))
+    except (TypeError, ValueError, RecursionError):
+        culprit = next((key for key, value in mapping.items() if not _holds(value)), "all of it")
+        raise InputError(
+            f"{argument}: {culprit!r} holds no JSON value (text, finite number, list, mapping)"
+        ) from None
+
+
+def _holds(value: object) -> bool:
+    try:
+        json.dumps(value, allow_nan=False)
+    except (TypeError, ValueError, RecursionError):
+        return False
+    return True

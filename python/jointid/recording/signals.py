@@ -2,6 +2,7 @@
 
 import difflib
 from collections.abc import Callable, Collection, Mapping
+from typing import TypeGuard
 
 import numpy as np
 import numpy.typing as npt
@@ -80,13 +81,17 @@ def closest(name: object, known: Collection[str]) -> str | None:
 
 
 def signal_array(name: str, values: npt.ArrayLike, place: str = "") -> FloatArray:
-    """Return values as a read-only contiguous float64 copy of one dimension.
+    """Return values as a read-only contiguous float64 array of one dimension.
+
+    They are copied, unless nobody can write to them.
 
     Raises
     ------
     InputError
         They are not numbers, masked, or not one-dimensional.
     """
+    if _frozen(values):
+        return values
     before = f"{place}: " if place else ""
     if isinstance(values, np.ma.MaskedArray) and np.ma.getmaskarray(values).any():
         index = int(np.flatnonzero(np.ma.getmaskarray(values))[0])
@@ -111,6 +116,18 @@ def signal_array(name: str, values: npt.ArrayLike, place: str = "") -> FloatArra
         )
     copy.flags.writeable = False
     return copy
+
+
+def _frozen(values: object) -> TypeGuard[FloatArray]:
+    """Whether this is a signal's array already: its own memory, closed to writing."""
+    return (
+        type(values) is np.ndarray
+        and values.dtype == np.float64
+        and values.ndim == 1
+        and values.flags.owndata
+        and values.flags.c_contiguous
+        and not values.flags.writeable
+    )
 
 
 def _check_numbers(name: str, array: npt.NDArray[np.object_], before: str) -> None:

@@ -185,8 +185,10 @@ def _recording(
     signals = outcome.signals
     count = len(signals["position"])
     torque = signals["torque"]
+    time = np.arange(count) * (scenario.control_period * scenario.sample_every)
+    time.flags.writeable = False
     return SimulatedRecording(
-        time=np.arange(count) * (scenario.control_period * scenario.sample_every),
+        time=time,
         position=signals["position"],
         # What a controller estimates on line lags; a log is differentiated centrally instead.
         velocity=signals["velocity"] if scenario.sensors.velocity == "exact" else None,
