@@ -85,7 +85,7 @@ study: $(INSTALLED)  ## accuracy over many seeds; by hand, the results go to doc
 
 bench: $(INSTALLED) .venv/.bench-tools  ## speed against other libraries (20 min); writes docs/performance.md
 	@$(BIN)/python benchmarks/speed.py $(BENCH)
-	@$(BIN)/python benchmarks/simulation_speed.py
+	@$(BIN)/python benchmarks/simulation_speed.py --output docs/simulation_speed.md
 
 soak: $(INSTALLED)  ## hours of identification; by hand
 	@$(BIN)/python benchmarks/soak.py

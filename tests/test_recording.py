@@ -331,9 +331,9 @@ def test_where_nothing_can_be_saved(name: str, message: str, tmp_path: Path) -> 
 def test_arrays_that_nobody_can_write_to_are_taken_as_they_are() -> None:
     time, position = np.arange(10.0), np.sin(np.arange(10.0))
     time.flags.writeable = False
-    recording = jid.Recording(time=time, position=position, torque=np.zeros(10))
+    recording = Recording(time=time, position=position, torque=np.zeros(10))
     assert recording.time is time
     assert recording.position is not position
     view = np.arange(20.0)[::2]
     view.flags.writeable = False  # its base is open to writing
-    assert jid.Recording(time=time, position=view, torque=np.zeros(10)).position is not view
+    assert Recording(time=time, position=view, torque=np.zeros(10)).position is not view
