@@ -1,0 +1,197 @@
+"""Frames of Elmo's binary interpreter, both ways. Nothing here touches a bus.
+
+Layout, after Elmo's CANopen DS 301 implementation guide (MAN-CAN301IG): two letters, fourteen bits of
+index, a bit for query (towards the drive) or error (from it), a bit for float, four bytes of value.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import struct
+from dataclasses import dataclass
+
+from jointid.errors import InputError
+from jointid.hardware.elmo_errors import error_meaning
+
+_QUERY_OR_ERROR, _FLOAT = 0x40, 0x80
+_LARGEST_INDEX = 0x3FFF
+_LETTERS = re.compile(r"[A-Z]{2}")
+# Commands that act instead of assigning: sent without a value.
+EXECUTED = frozenset({"BG", "ST", "BT", "HX", "KL", "LD", "RS", "SV", "XC", "XQ"})
+
+
+class DriveError(RuntimeError):
+    """The drive refused a command.
+
+    Parameters
+    ----------
+    letters : str
+    index : int
+    code : int
+        EC.
+    """
+
+    def __init__(self, letters: str, index: int, code: int) -> None:
+        super().__init__(
+            f"the drive refused {_named(letters, index)}: {error_meaning(code)} (EC {code})"
+        )
+        self.letters, self.index, self.code = letters, index, code
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Command:
+    """One command to the drive.
+
+    Attributes
+    ----------
+    letters : str
+        Two capital letters, e.g. "TC".
+    index : int
+        0 for a scalar; 1 in CL[1].
+    value : int, float or None
+        What is assigned; None: a query, or an execution for such commands as ST.
+    """
+
+    letters: str
+    index: int = 0
+    value: int | float | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.letters, str) or not _LETTERS.fullmatch(self.letters):
+            raise InputError(
+                f"Command: letters is {self.letters!r}; two capital letters are expected"
+            )
+        if isinstance(self.index, bool) or not isinstance(self.index, int):
+            raise InputError(f"Command: index is {self.index!r}; a whole number is expected")
+        if not 0 <= self.index <= _LARGEST_INDEX:
+            raise InputError(f"Command: index is {self.index}; 0 to {_LARGEST_INDEX} is expected")
+        if self.value is not None:
+            _check_value(_named(self.letters, self.index), self.value)
+
+    @property
+    def key(self) -> tuple[str, int]:
+        """By which a reply is told to belong to it."""
+        return self.letters, self.index
+
+    @property
+    def executes(self) -> bool:
+        """Whether it acts, having no value."""
+        return self.value is None and self.letters in EXECUTED
+
+    def payload(self) -> bytes:
+        """The frame's bytes: four for a query or an execution, eight for an assignment.
+
+        An eight-byte frame of zeros would assign 0, e.g. set the encoder anew with PX; a query is
+        therefore always four bytes long.
+        """
+        letters = self.letters.encode("ascii")
+        low, high = self.index & 0xFF, self.index >> 8
+        if self.value is None:
+            return letters + bytes((low, high))
+        if isinstance(self.value, float):
+            return letters + bytes((low, high | _FLOAT)) + struct.pack("<f", self.value)
+        return letters + bytes((low, high)) + struct.pack("<i", self.value)
+
+    @classmethod
+    def of(cls, payload: bytes) -> Command:
+        """The command of a frame, as the drive reads it.
+
+        Raises
+        ------
+        InputError
+            The bytes are no command.
+        """
+        letters, index, flags = _head(payload)
+        if len(payload) == 4 or flags & _QUERY_OR_ERROR:
+            return cls(letters=letters, index=index)
+        if len(payload) != 8:
+            raise InputError(f"a command of {len(payload)} bytes; 4 or 8 are expected")
+        return cls(letters=letters, index=index, value=_value(payload, flags))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reply:
+    """What the drive answered.
+
+    Attributes
+    ----------
+    letters : str
+    index : int
+    value : int or float
+        Of an assignment, the value assigned; of an execution, 0.
+    """
+
+    letters: str
+    index: int
+    value: int | float
+
+    @property
+    def key(self) -> tuple[str, int]:
+        """Of the command that it belongs to."""
+        return self.letters, self.index
+
+    def payload(self) -> bytes:
+        """The frame's eight bytes."""
+        _check_value(_named(self.letters, self.index), self.value)
+        return Command(letters=self.letters, index=self.index, value=self.value).payload()
+
+    @classmethod
+    def of(cls, payload: bytes) -> Reply:
+        """The reply of a frame.
+
+        Raises
+        ------
+        DriveError
+            The drive refused; its value is then never one.
+        InputError
+            The bytes are no reply.
+        """
+        letters, index, flags = _head(payload)
+        if len(payload) != 8:
+            raise InputError(f"a reply of {len(payload)} bytes; 8 are expected")
+        if flags & _QUERY_OR_ERROR:
+            raise DriveError(letters, index, int.from_bytes(payload[4:8], "little"))
+        return cls(letters=letters, index=index, value=_value(payload, flags))
+
+
+def refusal(letters: str, index: int, code: int) -> bytes:
+    """The frame of a reply that refuses."""
+    low, high = index & 0xFF, index >> 8
+    return letters.encode("ascii") + bytes((low, high | _QUERY_OR_ERROR)) + struct.pack("<I", code)
+
+
+def _named(letters: str, index: int) -> str:
+    return f"{letters}[{index}]" if index else letters
+
+
+def _head(payload: bytes) -> tuple[str, int, int]:
+    if len(payload) < 4:
+        raise InputError(f"an interpreter frame of {len(payload)} bytes; at least 4 are expected")
+    letters = bytes(payload[:2]).decode("latin-1")
+    if not _LETTERS.fullmatch(letters):
+        raise InputError(
+            f"an interpreter frame that begins with {payload[:2].hex(' ')}; two capital letters are expected"
+        )
+    return letters, payload[2] | (payload[3] & 0x3F) << 8, payload[3]
+
+
+def _value(payload: bytes, flags: int) -> int | float:
+    if not flags & _FLOAT:
+        return int(struct.unpack("<i", payload[4:8])[0])
+    value = float(struct.unpack("<f", payload[4:8])[0])
+    if not math.isfinite(value):
+        raise InputError(
+            f"the value of {payload[:2].decode('latin-1')} is {value}, which is no number"
+        )
+    return value
+
+
+def _check_value(named: str, value: object) -> None:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(f"{named}: the value is {value!r}; an int or a float is expected")
+    if isinstance(value, float):
+        if not math.isfinite(value) or abs(value) > 3.4028234e38:
+            raise InputError(f"{named}: the value is {value!r}; a finite 32-bit float is expected")
+    elif not -(2**31) <= value < 2**31:
+        raise InputError(f"{named}: the value is {value}; a 32-bit integer is expected")
