@@ -1,5 +1,7 @@
 #include "bind/simulate.hpp"
 
+#include "simulate/stepped_joint.hpp"
+
 namespace jointid::bind {
 
 using namespace simulate;
@@ -115,6 +117,30 @@ void bind_scenario(py::module_& m) {
                     "Control periods in which the torque limit cut the command.");
 }
 
+void bind_stepped(py::module_& m) {
+  py::class_<Observation>(m, "Observation", "What sensors show at one instant.")
+      .def_readonly("position", &Observation::position, "[rad]")
+      .def_readonly("velocity", &Observation::velocity, "[rad/s]")
+      .def_readonly("reading", &Observation::reading, "Of the torque sensor.");
+  py::class_<SteppedJoint>(m, "SteppedJoint", "A simulated joint that is moved step by step.")
+      .def(py::init([](const model::Joint& joint, const Sensors& sensors, double gear_ratio,
+                       double sensor_gain, double sensor_offset, double period, double step,
+                       double position, double velocity, std::uint64_t seed) {
+             return SteppedJoint({joint, sensors, gear_ratio, sensor_gain, sensor_offset, period,
+                                  step, position, velocity, seed});
+           }),
+           py::kw_only(), py::arg("joint"), py::arg("sensors"), py::arg("gear_ratio"),
+           py::arg("sensor_gain"), py::arg("sensor_offset"), py::arg("period"), py::arg("step"),
+           py::arg("position"), py::arg("velocity"), py::arg("seed"))
+      .def("advance", &SteppedJoint::advance, py::arg("torque"), py::arg("duration"),
+           "Hold a torque [N·m] for a time [s].")
+      .def("observe", &SteppedJoint::observe, "What the sensors show; advances their noise.")
+      .def_property_readonly("time", &SteppedJoint::time, "[s]")
+      .def_property_readonly("position", &SteppedJoint::position, "[rad]")
+      .def_property_readonly("velocity", &SteppedJoint::velocity, "[rad/s]")
+      .def_property_readonly("link_torque", &SteppedJoint::link_torque, "[N·m]");
+}
+
 }  // namespace
 
 void bind_simulate(py::module_& m) {
@@ -123,6 +149,7 @@ void bind_simulate(py::module_& m) {
   bind_sensors(m);
   bind_controllers(m);
   bind_scenario(m);
+  bind_stepped(m);
   m.def(
       "simulate_runs",
       [](const Scenario& scenario, const Trajectory& trajectory, const std::vector<Setup>& setups,
