@@ -22,7 +22,7 @@ _ABORTS = {
 }
 
 
-class SdoAbort(RuntimeError):
+class SdoAbortError(RuntimeError):
     """The drive refused an object.
 
     Parameters
@@ -97,7 +97,9 @@ class SdoRequest:
             size = 4 - (payload[0] >> 2 & 0x3)
             number = int.from_bytes(payload[4 : 4 + size], "little")
             return cls(index=index, subindex=subindex, value=number, size=size)
-        raise InputError(f"an SDO request that begins with {payload[0]:02X}; expedited ones are expected")
+        raise InputError(
+            f"an SDO request that begins with {payload[0]:02X}; expedited ones are expected"
+        )
 
 
 def sdo_answer(request: SdoRequest, value: int | None = None) -> bytes:
@@ -118,7 +120,7 @@ def sdo_result(payload: bytes, request: SdoRequest) -> int | None:
 
     Raises
     ------
-    SdoAbort
+    SdoAbortError
         The drive refused.
     """
     if len(payload) != 8:
@@ -127,7 +129,7 @@ def sdo_result(payload: bytes, request: SdoRequest) -> int | None:
     if (index, subindex) != (request.index, request.subindex):
         return None
     if payload[0] == 0x80:
-        raise SdoAbort(index, subindex, int.from_bytes(payload[4:8], "little"))
+        raise SdoAbortError(index, subindex, int.from_bytes(payload[4:8], "little"))
     if payload[0] == 0x60:
         return 0
     if payload[0] & 0xF3 == 0x43:

@@ -1,0 +1,78 @@
+"""An analog-to-digital node that is not there: it converts the torque sensor's voltage at each SYNC."""
+
+from __future__ import annotations
+
+import math
+import struct
+from typing import TYPE_CHECKING
+
+import can
+
+from jointid.hardware.canopen_frames import SYNC
+from jointid.hardware.torque_source import SensorScaling
+
+if TYPE_CHECKING:
+    from jointid.hardware.emulated_bus import EmulatedBus
+    from jointid.hardware.emulated_elmo import EmulatedElmo
+
+
+class EmulatedConverter:
+    """Sends the sum of its conversions as a 32-bit integer, at each SYNC.
+
+    Parameters
+    ----------
+    drive : EmulatedElmo
+        Whose joint has the sensor.
+    scaling : SensorScaling
+        Between voltage and reading.
+    identifier : int
+        COB-ID of its frame.
+    bits, lowest, highest : int, float, float
+        Of the converter; [V].
+    conversions : int
+        Summed for one frame.
+    """
+
+    def __init__(
+        self,
+        drive: EmulatedElmo,
+        scaling: SensorScaling | None = None,
+        *,
+        identifier: int = 0x1C0,
+        bits: int = 12,
+        lowest: float = 0.0,
+        highest: float = 3.0,
+        conversions: int = 128,
+    ) -> None:
+        self._drive = drive
+        self._scaling = scaling if scaling is not None else SensorScaling()
+        self._identifier = identifier
+        self._levels = 2**bits
+        self._lowest, self._highest = lowest, highest
+        self._conversions = conversions
+        self._bus: EmulatedBus | None = None
+        self.stuck: bytes | None = None
+
+    def attach(self, bus: EmulatedBus) -> None:
+        """Remember the bus."""
+        self._bus = bus
+
+    def receive(self, message: can.Message) -> None:
+        """Convert at a SYNC."""
+        if message.arbitration_id != SYNC or self._bus is None:
+            return
+        self._drive.advance()
+        joint = self._drive.joint
+        reading = joint.observe().reading
+        voltage = self._scaling.voltage(reading, joint.position)
+        payload = self.stuck if self.stuck is not None else self._converted(voltage)
+        self._bus.transmit(
+            can.Message(arbitration_id=self._identifier, data=payload, is_extended_id=False)
+        )
+
+    def _converted(self, voltage: float) -> bytes:
+        """The sum of conversions dithered evenly over a step, which a noisy signal does by itself."""
+        share = (voltage - self._lowest) / (self._highest - self._lowest) * self._levels
+        total = math.floor(share * self._conversions)
+        highest = (self._levels - 1) * self._conversions
+        return struct.pack("<i", max(0, min(highest, total)))

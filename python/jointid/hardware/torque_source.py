@@ -1,0 +1,114 @@
+"""Where a session reads the joint's torque sensor: a converter on the bus, or the drive's analog input."""
+
+from __future__ import annotations
+
+import math
+import struct
+from dataclasses import dataclass
+
+from jointid.errors import InputError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensorScaling:
+    """From the voltage to the raw reading: full_scale · ((V − centre) / span − zero − cosine · cos(q + start)).
+
+    The defaults are the thesis's bench: 3 V centred on 1.5 V, and a zero that moves with the position.
+
+    Parameters
+    ----------
+    full_scale : float
+        Reading of a deflection by the span.
+    centre, span : float
+        [V]
+    zero, cosine : float
+        Shares of the full scale.
+    start : float
+        [rad]
+    """
+
+    full_scale: float = 217.34
+    centre: float = 1.5
+    span: float = 1.5
+    zero: float = 0.0
+    cosine: float = 0.0
+    start: float = 0.0
+
+    def reading(self, voltage: float, position: float) -> float:
+        """The raw reading."""
+        correction = self.zero + self.cosine * math.cos(position + self.start)
+        return self.full_scale * ((voltage - self.centre) / self.span - correction)
+
+    def voltage(self, reading: float, position: float) -> float:
+        """The voltage of a raw reading [V]."""
+        correction = self.zero + self.cosine * math.cos(position + self.start)
+        return self.centre + self.span * (reading / self.full_scale + correction)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SyncedConverter:
+    """A node that converts at each SYNC and sends a 32-bit sum of its conversions.
+
+    Parameters
+    ----------
+    identifier : int
+        COB-ID of its frame. Default 0x1C0.
+    bits : int
+    lowest, highest : float
+        [V]
+    conversions : int
+        In the sum.
+    scaling : SensorScaling
+    """
+
+    identifier: int = 0x1C0
+    bits: int = 12
+    lowest: float = 0.0
+    highest: float = 3.0
+    conversions: int = 128
+    scaling: SensorScaling = SensorScaling()
+
+    def voltage(self, payload: bytes) -> float:
+        """The mean voltage of a frame [V].
+
+        Raises
+        ------
+        InputError
+            The frame is too short.
+        """
+        if len(payload) < 4:
+            raise InputError(
+                f"a converter's frame of {len(payload)} bytes; at least 4 are expected"
+            )
+        total = float(struct.unpack_from("<i", payload)[0])
+        share = (total + 0.5) / self.conversions / 2**self.bits
+        return self.lowest + share * (self.highest - self.lowest)
+
+    def clipped(self, voltage: float) -> bool:
+        """Whether it is at the end of its range."""
+        step = (self.highest - self.lowest) / 2**self.bits
+        return not self.lowest + 2.0 * step < voltage < self.highest - 2.0 * step
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AnalogInput:
+    """The drive's own analog input, asked every few cycles.
+
+    Parameters
+    ----------
+    number : int
+        1 or 2: AN[number].
+    every : int
+        Control cycles between two questions; each cycle would load bus and drive too much.
+    scaling : SensorScaling
+    """
+
+    number: int = 1
+    every: int = 4
+    scaling: SensorScaling = SensorScaling()
+
+    def __post_init__(self) -> None:
+        if self.number not in (1, 2):
+            raise InputError(f"AnalogInput: number is {self.number!r}; 1 or 2 is expected")
+        if not 1 <= self.every <= 1000:
+            raise InputError(f"AnalogInput: every is {self.every!r}; 1 to 1000 is expected")
