@@ -82,6 +82,10 @@ class Drive(Protocol):
     def close(self) -> None:
         """Leave the drive and the bus as they were found."""
 
+    @property
+    def command_latency(self) -> float:
+        """From sending a command until the drive acts on it [s]."""
+
     def bus_load(self, period: float) -> float:
         """Share of the bus that a cycle takes."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import struct
-from dataclasses import dataclass
+from collections.abc import Callable
 from typing import Any
 
 import can
@@ -14,58 +14,15 @@ from jointid.hardware import canopen_frames as canopen
 from jointid.hardware.clock import Clock, MonotonicClock
 from jointid.hardware.drive import DriveFaultError, DriveSample
 from jointid.hardware.elmo_codec import Command, DriveError, Reply
+from jointid.hardware.elmo_decoder import ElmoDecoder
 from jointid.hardware.elmo_errors import DriveStatus, Emergency, failure_meaning
+from jointid.hardware.elmo_options import ElmoOptions
 from jointid.hardware.torque_source import AnalogInput, SyncedConverter
 from jointid.joint.joint import Joint
 
 _BOOT, _ANSWER, _ENABLE = 2.0, 0.2, 3.0  # [s] to wait for each
+Tap = Callable[[float, int, bytes, bool], None]  # time, identifier, payload, whether sent
 _MASTER = 1  # our node, whose heartbeat the drive watches
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ElmoOptions:
-    """How a drive is wired and addressed.
-
-    Attributes
-    ----------
-    node : int
-        1 to 127.
-    counts_per_turn : int
-        Encoder counts of a motor turn.
-    position_offset : float
-        Output angle where the encoder counts 0 [rad].
-    cob_command, cob_reply, cob_position : int, optional
-        COB-IDs of interpreter commands, replies, and the position's PDO. Default: 0x300, 0x280 and
-        0x480 plus the node.
-    heartbeat : float
-        Without our heartbeat for so long the drive stops by itself [s].
-    torque : SyncedConverter, AnalogInput or None
-        Where the joint's torque sensor is read.
-    bitrate : float
-        Of the bus [bit/s], to reckon its load.
-    """
-
-    node: int = 127
-    counts_per_turn: int = 8000
-    position_offset: float = 0.0
-    cob_command: int | None = None
-    cob_reply: int | None = None
-    cob_position: int | None = None
-    heartbeat: float = 0.05
-    torque: SyncedConverter | AnalogInput | None = SyncedConverter()
-    bitrate: float = 500_000.0
-
-    def __post_init__(self) -> None:
-        if not 1 <= self.node <= 127:
-            raise InputError(f"ElmoOptions: node is {self.node}; 1 to 127 is expected")
-        if self.counts_per_turn < 1:
-            raise InputError(
-                f"ElmoOptions: counts_per_turn is {self.counts_per_turn}; at least 1 is expected"
-            )
-        if not 0.005 <= self.heartbeat <= 10.0:
-            raise InputError(
-                f"ElmoOptions: heartbeat is {self.heartbeat}; 0.005 to 10 s is expected"
-            )
 
 
 class ElmoDrive:
@@ -94,15 +51,11 @@ class ElmoDrive:
         self.options = options if options is not None else ElmoOptions()
         node = self.options.node
         self._bus = bus
+        self.tap: Tap | None = None
         self._clock: Clock = bus if hasattr(bus, "sleep_until") else MonotonicClock()  # type: ignore[assignment]
         self._per_ampere = joint.torque_constant * joint.gear_ratio
-        self._per_count = 2.0 * math.pi / (self.options.counts_per_turn * joint.gear_ratio)
-        self._command_id = self.options.cob_command or 0x300 + node
-        self._reply_id = self.options.cob_reply or 0x280 + node
-        self._position_id = self.options.cob_position or 0x480 + node
-        self._counts: int | None = None
-        self._current = math.nan
-        self._reading, self._fresh, self._clipped = 0.0, False, False
+        self._command_id = self.options.command_id
+        self._seen = ElmoDecoder(joint, self.options)
         self._replies: dict[tuple[str, int], Reply | DriveError] = {}
         self._answers: list[bytes] = []
         self._booted = self._up = False
@@ -110,7 +63,6 @@ class ElmoDrive:
         self._cycle = 0
         self._identity: dict[str, Any] = {"drive": "Elmo SimplIQ", "node": node}
         self._peak = math.inf
-        self._rated = math.nan
 
     @property
     def clock(self) -> Clock:
@@ -139,8 +91,9 @@ class ElmoDrive:
         self._ask(Command(letters="RM", value=0))
         self._ask(Command(letters="UM", value=1))
         self._peak = float(self._ask(Command(letters="PL", index=1)).value)
-        self._rated = float(self._ask(Command(letters="CL", index=1)).value)
-        self._identity |= {"peak_current": self._peak, "continuous_current": self._rated}
+        rated = float(self._ask(Command(letters="CL", index=1)).value)
+        self._seen.rated_current = rated
+        self._identity |= {"peak_current": self._peak, "continuous_current": rated}
         self._up = True
         del period
 
@@ -175,27 +128,22 @@ class ElmoDrive:
     def read(self, timeout: float) -> DriveSample:
         """Position, current and sensor at a SYNC."""
         taken = self._clock.now()
-        self._counts, self._fresh = None, False
+        self._seen.begin()
         self._send(canopen.SYNC, b"")
         source = self.options.torque
         if isinstance(source, AnalogInput) and self._cycle % source.every == 0:
             self._send(self._command_id, Command(letters="AN", index=source.number).payload())
         self._cycle += 1
-        synced = isinstance(source, SyncedConverter)
         self._wait(
-            lambda: self._counts is not None and (self._fresh or not synced),
-            timeout,
-            "no answer to the SYNC",
-            kind="stale_position",
+            lambda: self._seen.complete, timeout, "no answer to the SYNC", kind="stale_position"
         )
-        assert self._counts is not None
         return DriveSample(
             time=taken,
-            position=self._counts * self._per_count + self.options.position_offset,
-            reading=self._reading,
-            fresh=self._fresh or source is None,
-            clipped=self._clipped,
-            current=self._current,
+            position=self._seen.position,
+            reading=self._seen.reading,
+            fresh=self._seen.fresh or source is None,
+            clipped=self._seen.clipped,
+            current=self._seen.current,
         )
 
     def command(self, torque: float) -> float:
@@ -210,7 +158,9 @@ class ElmoDrive:
         """TC = 0, then MO = 0, both sent whatever the bus says; the last is asked for an answer."""
         for command in (Command(letters="TC", value=0.0), Command(letters="MO", value=0)):
             try:
-                self._bus.send(self._message(self._command_id, command.payload()), timeout=0.05)
+                payload = command.payload()
+                self._bus.send(self._message(self._command_id, payload), timeout=0.05)
+                self._tapped(self._command_id, payload, sent=True)
             except can.CanError:
                 continue  # the drive's own watchdog remains
 
@@ -225,6 +175,11 @@ class ElmoDrive:
             self._drain(0.01)
         except (can.CanError, DriveFaultError):
             return
+
+    @property
+    def command_latency(self) -> float:
+        """From sending a command until the drive acts on it [s], reckoned."""
+        return canopen.bits_on_wire(8) / self.options.bitrate + self.options.execution_delay
 
     def bus_load(self, period: float) -> float:
         """Share of the bus: SYNC, position, command with echo, heartbeat, sensor."""
@@ -248,7 +203,7 @@ class ElmoDrive:
 
     def _map_position(self) -> None:
         """Position and torque in the fourth PDO, at each SYNC: off, mapped, on."""
-        cob = self._position_id
+        cob = self.options.position_id
         for index, subindex, value, size in (
             (0x1803, 1, 0xC0000000 | cob, 4),
             (0x1A03, 0, 0, 1),
@@ -304,6 +259,7 @@ class ElmoDrive:
     def _send(self, identifier: int, payload: bytes) -> None:
         try:
             self._bus.send(self._message(identifier, payload), timeout=0.01)
+            self._tapped(identifier, payload, sent=True)
         except can.CanError as error:
             raise DriveFaultError("bus", f"a frame could not be sent: {error}") from error
 
@@ -333,19 +289,20 @@ class ElmoDrive:
                 "bus", f"an error frame (class 0x{message.arbitration_id:X}): bus-off or bad wiring"
             )
             return True
-        self._sort(message.arbitration_id, bytes(message.data))
+        payload = bytes(message.data)
+        self._tapped(message.arbitration_id, payload, sent=False)
+        self._sort(message.arbitration_id, payload)
         return True
 
+    def _tapped(self, identifier: int, payload: bytes, *, sent: bool) -> None:
+        if self.tap is not None:
+            self.tap(self._clock.now(), identifier, payload, sent)
+
     def _sort(self, identifier: int, payload: bytes) -> None:
-        node, source = self.options.node, self.options.torque
-        if identifier == self._position_id and len(payload) >= 4:
-            self._counts = int(struct.unpack_from("<i", payload)[0])
-            if len(payload) >= 6:
-                share = struct.unpack_from("<h", payload, 4)[0]
-                self._current = share / 1000.0 * self._rated
-        elif isinstance(source, SyncedConverter) and identifier == source.identifier:
-            self._take_voltage(source.voltage(payload))
-        elif identifier == self._reply_id:
+        node = self.options.node
+        if self._seen.take(identifier, payload):
+            return
+        if identifier == self.options.reply_id:
             self._take_reply(payload)
         elif identifier == 0x580 + node:
             self._answers.append(payload)
@@ -355,14 +312,6 @@ class ElmoDrive:
             if self._up:
                 self._fault = DriveFaultError("drive_fault", "the drive has started anew")
             self._booted = True
-
-    def _take_voltage(self, voltage: float) -> None:
-        source = self.options.torque
-        assert source is not None
-        position = (self._counts or 0) * self._per_count + self.options.position_offset
-        self._reading = source.scaling.reading(voltage, position)
-        self._clipped = isinstance(source, SyncedConverter) and source.clipped(voltage)
-        self._fresh = True
 
     def _take_reply(self, payload: bytes) -> None:
         try:
@@ -376,7 +325,7 @@ class ElmoDrive:
             self._fault = DriveFaultError("drive_fault", f"an unreadable reply: {error}")
             return
         if reply.letters == "AN":
-            self._take_voltage(float(reply.value))
+            self._seen.take_voltage(float(reply.value))
         self._replies[reply.key] = reply
 
     def _take_emergency(self, payload: bytes) -> None:

@@ -1,0 +1,63 @@
+"""What an Elmo drive's cyclic frames say; for a session and for the replay of its frame log."""
+
+from __future__ import annotations
+
+import math
+import struct
+
+from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.torque_source import SyncedConverter
+from jointid.joint.joint import Joint
+
+
+class ElmoDecoder:
+    """Position, current and torque sensor out of frames.
+
+    Parameters
+    ----------
+    joint : Joint
+    options : ElmoOptions
+    """
+
+    def __init__(self, joint: Joint, options: ElmoOptions) -> None:
+        self._joint, self._options = joint, options
+        self.rated_current = math.nan
+        self.current = math.nan
+        self.position = 0.0
+        self.reading = 0.0
+        self.positioned = self.fresh = self.clipped = False
+
+    def begin(self) -> None:
+        """A SYNC goes out: what comes now is new."""
+        self.positioned = self.fresh = False
+
+    @property
+    def complete(self) -> bool:
+        """Whether all that a SYNC asks for has come."""
+        synced = isinstance(self._options.torque, SyncedConverter)
+        return self.positioned and (self.fresh or not synced)
+
+    def take(self, identifier: int, payload: bytes) -> bool:
+        """Read a frame; whether it was one of these."""
+        source = self._options.torque
+        if identifier == self._options.position_id and len(payload) >= 4:
+            self.position = self._options.angle(struct.unpack_from("<i", payload)[0], self._joint)
+            self.positioned = True
+            if len(payload) >= 6:
+                share = struct.unpack_from("<h", payload, 4)[0]
+                self.current = share / 1000.0 * self.rated_current
+            return True
+        if isinstance(source, SyncedConverter) and identifier == source.identifier:
+            if len(payload) >= 4:
+                self.take_voltage(source.voltage(payload))
+            return True
+        return False
+
+    def take_voltage(self, voltage: float) -> None:
+        """Read the torque sensor's voltage."""
+        source = self._options.torque
+        if source is None:
+            return
+        self.reading = source.scaling.reading(voltage, self.position)
+        self.clipped = isinstance(source, SyncedConverter) and source.clipped(voltage)
+        self.fresh = True

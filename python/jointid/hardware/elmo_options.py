@@ -1,0 +1,79 @@
+"""How an Elmo drive is wired and addressed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from jointid.errors import InputError
+from jointid.hardware.torque_source import AnalogInput, SyncedConverter
+from jointid.joint.joint import Joint
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ElmoOptions:
+    """How a drive is wired and addressed.
+
+    Attributes
+    ----------
+    node : int
+        1 to 127.
+    counts_per_turn : int
+        Encoder counts of a motor turn.
+    position_offset : float
+        Output angle where the encoder counts 0 [rad].
+    cob_command, cob_reply, cob_position : int, optional
+        COB-IDs of interpreter commands, replies, and the position's PDO. Default: 0x300, 0x280 and
+        0x480 plus the node.
+    heartbeat : float
+        Without our heartbeat for so long the drive stops by itself [s].
+    torque : SyncedConverter, AnalogInput or None
+        Where the joint's torque sensor is read.
+    bitrate : float
+        Of the bus [bit/s], to reckon its load.
+    execution_delay : float
+        From a command's arrival until the drive acts on it: it waits for the drive's idle loop [s].
+    """
+
+    node: int = 127
+    counts_per_turn: int = 8000
+    position_offset: float = 0.0
+    cob_command: int | None = None
+    cob_reply: int | None = None
+    cob_position: int | None = None
+    heartbeat: float = 0.05
+    torque: SyncedConverter | AnalogInput | None = SyncedConverter()
+    bitrate: float = 500_000.0
+    execution_delay: float = 0.3e-3
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.node <= 127:
+            raise InputError(f"ElmoOptions: node is {self.node}; 1 to 127 is expected")
+        if self.counts_per_turn < 1:
+            raise InputError(
+                f"ElmoOptions: counts_per_turn is {self.counts_per_turn}; at least 1 is expected"
+            )
+        if not 0.005 <= self.heartbeat <= 10.0:
+            raise InputError(
+                f"ElmoOptions: heartbeat is {self.heartbeat}; 0.005 to 10 s is expected"
+            )
+
+    @property
+    def command_id(self) -> int:
+        """COB-ID of interpreter commands."""
+        return self.cob_command if self.cob_command is not None else 0x300 + self.node
+
+    @property
+    def reply_id(self) -> int:
+        """COB-ID of interpreter replies."""
+        return self.cob_reply if self.cob_reply is not None else 0x280 + self.node
+
+    @property
+    def position_id(self) -> int:
+        """COB-ID of the PDO with the position."""
+        return self.cob_position if self.cob_position is not None else 0x480 + self.node
+
+    def angle(self, counts: int, joint: Joint) -> float:
+        """Output angle of encoder counts [rad]."""
+        per_turn = self.counts_per_turn * joint.gear_ratio
+        return counts * (2.0 * math.pi / per_turn) + self.position_offset
