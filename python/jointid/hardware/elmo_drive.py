@@ -343,4 +343,4 @@ class ElmoDrive:
 
 def failure_of(drive: ElmoDrive) -> str:
     """What MF says, in words: why the motor was shut down."""
-    return failure_meaning(int(drive._ask(Command(letters="MF")).value))  # noqa: SLF001
+    return failure_meaning(int(drive._ask(Command(letters="MF")).value))
