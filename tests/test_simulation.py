@@ -320,6 +320,36 @@ def test_a_simulated_recording_keeps_its_truth(joint: jid.Joint, tmp_path: Path)
         run.truth.signals["position"][0] = 1.0
 
 
+def test_a_thinned_recording_has_the_mean_of_what_was_commanded(joint: jid.Joint) -> None:
+    """What was held over a sample's time integrates to the same impulse; one of four commands does not."""
+    sensors = jid.Sensors(torque_noise=0.5)
+    full = jid.simulate(joint, wrong_controller(), well_excited(), sensors=sensors)
+    thin = jid.simulate(
+        joint, wrong_controller(), well_excited(), sensors=sensors, sample_period=4e-3
+    )
+    assert full.torque is not None
+    assert thin.torque is not None
+    np.testing.assert_array_equal(thin.position, full.position[::4])
+    np.testing.assert_allclose(thin.torque, full.torque.reshape(-1, 4).mean(axis=1), rtol=1e-12)
+    gains = [
+        jid.identify(
+            jid.simulate(
+                joint,
+                wrong_controller(),
+                well_excited(),
+                sensors=sensors,
+                sample_period=4e-3,
+                seed=seed,
+            ),
+            thesis_joint(),
+        )
+        .parameters["sensor_gain"]
+        .value
+        for seed in range(8)
+    ]
+    assert np.mean(gains) == pytest.approx(TRUTH["sensor_gain"], rel=5e-3)
+
+
 def test_payload_and_position_torque_load_the_joint(joint: jid.Joint) -> None:
     push = jid.Trajectory.step(0.0, duration=0.1)
     rod = jid.Link(mass=2.0, centre_of_mass=0.5, gravity=10.0)
