@@ -10,7 +10,8 @@ from simulated_joint import TRUTH, simulate
 import jointid as jid
 from jointid.demo import data_folder
 from jointid.identification.model_terms import Request
-from jointid.online.sliding import Settings, Sliding
+from jointid.online.settings import Settings
+from jointid.online.sliding import Sliding
 
 
 @pytest.fixture(scope="module")
@@ -247,9 +248,10 @@ def test_goes_on_after_an_error_in_the_callback(excited: jid.Recording) -> None:
 def test_closes_from_its_own_callback(excited: jid.Recording) -> None:
     identifier = jid.OnlineIdentifier(jid.thesis_joint(), callback=lambda _: identifier.close())
     identifier.feed(**next(blocks(excited.crop(0.0, 3.0), 3000)))
-    assert identifier._thread is not None
-    identifier._thread.join(30.0)
-    assert not identifier._thread.is_alive()
+    thread = identifier._worker.thread
+    assert thread is not None
+    thread.join(30.0)
+    assert not thread.is_alive()
     assert identifier.estimate is not None
 
 
