@@ -32,7 +32,9 @@ class OnlineIdentifier:
     them a stretch at a time, forgets what is older than `window`, and finds the estimate anew. Time
     and memory are bounded: an update costs a few milliseconds whatever the rate of sampling was, and
     nothing older than the window is kept. Windows and bounds are chosen as `identify` would choose
-    them; they are looked at again as the window fills, and once a window from then on.
+    them; they are looked at again as the window fills, and once a window from then on. A window of
+    integration has five samples or more: below some 50 samples a second the default half minute
+    holds few of them, and reversals blur.
 
     `close`, or the end of a `with` block, ends the thread; so does dropping the identifier, unless
     its callback holds it.

@@ -41,6 +41,7 @@ def next_piece(times: Array, begin: int, plan: Plan) -> Piece | None:
     if begin + 1 >= len(times):
         return None
     end = int(np.searchsorted(times, times[begin] + plan.stretch - 0.25 * plan.period))
+    end = max(end, begin + 1)
     jumps = np.flatnonzero(np.diff(times[begin : end + 1]) > _LONG * plan.period)
     if jumps.size > 0:
         end = begin + int(jumps[0])
