@@ -75,8 +75,8 @@ class Sliding:
         self._plan.penalty.forget(self._plan.penalty.end - self._settings.window)
         found = self._solve(self._plan, began, dropped)
         if found is not None and self._outgrown(self._plan, found):
-            # The next stretch begins with bounds from all that is remembered.
-            self._plan, self._look = None, -np.inf
+            self._plan.made = found.end
+            self._renew(self._remembered())  # the next stretch begins with bounds from all of it
         return found
 
     def _recording(self, begin: int, end: int) -> Recording:
@@ -115,8 +115,11 @@ class Sliding:
             return
         self._look_later()
         remembered = self._remembered()
-        if not outdated(plan, self._settings, remembered):
-            return
+        if outdated(plan, self._settings, remembered):
+            self._renew(remembered)
+
+    def _renew(self, remembered: Recording) -> None:
+        """Adopt a new plan, if one can be made."""
         try:
             made = make_plan(self._settings, remembered, 0.0)
         except InputError:
