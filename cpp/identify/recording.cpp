@@ -16,6 +16,10 @@ constexpr double kSlow = 0.003;            // of the peak speed: below, for long
 constexpr double kShortestStanding = 0.1;  // [s]
 constexpr double kStandingOfPeriod =
     0.01;  // a reversal of a slow motion is slow, too: allow for its period
+constexpr double kJolt =
+    0.05;  // of the largest torque: such a jump bends the motion within a sample
+constexpr Eigen::Index kRarest = 5;  // one interval in five may go for that, at most
+constexpr Eigen::Index kReach = 2;   // intervals left out on either side of what is not smooth
 constexpr double kResolved =
     0.005;  // of the peak speed: a motion slower than this per quantum looks stuck
 
@@ -196,6 +200,38 @@ void mark_standing(const RecordingView& r, const MotionScale& scale,
   }
 }
 
+/// Reversals at which a held command jumps: the joint turns, sticks or breaks away at an instant
+/// that the samples do not tell, which is worth friction times a sample's time.
+void mark_jolts(const RecordingView& r, const MotionScale& scale,
+                std::vector<std::uint8_t>& usable) {
+  const double least = kJolt * scale.push;
+  const Eigen::Index n = r.samples();
+  const auto jumps = [&](Eigen::Index k) {
+    const Eigen::Index from = std::max<Eigen::Index>(0, k - kReach);
+    const Eigen::Index to = std::min(n - 2, k + kReach);
+    for (Eigen::Index j = from; j <= to; ++j) {
+      if (std::fabs(r.torque[j + 1] - r.torque[j]) > least) return true;
+    }
+    return false;
+  };
+  std::vector<Eigen::Index> turns;
+  for (Eigen::Index k = 0; k + 1 < n; ++k) {
+    const double here = r.velocity[k];
+    const double next = r.velocity[k + 1];
+    const bool turning =
+        (here > 0.0 && next <= 0.0) || (here < 0.0 && next >= 0.0) || (here == 0.0 && next != 0.0);
+    if (turning && jumps(k)) turns.push_back(k);
+  }
+  // A motion of few samples a reversal jumps everywhere: better a bias there than nothing left.
+  constexpr Eigen::Index width = 2 * kReach + 1;
+  if (kRarest * width * static_cast<Eigen::Index>(turns.size()) > n) return;
+  for (const auto k : turns) {
+    const auto from = std::max<Eigen::Index>(0, k - kReach);
+    const auto to = std::min(n - 2, k + kReach);
+    std::fill(usable.begin() + from, usable.begin() + to + 1, std::uint8_t{0});
+  }
+}
+
 }  // namespace
 
 RecordingView::RecordingView(const Recording& r)
@@ -247,6 +283,7 @@ MotionScale motion_scale(const RecordingView& r) {
   }
   scale.travel = high - low;
   scale.period = motion_period(r, scale.travel);
+  scale.push = r.torque.cwiseAbs().maxCoeff();
   scale.quantum = smallest_positive(
       1, r.samples(), [&](Eigen::Index k) { return r.position[k] - r.position[k - 1]; });
   scale.finest = smallest_positive(1, r.samples(), [&](Eigen::Index k) { return r.velocity[k]; });
@@ -278,7 +315,7 @@ UsableIntervals usable_intervals(const RecordingView& r, const MotionScale& scal
     result.standing = std::count(standing.begin(), standing.end(), std::uint8_t{1});
     // The interval that touches a stuck sample holds a break-away or a stop; the one beside it has
     // a derived velocity that saw the stop, and friction that changes too fast for the trapezoid.
-    constexpr std::size_t reach = 2;
+    constexpr auto reach = static_cast<std::size_t>(kReach);
     for (std::size_t k = 0; result.standing > 0 && k < n; ++k) {
       if (standing[k] == 0) continue;
       const std::size_t from = k >= reach ? k - reach : 0;
@@ -287,6 +324,7 @@ UsableIntervals usable_intervals(const RecordingView& r, const MotionScale& scal
                 result.usable.begin() + static_cast<std::ptrdiff_t>(to), std::uint8_t{0});
     }
   }
+  if (mask_standstill && r.torque_hold == Hold::zero_order) mark_jolts(r, scale, result.usable);
   for (const auto gap : r.gap_after) result.usable[static_cast<std::size_t>(gap)] = 0;
   return result;
 }

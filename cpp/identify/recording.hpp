@@ -66,6 +66,7 @@ struct MotionScale {
   double period = 0.0;   ///< of the motion, as far as one can tell [s]
   double quantum = 0.0;  ///< smallest change of position between samples; infinite without one
   double finest = 0.0;   ///< smallest speed but 0; infinite without one
+  double push = 0.0;     ///< largest torque
 
   [[nodiscard]] bool moves() const { return peak > 0.0 && travel > 0.0; }
   /// How long a joint must hold still to be told from one that moves slowly [s].
@@ -79,7 +80,9 @@ MotionScale motion_scale(const RecordingView& recording);
 /// velocity exactly zero, for longer than the resolution explains) with two intervals either side,
 /// where friction is set-valued and the model says nothing; and standing still (creeping below 0.3
 /// % of the peak speed for 0.1 s or longer; at slow motion 1 % of its period). A mere reversal is
-/// kept: dropping all that is slow biases viscous friction.
+/// kept: dropping all that is slow biases viscous friction. But where a held command jumps by 5 %
+/// of the largest torque at a reversal, as when friction is compensated by the sign of a velocity,
+/// two intervals either side are left out: where within the interval the joint turned, nobody saw.
 struct UsableIntervals {
   std::vector<std::uint8_t> usable;
   std::int64_t standing = 0;  ///< samples found sticking or standing still
