@@ -8,6 +8,7 @@ namespace jointid::identify {
 namespace {
 
 constexpr std::int64_t kSamples = 3072;  // of a part: small enough to share 12 s among threads
+constexpr std::size_t kRows = 4096;      // digested at once: only running integrals have more
 // Where log(1 + s v^2 / kKnee) is even enough at its lower end (fewest nodes, on `well_excited`).
 constexpr double kKnee = 10.0;
 // Pieces an octave of the scale, as powers of 2.
@@ -37,14 +38,19 @@ std::vector<Stretch> parts_of(const Penalty& penalty) {
   return parts;
 }
 
-void accumulate(Eigen::MatrixXd& columns) {
+/// Running sums down the rows, on from those of the rows before.
+void accumulate(Eigen::MatrixXd& columns, Eigen::RowVectorXd& before) {
+  if (before.size() == 0) before.setZero(columns.cols());
+  columns.row(0) += before;
   for (Eigen::Index row = 1; row < columns.rows(); ++row) columns.row(row) += columns.row(row - 1);
+  before = columns.row(columns.rows() - 1);
 }
 
-Digest digest_group(const Penalty& penalty, const Stretch& part, const DecayRates& group,
-                    const base::Cancel* cancel) {
-  const auto rows = static_cast<Eigen::Index>(part.end - part.begin);
-  const auto first = static_cast<Eigen::Index>(part.begin);
+/// `before` holds the sums over the recording's windows before the block's, for running integrals.
+Digest digest_block(const Penalty& penalty, const Stretch& block, const DecayRates& group,
+                    const base::Cancel* cancel, Eigen::RowVectorXd& before) {
+  const auto rows = static_cast<Eigen::Index>(block.end - block.begin);
+  const auto first = static_cast<Eigen::Index>(block.begin);
   const auto shaped = static_cast<Eigen::Index>(penalty.shaped().size());
   Eigen::MatrixXd constant(rows, penalty.coefficients() - shaped + 1);
   Eigen::Index to = 0;
@@ -59,14 +65,30 @@ Digest digest_group(const Penalty& penalty, const Stretch& part, const DecayRate
   for (Eigen::Index j = 0; j < shaped; ++j) {
     const auto& term = penalty.shaped()[static_cast<std::size_t>(j)].term;
     if (shaped == 1) {
-      integrate_decays(penalty.nodes(term.direction), part, group, cancel, columns);
+      integrate_decays(penalty.nodes(term.direction), block, group, cancel, columns);
       break;
     }
-    integrate_decays(penalty.nodes(term.direction), part, group, cancel, own);
+    integrate_decays(penalty.nodes(term.direction), block, group, cancel, own);
     for (Eigen::Index k = 0; k < nodes; ++k) columns.col(k * shaped + j) = own.col(k);
   }
-  if (penalty.cumulative()) accumulate(columns);
+  if (penalty.cumulative()) accumulate(columns, before);  // the constant ones are sums already
   return digest(constant, columns, shaped);
+}
+
+/// A part in blocks, so that neither memory nor the time between two looks at the cancel flag grows
+/// with it.
+Digest digest_group(const Penalty& penalty, const Stretch& part, const DecayRates& group,
+                    const base::Cancel* cancel) {
+  Eigen::RowVectorXd before;
+  std::vector<Digest> blocks;
+  std::size_t begin = part.begin;
+  do {  // a part without windows has a digest, too
+    if (cancel != nullptr) cancel->check();
+    const Stretch block{begin, std::min(part.end, begin + kRows)};
+    blocks.push_back(digest_block(penalty, block, group, cancel, before));
+    begin = block.end;
+  } while (begin < part.end);
+  return merge(blocks);
 }
 
 }  // namespace
