@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::int64_t kSamples = 3072;  // of a part: small enough to share 12 s among threads
 constexpr std::size_t kRows = 4096;      // digested at once: only running integrals have more
+// Sums over the samples that cost as much as a usual genetic search by the direct sum.
+constexpr Eigen::Index kMostPasses = 20'000;
 // Where log(1 + s v^2 / kKnee) is even enough at its lower end (fewest nodes, on `well_excited`).
 constexpr double kKnee = 10.0;
 // Pieces an octave of the scale, as powers of 2.
@@ -138,9 +140,22 @@ std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Doma
   // The decay is felt through exponent * log(speed / velocity).
   const double reach = base::log(std::max(2.0, speed / velocities.shape(-1.0)));
   const auto outer = chebyshev_points(count_for(1.2 * exponents.length() * reach, 0.6 * density));
+  const auto inner_count = [&](double exponent) {
+    return count_for(exponent * velocities.length(), density);
+  };
+  Eigen::Index passes = 0;
+  for (const double place : outer) passes += inner_count(exponents.shape(place));
+  if (passes > kMostPasses) {
+    reason =
+        "the bounds of stribeck_velocity and stribeck_exponent are so wide that their table "
+        "takes " +
+        std::to_string(passes) + " sums over the samples, more than the " +
+        std::to_string(kMostPasses) + " that pay";
+    return std::nullopt;
+  }
   for (const double place : outer) {
     const double exponent = exponents.shape(place);
-    const auto inner = chebyshev_points(count_for(exponent * velocities.length(), density));
+    const auto inner = chebyshev_points(inner_count(exponent));
     result.lines.push_back({exponent, {}});
     for (const double point : inner) {
       result.lines.back().rates.push_back(rate(velocities.shape(point), exponent));

@@ -24,7 +24,8 @@ struct ShapeNodes {
 };
 
 /// Nodes for the domain's shapes, `density` times as many as usually suffice. `speed` is the
-/// largest. Says in `reason` why there are none when it returns nothing.
+/// largest. Says in `reason` why there are none when it returns nothing; more than a search by the
+/// direct sum would cost is such a reason.
 std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Domain& domain,
                                       double speed, double density, std::string& reason);
 

@@ -157,6 +157,19 @@ CHECK_CASE("compressed: stops when asked, also without shapes") {
   CHECK(stopped);
 }
 
+CHECK_CASE("compressed: bounds that ask for too many sums are left to the direct sum") {
+  base::Pool pool(2);
+  const auto direct = penalty_of(kGeneral, Residual::sensor, {0, 0.05});
+  auto domain = domain_of(direct);
+  const Eigen::Index shapes = direct.coefficients();
+  domain.lower.tail(2) << 1e-4, 0.1;
+  domain.upper.tail(2) << 50.0, 20.0;
+  CHECK(direct.names()[static_cast<std::size_t>(shapes)] == "stribeck_velocity");
+  const CompressedPenalty compressed(direct, domain, pool);
+  CHECK(!compressed.exact() && compressed.passes() == 0);
+  CHECK(contains(compressed.reason(), "bounds of stribeck_velocity and stribeck_exponent"));
+}
+
 CHECK_CASE("compressed: accurate and never negative where the penalty all but vanishes") {
   base::Pool pool(1);
   const auto direct = penalty_of(kStribeck, Residual::torque, {0, 0.02}, 0.0);
