@@ -237,6 +237,7 @@ SeparableResult refine_separable(const PenaltyFunction& penalty, const search::D
       penalty.residuals(theta, residual, jacobian, &pool.cancel());
     };
     reduced.offer(search::polish(residuals, domain, result.best, pool).best, result);
+    if (everywhere) search_grid(reduced, scales, penalty, domain, pool, result);
     return result;
   }
   // Widens until the best is inside, or at the domain's end: the start may lie on a slope.

@@ -23,9 +23,9 @@ SeparableResult minimise_separable(const PenaltyFunction& penalty, const search:
                                    base::Pool& pool);
 
 /// The local optimum near a start, never worse than it: for one free shape by elimination and
-/// golden sections about the start's, for several by Levenberg-Marquardt. `everywhere`: one free
-/// shape is also searched over its whole range, which costs next to nothing on the compressed
-/// penalty.
+/// golden sections about the start's, for several by Levenberg-Marquardt. `everywhere`: the free
+/// shapes are also searched over their whole ranges, as by minimise_separable, which costs next to
+/// nothing on the compressed penalty.
 SeparableResult refine_separable(const PenaltyFunction& penalty, const search::Domain& domain,
                                  const Eigen::VectorXd& start, base::Pool& pool, bool everywhere);
 

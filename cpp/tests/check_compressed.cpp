@@ -263,5 +263,18 @@ CHECK_CASE("compressed: finds the same optimum, by elimination and near a start"
   }
 }
 
+CHECK_CASE("compressed: with two shapes every start ends where the grid does") {
+  base::Pool pool(2);
+  const auto direct = penalty_of(kGeneral, Residual::sensor, {0, 0.05});
+  const auto domain = domain_of(direct);
+  const CompressedPenalty compressed(direct, domain, pool);
+  const double least = identify::minimise_separable(compressed, domain, pool).penalty;
+  for (const auto& start : {domain.lower, domain.upper}) {
+    const auto found = identify::refine_separable(compressed, domain, start, pool, true);
+    CHECK_WITH(found.penalty <= least * (1.0 + 1e-12), std::to_string(found.penalty / least));
+    CHECK(found.penalty == compressed(found.best));
+  }
+}
+
 }  // namespace
 }  // namespace jointid::tests
