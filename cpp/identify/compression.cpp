@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::int64_t kSamples = 3072;  // of a part: small enough to share 12 s among threads
 constexpr std::size_t kRows = 4096;      // digested at once: only running integrals have more
+// Operations that are done sooner than sleeping processors are awake: not handed to threads.
+constexpr double kBrief = 2e6;
 // Sums over the samples that cost as much as a usual genetic search by the direct sum.
 constexpr Eigen::Index kMostPasses = 20'000;
 // Where log(1 + s v^2 / kKnee) is even enough at its lower end (fewest nodes, on `well_excited`).
@@ -91,6 +93,20 @@ Digest digest_group(const Penalty& penalty, const Stretch& part, const DecayRate
     begin = block.end;
   } while (begin < part.end);
   return merge(blocks);
+}
+
+/// Exponentials, and products on the way to a triangle: about a nanosecond each.
+double operations(const Penalty& penalty, const std::vector<DecayRates>& groups) {
+  double rates = 0.0;
+  for (const auto& group : groups) rates += static_cast<double>(group.rates.size());
+  double exponentials = 0.0;
+  for (const auto& shaped : penalty.shaped()) {
+    const auto& nodes = penalty.nodes(shaped.term.direction);
+    exponentials += rates * static_cast<double>(nodes.speed.size());
+  }
+  const auto constant = static_cast<double>(penalty.coefficients() + 1);
+  const double columns = constant + rates * static_cast<double>(penalty.shaped().size());
+  return exponentials + constant * columns * static_cast<double>(penalty.windows().size());
 }
 
 }  // namespace
@@ -197,14 +213,19 @@ std::vector<Digest> digest_all(const Penalty& penalty, const std::vector<DecayRa
   const auto parts = parts_of(penalty);
   const std::size_t count = std::max<std::size_t>(1, groups.size());
   std::vector<std::vector<Digest>> digests(count, std::vector<Digest>(parts.size()));
-  pool.for_each(count * parts.size(), [&](std::size_t begin, std::size_t end) {
+  const auto work = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t part = i % parts.size();
       const std::size_t group = i / parts.size();
       digests[group][part] = digest_group(
           penalty, parts[part], groups.empty() ? DecayRates{} : groups[group], &pool.cancel());
     }
-  });
+  };
+  if (operations(penalty, groups) < kBrief) {
+    work(0, count * parts.size());
+  } else {
+    pool.for_each(count * parts.size(), work);
+  }
   std::vector<Digest> result;
   for (const auto& group : digests) result.push_back(merge(group));
   return result;

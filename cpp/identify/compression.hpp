@@ -37,7 +37,7 @@ std::vector<DecayRates> rates_of(const ShapeNodes& nodes);
 std::vector<Digest> digest_part(const Penalty& penalty, const Stretch& windows,
                                 const std::vector<DecayRates>& groups, const base::Cancel* cancel);
 
-/// The same of all windows, their parts over the threads.
+/// The same of all windows, their parts over the threads unless there is little to do.
 std::vector<Digest> digest_all(const Penalty& penalty, const std::vector<DecayRates>& groups,
                                base::Pool& pool);
 
