@@ -254,22 +254,25 @@ def test_an_independent_simulator_says_the_same(
 
 
 @pytest.mark.parametrize("period", [1e-3, 2e-3])
-def test_commands_that_jump_at_a_reversal_bias_nothing(joint: jid.Joint, period: float) -> None:
+@pytest.mark.parametrize("sticks", [False, True])
+def test_commands_that_jump_at_a_reversal_deceive_nobody(
+    joint: jid.Joint, period: float, sticks: bool
+) -> None:
     """Friction compensated at the reference's velocity: within a sample the joint turns, sticks, breaks loose."""
+    law = wrong_controller().replace(friction_velocity="reference")
+    if not sticks:  # Table 6-3's initial estimates: strong enough to turn the joint at once
+        law = law.replace(coulomb=10.0, static=20.0, stribeck=200.0, sensor_gain=1.0)
     scenario = jid.Scenario(
-        joint,
-        wrong_controller().replace(friction_velocity="reference"),
-        well_excited(),
-        jid.Sensors(torque_noise=0.5),
-        control_period=period,
+        joint, law, well_excited(), jid.Sensors(torque_noise=0.5), control_period=period
     )
     study = jid.sweep(scenario, thesis_joint(), trials=20, stderr=True)
     for parameter, true in TRUTH.items():
         values, errors = study.column(parameter), study.column(f"{parameter}_stderr")
-        chance = 3.0 * np.std(values, ddof=1) / math.sqrt(20.0)
-        assert abs(np.mean(values) - true) < 1e-3 * true + chance, parameter
         inside = np.abs(values - true) < 1.96 * errors
-        assert inside.sum() >= 17, parameter  # of 20; 16 or fewer have a chance of 1 in 400 at 95 %
+        assert inside.sum() >= 16, parameter  # of 20; fewer have a chance of 1 in 400 at 95 %
+        if not sticks:
+            chance = 3.0 * np.std(values, ddof=1) / math.sqrt(20.0)
+            assert abs(np.mean(values) - true) < 1e-3 * true + chance, parameter
 
 
 def test_moves_as_an_independent_simulator_does(joint: jid.Joint) -> None:

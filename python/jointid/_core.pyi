@@ -2639,7 +2639,7 @@ def refine_separable(
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
 ) -> SeparableResult:
     """
-    The local optimum near a start; `everywhere` also searches one free shape's whole range.
+    The local optimum near a start; `everywhere` also searches the free shapes' whole ranges.
     """
 
 def robust_variance(
