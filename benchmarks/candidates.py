@@ -15,6 +15,9 @@ from jointid import _core
 POPULATION = 200
 REPEATS = 11
 LEAST = 0.02  # [s] a measurement
+COMPRESSED = f"compressed, {POPULATION} a call, one thread"
+THESIS = "`thesis()` search 200 × 1500, one thread, all of it"
+THESIS_CODE = "`thesis_code()` search 200 × 1500, one thread, all of it"
 
 
 def measure(contest: Contest) -> list[Record]:
@@ -30,6 +33,12 @@ def measure(contest: Contest) -> list[Record]:
     def by_population(form: _core.PenaltyFunction, threads: int) -> Callable[[], object]:
         return lambda: form.evaluate(full, threads=threads)
 
+    def preset(options: _core.GaOptions) -> Callable[[], object]:
+        whole = options.replace(population=200, generations=1500)
+        return lambda: _core.minimise_genetic(
+            compressed, contest.full_lower, contest.full_upper, options=whole, threads=1
+        )
+
     what: dict[str, tuple[Callable[[], object], int]] = {
         "NumPy, one candidate a call": (lambda: contest.numpy(one), 1),
         f"NumPy, {POPULATION} a call": (lambda: contest.numpy.many(rows), POPULATION),
@@ -43,21 +52,13 @@ def measure(contest: Contest) -> list[Record]:
             POPULATION,
         ),
         "compressed, one a call from Python": (lambda: compressed(one_full), 1),
-        f"compressed, {POPULATION} a call, one thread": (by_population(compressed, 1), POPULATION),
+        COMPRESSED: (by_population(compressed, 1), POPULATION),
         "compressed, 20 000 a call, one thread": (
             lambda: compressed.evaluate(big, threads=1),
             100 * POPULATION,
         ),
-        "thesis() search 200 × 1500, one thread, all of it": (
-            lambda: _core.minimise_genetic(
-                compressed,
-                contest.full_lower,
-                contest.full_upper,
-                options=_core.GaOptions.thesis().replace(population=200, generations=1500),
-                threads=1,
-            ),
-            200 * 1501,
-        ),
+        THESIS: (preset(_core.GaOptions.thesis()), 200 * 1501),
+        THESIS_CODE: (preset(_core.GaOptions.thesis_code()), 200 * 1501),
         "compression itself (once an identification)": (
             lambda: _core.CompressedPenalty(direct, contest.full_lower, contest.full_upper),
             1,

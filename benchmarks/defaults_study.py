@@ -1,7 +1,7 @@
 """How few candidates suffice: seeds of 100 that reach the separable optimum, by population and generations. Markdown.
 
-Reached means a penalty within 1e-6 of the optimum's, relative. "alone" leaves out the scan over the shape's whole range
-with which the polish ends: what the genetic algorithm and the local polish do by themselves.
+Reached means a penalty within 1e-6 of the optimum's, relative. "alone" leaves out the search over the shapes' whole
+ranges with which the polish ends: what the genetic algorithm and the local polish do by themselves.
 """
 
 import argparse
@@ -43,12 +43,15 @@ def reached(
     best = _core.minimise_separable(engine.form, low, high).best
     best_penalty = _core.polish(penalty, low, high, best).penalty
     whole = alone = 0
+    near: _core.SeparableResult | _core.PolishResult
     for seed in range(seeds):
         found = _core.minimise_genetic(
             engine.form, low, high, options=options, seed=seed, threads=1
         )
         polished, _, _ = engine.polished(domain, found.best)
         near = _core.refine_separable(engine.form, low, high, found.best, everywhere=False)
+        if len(low) - penalty.coefficients > 1:
+            near = _core.polish(penalty, low, high, near.best)
         whole += penalty(polished) <= best_penalty * (1.0 + CLOSE)
         alone += near.penalty <= best_penalty * (1.0 + CLOSE)
     return whole, alone

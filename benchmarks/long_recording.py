@@ -1,4 +1,4 @@
-"""Identify a recording of so many samples in a process of its own; prints seconds and memory as JSON.
+"""Identify a recording of so many samples in a process of its own; prints times and memory as JSON.
 
     python benchmarks/long_recording.py SAMPLES REPEATS
 
@@ -9,16 +9,22 @@ import json
 import resource
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from peers.contest import problem_of
 
 import jointid as jid
+from jointid import _core
 from jointid.demo import data_folder
+from jointid.identification.search_domain import domain_for
 
 Array = NDArray[np.float64]
 NOISE = 1e-3  # of a signal's spread, fresh for every copy
+CANDIDATES = 10_000
+GENERATIONS = 100
 
 
 def long_recording(samples: int) -> jid.Recording:
@@ -62,6 +68,41 @@ def forget_peak() -> None:
     Path("/proc/self/clear_refs").write_text("5")
 
 
+def search_speed(recording: jid.Recording, joint: jid.Joint) -> dict[str, float]:
+    """Seconds a candidate of the compressed penalty, and an individual of the genetic search, breeding and all.
+
+    One thread, the least of several: the recording's length is to make no difference.
+    """
+    problem, direct = problem_of(recording, joint, None)
+    domain = domain_for(direct, joint, None, problem.peak_speed)
+    form = _core.CompressedPenalty(direct, domain.lower, domain.upper)
+    assert form.exact, form.reason
+    rng = np.random.default_rng(2)
+    share = rng.random((domain.lower.size, CANDIDATES))
+    candidates = np.asfortranarray(
+        domain.lower[:, None] + share * (domain.upper - domain.lower)[:, None]
+    )
+    options = _core.GaOptions.thesis().replace(population=200, generations=GENERATIONS)
+
+    def least(call: Callable[[], object], count: int) -> float:
+        seconds = []
+        for _ in range(15):
+            began = time.perf_counter()
+            call()
+            seconds.append(time.perf_counter() - began)
+        return min(seconds) / count
+
+    return {
+        "candidate": least(lambda: form.evaluate(candidates, threads=1), CANDIDATES),
+        "individual": least(
+            lambda: _core.minimise_genetic(
+                form, domain.lower, domain.upper, options=options, threads=1
+            ),
+            200 * (GENERATIONS + 1),
+        ),
+    }
+
+
 def main(samples: int, repeats: int) -> None:
     """Run and print."""
     joint = jid.thesis_joint()
@@ -87,6 +128,7 @@ def main(samples: int, repeats: int) -> None:
         "windows": windows,
         "arrays": arrays,
         "memory": peak - before,
+        **search_speed(recording, joint),
     }
     print(json.dumps(told))
 

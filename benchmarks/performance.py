@@ -9,9 +9,12 @@ from importlib.metadata import version
 from pathlib import Path
 from string import Template
 
+from anatomy import BEHIND, STEPS
 from rounds import FAILED, FEW
 from store import Store
-from summary import OURS, claims, rows
+from summary import OURS, RatioClaim, Verdict, claims, floors, ratio_claims, rows
+
+import jointid as jid
 
 TEMPLATE = Path(__file__).resolve().parent / "performance.template.md"
 VERDICTS = {True: "yes", False: "**no**", None: "limit too short to tell"}
@@ -19,8 +22,20 @@ LIBRARIES = ("numpy", "scipy", "pygmo", "deap", "pymoo", "pygad", "cma")
 
 
 def versions() -> dict[str, str]:
-    """Of what was timed."""
-    return {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}}
+    """Of what was timed; of jointid with the commit, so that no run goes on after a change of the code."""
+    libraries = {name: version(name) for name in LIBRARIES}
+    ours = f"{jid.__version__} ({commit()})"
+    return {"jointid": ours, "python": platform.python_version(), **libraries}
+
+
+def commit() -> str:
+    """The checkout's, "-dirty" if files differ from it; "unknown" outside of one."""
+    call = ["git", "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]
+    try:
+        told = subprocess.run(call, check=True, text=True, capture_output=True, cwd=TEMPLATE.parent)
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+    return told.stdout.strip()
 
 
 def machine() -> str:
@@ -81,7 +96,16 @@ def scaling_tables(store: Store) -> dict[str, str]:
 
     return {
         "samples": table(
-            ["samples", "windows", "`identify()`", "arrays", "peak memory", "times the arrays"],
+            [
+                "samples",
+                "windows",
+                "`identify()`",
+                "arrays",
+                "peak memory",
+                "times the arrays",
+                "compressed, a candidate",
+                "genetic search, an individual",
+            ],
             [
                 [
                     f"{r['samples']:,}",
@@ -90,6 +114,8 @@ def scaling_tables(store: Store) -> dict[str, str]:
                     f"{r['arrays'] / 1e6:.1f} MB",
                     f"{r['memory'] / 1e6:.1f} MB",
                     f"{r['memory'] / r['arrays']:.1f}",
+                    seconds(r["candidate"]),
+                    seconds(r["individual"]),
                 ]
                 for r in of("samples")
             ],
@@ -118,6 +144,62 @@ def scaling_tables(store: Store) -> dict[str, str]:
     }
 
 
+def ratios(store: Store, order: list[str]) -> str:
+    """What was wanted of the search and of the whole call, each with its own verdict."""
+    lines = []
+    for c in ratio_claims(rows(store, order)):
+        verdicts = [cell for v in (c.alone, c.whole) for cell in (v.measured, VERDICTS[v.holds])]
+        lines.append([f"≥ {c.wanted:g} times as fast as {c.group}", c.quickest, *verdicts])
+    header = ["wanted", "quickest of them", "search alone", "holds", "whole `identify()`", "holds"]
+    return table(header, lines)
+
+
+def anatomy_table(store: Store) -> str:
+    """A step a line."""
+    records = store.of("anatomy")
+    header = ["step"]
+    for r in records:
+        windows = "default" if r["windows"] is None else str(r["windows"])
+        header.append(f"{windows} windows, {r['way']}")
+    lines = [[step, *(seconds(r["steps"][step]) for r in records)] for step in STEPS]
+    whole = ["the whole call", *(seconds(r["whole"]) for r in records)]
+    return table(header, [*lines, whole])
+
+
+def missed(store: Store, order: list[str]) -> str:
+    """A line a missed ratio; empty when none is."""
+    lines = []
+    for floor in floors(store, order):
+        claim = floor.claim
+
+        def best(spent: float, claim: RatioClaim = claim) -> str:
+            return f"{claim.seconds / spent:.3g} times"
+
+        lines.append(
+            [
+                f"≥ {claim.wanted:g} times as fast as {claim.group}",
+                seconds(floor.allowed),
+                _taken(floor.search, claim.alone),
+                f"{seconds(floor.compression)}: {best(floor.compression)}",
+                _taken(floor.whole, claim.whole),
+                f"{seconds(floor.rest)}: {best(floor.rest)}",
+            ]
+        )
+    header = [
+        "wanted",
+        "time it leaves",
+        "our search alone",
+        "with nothing but compression",
+        "whole `identify()`",
+        "with preparation and inference alone",
+    ]
+    return table(header, lines) if lines else "None is missed in this run."
+
+
+def _taken(spent: float, verdict: Verdict) -> str:
+    return f"{seconds(spent)}: {verdict.measured}" + ("" if verdict.holds else ", **missed**")
+
+
 def write(store: Store, order: list[str], limit: float, path: Path) -> None:
     """Fill the template."""
     literal = store.of("literal")[0]
@@ -135,8 +217,12 @@ def write(store: Store, order: list[str], limit: float, path: Path) -> None:
         failed=FAILED,
         claims=table(
             ["wanted", "measured", "holds"],
-            [[c.wish, c.measured, VERDICTS[c.holds]] for c in claims(store, order)],
+            [[c.wish, c.verdict.measured, VERDICTS[c.verdict.holds]] for c in claims(store, order)],
         ),
+        ratios=ratios(store, order),
+        missed=missed(store, order),
+        anatomy=anatomy_table(store),
+        behind=f"{BEHIND:g}",
         contest=contest_table(store, order),
         candidates=table(["form", "time per candidate"], candidate_lines),
         literal_total=seconds(literal["total"]),

@@ -24,7 +24,7 @@ WINDOWS = (10, 30, 100, 300, 1000, 3000, 6000)
 POPULATIONS = (20, 60, 200, 600, 2000, 6000, 20000)
 GENERATIONS = 20
 REPEATS = 7
-CHILD = Path(__file__).resolve().parent / "long_recording.py"
+HERE = Path(__file__).resolve().parent
 
 
 def median(call: Callable[[], object], repeats: int = REPEATS) -> float:
@@ -43,9 +43,20 @@ def by_samples(largest: int) -> Iterator[Record]:
         if samples > largest:
             return
         repeats = REPEATS if samples <= 3_600_000 else 3
-        call = [sys.executable, str(CHILD), str(samples), str(repeats)]
-        told = subprocess.run(call, check=True, text=True, capture_output=True).stdout
-        yield {"over": "samples", **json.loads(told)}
+        yield {"over": "samples", **_child("long_recording.py", str(samples), str(repeats))}
+
+
+def online() -> Record:
+    """Times of the on-line identifier's updates."""
+    return {"kind": "online", **_child("online_updates.py")}
+
+
+def _child(program: str, *arguments: str) -> Record:
+    """What a program of this folder prints, run in a process of its own."""
+    call = [sys.executable, str(HERE / program), *arguments]
+    told = subprocess.run(call, check=True, text=True, capture_output=True).stdout
+    record: Record = json.loads(told)
+    return record
 
 
 def by_windows(contest: Contest) -> Iterator[Record]:

@@ -10,8 +10,10 @@ import time
 import warnings
 from pathlib import Path
 
+import anatomy
 import candidates
 import charts
+import interruption
 import literal_code
 import performance
 import scaling
@@ -42,6 +44,13 @@ def main(*, budget: float, quick: bool, output: Path) -> None:
             store.append(record)
     if not store.of("literal"):
         store.append(literal_code.measure(contest.recording, WORK, 2 if quick else 7))
+    if not store.of("anatomy"):
+        for record in anatomy.measure(contest):
+            store.append(record)
+    if not store.of("online"):
+        store.append(scaling.online())
+    if not store.of("interruption"):
+        store.append(interruption.interrupted(QUICK_LARGEST if quick else interruption.SAMPLES))
     scaling.measure(contest, store, QUICK_LARGEST if quick else max(scaling.SAMPLES))
     order = [peer.key for peer in all_peers()]
     charts.draw(store, order, limit, output / "pictures")

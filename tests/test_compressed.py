@@ -132,6 +132,34 @@ def test_falls_back_to_the_direct_sum_and_says_so(excited: jid.Recording) -> Non
         )
 
 
+def test_bounds_too_wide_for_a_table_are_searched_by_the_direct_sum(
+    excited: jid.Recording,
+) -> None:
+    wide = {
+        "stribeck_velocity": {"min": 1e-4, "max": 50.0},
+        "stribeck_exponent": {"min": 0.1, "max": 20.0},
+    }
+    estimate = jid.identify(excited, jid.thesis_joint(), model="stribeck_general", parameters=wide)
+    assert "because the bounds of stribeck_velocity and stribeck_exponent are so wide" in (
+        estimate.message
+    )
+    usual = jid.identify(excited, jid.thesis_joint(), model="stribeck_general")
+    assert "direct sum" not in usual.message
+    assert estimate.penalty == pytest.approx(usual.penalty, rel=1e-6)
+
+
+@pytest.mark.parametrize("corner", ["lower", "upper"])
+def test_two_shapes_are_polished_over_their_whole_range(
+    excited: jid.Recording, corner: str
+) -> None:
+    penalty, domain = made(excited, Case("stribeck_general", "sensor"))
+    engine = Engine.of(penalty, domain, 0, "ga")
+    least = _core.minimise_separable(penalty, domain.lower, domain.upper).penalty
+    best, _, settled = engine.polished(domain, getattr(domain, corner))
+    assert settled
+    assert penalty(best) == pytest.approx(least, rel=1e-6)
+
+
 def test_the_direct_sum_has_the_last_word(excited: jid.Recording) -> None:
     penalty, domain = made(excited, Case("stribeck", "sensor"))
     other, _ = made(excited.crop(0.0, 6.0), Case("stribeck", "sensor"))

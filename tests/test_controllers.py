@@ -189,6 +189,8 @@ def test_control_estimates_are_the_parameters() -> None:
         }
     )
     assert jid.control_estimates(bare) == {
+        "static": 0.0,
+        "stribeck": 0.0,
         "inertia": 2.25,
         "coulomb": 5.0,
         "viscous": 2.0,

@@ -1,52 +1,22 @@
 """On-line identification: what it finds, what it forgets, and what it refuses."""
 
 import threading
-from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from online_feeding import blocks, fed, shifted
 from simulated_joint import TRUTH, simulate
 
 import jointid as jid
 from jointid.demo import data_folder
 from jointid.identification.model_terms import Request
-from jointid.online.sliding import Settings, Sliding
+from jointid.online.settings import Settings
+from jointid.online.sliding import Sliding
 
 
 @pytest.fixture(scope="module")
 def excited() -> jid.Recording:
     return jid.load(data_folder() / "well_excited.csv.gz")
-
-
-def blocks(recording: jid.Recording, size: int) -> Iterator[dict[str, np.ndarray]]:
-    signals = {
-        name: getattr(recording, name)
-        for name in ("time", "position", "velocity", "torque", "sensor")
-        if getattr(recording, name) is not None
-    }
-    for begin in range(0, len(recording), size):
-        yield {name: values[begin : begin + size] for name, values in signals.items()}
-
-
-def fed(
-    identifier: jid.OnlineIdentifier, recording: jid.Recording, size: int = 250
-) -> jid.OnlineEstimate:
-    for block in blocks(recording, size):
-        identifier.feed(**block)
-        identifier.wait(30.0)
-    found = identifier.estimate
-    assert found is not None
-    return found
-
-
-def shifted(recording: jid.Recording, by: float, torque: np.ndarray | None = None) -> jid.Recording:
-    return jid.Recording(
-        time=recording.time + by,
-        position=recording.position,
-        velocity=recording.velocity,
-        torque=recording.torque if torque is None else torque,
-        sensor=recording.sensor,
-    )
 
 
 def test_agrees_with_the_whole_recording(excited: jid.Recording) -> None:
@@ -247,9 +217,10 @@ def test_goes_on_after_an_error_in_the_callback(excited: jid.Recording) -> None:
 def test_closes_from_its_own_callback(excited: jid.Recording) -> None:
     identifier = jid.OnlineIdentifier(jid.thesis_joint(), callback=lambda _: identifier.close())
     identifier.feed(**next(blocks(excited.crop(0.0, 3.0), 3000)))
-    assert identifier._thread is not None
-    identifier._thread.join(30.0)
-    assert not identifier._thread.is_alive()
+    thread = identifier._worker.thread
+    assert thread is not None
+    thread.join(30.0)
+    assert not thread.is_alive()
     assert identifier.estimate is not None
 
 

@@ -253,6 +253,28 @@ def test_an_independent_simulator_says_the_same(
         assert abs(np.mean(values) - true) < 3e-3 * true + chance, parameter
 
 
+@pytest.mark.parametrize("period", [1e-3, 2e-3])
+@pytest.mark.parametrize("sticks", [False, True])
+def test_commands_that_jump_at_a_reversal_deceive_nobody(
+    joint: jid.Joint, period: float, sticks: bool
+) -> None:
+    """Friction compensated at the reference's velocity: within a sample the joint turns, sticks, breaks loose."""
+    law = wrong_controller().replace(friction_velocity="reference")
+    if not sticks:  # Table 6-3's initial estimates: strong enough to turn the joint at once
+        law = law.replace(coulomb=10.0, static=20.0, stribeck=200.0, sensor_gain=1.0)
+    scenario = jid.Scenario(
+        joint, law, well_excited(), jid.Sensors(torque_noise=0.5), control_period=period
+    )
+    study = jid.sweep(scenario, thesis_joint(), trials=20, stderr=True)
+    for parameter, true in TRUTH.items():
+        values, errors = study.column(parameter), study.column(f"{parameter}_stderr")
+        inside = np.abs(values - true) < 1.96 * errors
+        assert inside.sum() >= 16, parameter  # of 20; fewer have a chance of 1 in 400 at 95 %
+        if not sticks:
+            chance = 3.0 * np.std(values, ddof=1) / math.sqrt(20.0)
+            assert abs(np.mean(values) - true) < 1e-3 * true + chance, parameter
+
+
 def test_moves_as_an_independent_simulator_does(joint: jid.Joint) -> None:
     """The recording beside the examples: same controller, other code, other noise."""
     theirs = jid.load(data_folder() / "well_excited.csv.gz")
@@ -318,6 +340,36 @@ def test_a_simulated_recording_keeps_its_truth(joint: jid.Joint, tmp_path: Path)
     assert loaded.truth == dict(run.truth)
     with pytest.raises(ValueError, match="read-only"):
         run.truth.signals["position"][0] = 1.0
+
+
+def test_a_thinned_recording_has_the_mean_of_what_was_commanded(joint: jid.Joint) -> None:
+    """What was held over a sample's time integrates to the same impulse; one of four commands does not."""
+    sensors = jid.Sensors(torque_noise=0.5)
+    full = jid.simulate(joint, wrong_controller(), well_excited(), sensors=sensors)
+    thin = jid.simulate(
+        joint, wrong_controller(), well_excited(), sensors=sensors, sample_period=4e-3
+    )
+    assert full.torque is not None
+    assert thin.torque is not None
+    np.testing.assert_array_equal(thin.position, full.position[::4])
+    np.testing.assert_allclose(thin.torque, full.torque.reshape(-1, 4).mean(axis=1), rtol=1e-12)
+    gains = [
+        jid.identify(
+            jid.simulate(
+                joint,
+                wrong_controller(),
+                well_excited(),
+                sensors=sensors,
+                sample_period=4e-3,
+                seed=seed,
+            ),
+            thesis_joint(),
+        )
+        .parameters["sensor_gain"]
+        .value
+        for seed in range(8)
+    ]
+    assert np.mean(gains) == pytest.approx(TRUTH["sensor_gain"], rel=5e-3)
 
 
 def test_payload_and_position_torque_load_the_joint(joint: jid.Joint) -> None:

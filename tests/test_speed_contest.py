@@ -10,7 +10,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
 from peers.contest import Contest, Expired, Objective, Reached, make_contest, prove_same
 from peers.peer import Peer, timed
 from store import Store
-from summary import rows
+from summary import OURS, OURS_WHOLE, floors, ratio_claims, rows
 
 
 @pytest.fixture(scope="module")
@@ -105,3 +105,37 @@ def test_median_of_runs_that_mostly_failed_is_a_bound(tmp_path: Path) -> None:
     (row,) = rows(store, ["a | NumPy"])
     assert row.bound
     assert (row.seconds, row.reached, row.runs) == (20.0, 1, 3)
+
+
+def test_a_ratio_has_a_verdict_for_the_search_and_one_for_the_whole_call(tmp_path: Path) -> None:
+    seconds = {
+        OURS: 0.002,
+        OURS_WHOLE: 0.007,
+        "DEAP eaSimple | NumPy": 9.0,
+        "SciPy differential_evolution | NumPy": 0.9,
+        "pygmo cmaes | NumPy": 0.06,
+        "pycma fmin2 | NumPy": 0.12,
+        "pygmo de | compiled": 0.1,
+        "SciPy least_squares, start within 20 % | NumPy": 0.003,
+    }
+    store = Store(tmp_path / "runs.jsonl", {})
+    for peer, spent in seconds.items():
+        done = not peer.startswith("DEAP")
+        run = {"seconds": spent, "reached": done, "ratio": 1.0, "evaluations": 10}
+        store.append({"kind": "run", "peer": peer, **run})
+    steps = {"prepare": 1e-3, "compress": 1e-3, "inference": 3e-3}
+    store.append({"kind": "anatomy", "way": "behind other work", "windows": 200, "steps": steps})
+    claims = ratio_claims(rows(store, list(seconds)))
+    verdicts = {c.group.split(",")[0]: (c.alone.holds, c.whole.holds) for c in claims}
+    assert verdicts == {
+        "DEAP": (True, True),
+        "SciPy differential evolution": (True, False),
+        "CMA-ES": (False, False),
+        "genetic algorithms and DE": (True, False),
+        "SciPy least squares from a good start": (True, False),
+    }
+    cmaes = next(f for f in floors(store, list(seconds)) if f.claim.group.startswith("CMA"))
+    assert cmaes.claim.quickest == "pygmo cmaes, NumPy"
+    assert cmaes.allowed == pytest.approx(0.0015)
+    assert (cmaes.compression, cmaes.rest) == pytest.approx((1e-3, 4e-3))
+    assert len(floors(store, list(seconds))) == 4

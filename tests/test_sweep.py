@@ -193,6 +193,85 @@ def test_presets_and_labelled_values_make_cells(
     assert presets.rows[1].values == {n: p.value for n, p in text.parameters.items()}
 
 
+def test_a_loop_that_diverges_takes_no_other_trial_with_it(scenario: jid.Scenario) -> None:
+    """Adaptation on the edge, without a torque limit: some seeds diverge."""
+    edge = scenario.changed(
+        {
+            "joint": scenario.joint.replace(limits=jid.Limits()),
+            "sensors": jid.Sensors(encoder_counts=8000, velocity="counts", torque_noise=0.5),
+            "controller.adaptation": True,
+            "controller.adaptation_dry": 0.00026 * 101.0**2,
+            "controller.adaptation_viscous": 0.00026 * 101.0**4,
+        }
+    )
+    options = jid.GaOptions(population=8, generations=5)
+    study = jid.sweep(edge, trials=16, ga=options)
+    refused = [row.trial for row in study.rows if row.status == "refused"]
+    assert 0 < len(refused) < 16
+    assert "not stable" in study.rows[refused[0]].message
+    alone = [
+        jid.sweep(edge, trials=1, seed=t, ga=options).rows for t in range(16) if t not in refused
+    ]
+    kept = [row for row in study.rows if row.trial not in refused]
+    assert [rows[0].values for rows in alone] == [row.values for row in kept]
+
+
+def test_tracking_knows_what_a_controller_cannot_believe(scenario: jid.Scenario) -> None:
+    study = jid.sweep(
+        scenario,
+        grid={"model": ["coulomb_viscous", "stribeck_general"]},
+        trials=1,
+        tracking=True,
+    )
+    plain, general = study.rows
+    believed = scenario.joint.replace(friction="coulomb_viscous").with_parameters(
+        {
+            name: plain.values[name]
+            for name in ("coulomb", "viscous", "sensor_gain", "sensor_offset")
+        }
+    )
+    law = scenario.believing(believed)
+    assert law.asdict()["static"] == 0.0
+    error = scenario.simulate(0, controllers=law, recordings=False).error[0]
+    assert plain.tracking["after"] == error
+    assert np.isnan(general.tracking["after"])
+    assert general.values["coulomb"] > 0.0
+
+
+def test_truths_that_differ_are_those_of_their_cells(scenario: jid.Scenario) -> None:
+    other = scenario.joint.with_parameters({"coulomb": 12.0})
+    by_joint = jid.sweep(scenario, grid={"joint": {"a": scenario.joint, "b": other}}, trials=2)
+    labelled = jid.sweep(scenario, grid={"truth.coulomb": {"a": 25.0, "b": 12.0}}, trials=2)
+    for study in (by_joint, labelled):
+        assert [study.truth_of(cell)["coulomb"] for cell in (0, 1)] == [25.0, 12.0]
+        assert all(abs(cell.bias["coulomb"]) < 0.02 for cell in study.summary().cells)
+
+
+def test_a_dead_worker_is_told_with_what_was_done(
+    recording: jid.Recording, joint: jid.Joint, tmp_path: Path
+) -> None:
+    path = tmp_path / "study.jsonl"
+    again: dict[str, Any] = {"grid": {"windows": list(range(50, 250, 5))}, "trials": 4}
+    again |= {"ga": "thesis", "output": path}
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+
+        def kill_one(step: jid.StudyStep) -> None:
+            if step.number > 4:
+                for process in list(pool._processes.values())[:1]:
+                    process.kill()
+
+        with pytest.raises(jid.StudyBrokenError, match="resume=True") as broken:
+            jid.sweep(recording, joint, executor=pool, callback=kill_one, **again)
+    assert 4 < len(broken.value.study) < 160
+    assert jid.Study.load(path).rows == broken.value.study.rows
+    whole = jid.sweep(recording, joint, resume=True, **again)
+    assert whole.complete
+    assert (
+        whole.rows[:4]
+        == jid.sweep(recording, joint, grid={"windows": [50]}, trials=4, ga="thesis").rows
+    )
+
+
 def test_one_cell_needs_no_grid(recording: jid.Recording, joint: jid.Joint) -> None:
     found = jid.sweep(recording, joint, trials=2)
     assert (len(found.cells), len(found)) == (1, 2)

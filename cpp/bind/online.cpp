@@ -1,22 +1,46 @@
 #include "bind/recording.hpp"
 #include "identify/sliding_penalty.hpp"
+#include "identify/windows.hpp"
 
 namespace jointid::bind {
 
+using identify::MotionScale;
 using identify::SlidingPenalty;
 
 void bind_online(py::module_& m) {
+  py::class_<MotionScale>(m, "MotionScale", "What the mask measures a motion against.")
+      .def(py::init([](SharedRecording& recording) {
+             const py::gil_scoped_release nogil;
+             return identify::motion_scale(recording.view());
+           }),
+           py::arg("recording"))
+      .def_readonly("peak", &MotionScale::peak, "Largest speed.")
+      .def_readonly("travel", &MotionScale::travel, "From the lowest position to the highest.")
+      .def_property_readonly("moves", &MotionScale::moves)
+      .def_property_readonly("memory", &MotionScale::memory,
+                             "How long a joint must hold still to be told from a slow one [s].");
+  m.def(
+      "window_duration",
+      [](SharedRecording& recording, std::int64_t parameters, bool mask_standstill) {
+        const py::gil_scoped_release nogil;
+        return identify::choose_window(*recording.masked(mask_standstill, nullptr), parameters)
+            .duration;
+      },
+      py::arg("recording"), py::arg("parameters"), py::arg("mask_standstill"),
+      "The duration of a window that the velocity's noise asks for [s].");
   py::class_<SlidingPenalty>(m, "SlidingPenalty",
                              "The penalty over the last seconds of a motion that goes on.")
       .def(py::init([](std::vector<std::string> terms, identify::Residual residual,
                        double gear_ratio, double window_duration, bool mask_standstill,
-                       Eigen::VectorXd lower, Eigen::VectorXd upper, double speed) {
+                       const MotionScale& scale, Eigen::VectorXd lower, Eigen::VectorXd upper,
+                       double speed) {
              return SlidingPenalty(std::move(terms), residual, gear_ratio, window_duration,
-                                   mask_standstill, {std::move(lower), std::move(upper)}, speed);
+                                   mask_standstill, scale, {std::move(lower), std::move(upper)},
+                                   speed);
            }),
            py::kw_only(), py::arg("terms"), py::arg("residual"), py::arg("gear_ratio"),
-           py::arg("window_duration"), py::arg("mask_standstill"), py::arg("lower"),
-           py::arg("upper"), py::arg("speed"))
+           py::arg("window_duration"), py::arg("mask_standstill"), py::arg("scale"),
+           py::arg("lower"), py::arg("upper"), py::arg("speed"))
       .def(
           "append",
           [](SlidingPenalty& p, const std::shared_ptr<SharedRecording>& samples, Eigen::Index begin,

@@ -52,7 +52,7 @@ void bind_search(py::module_& m) {
       },
       py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::arg("start"), py::kw_only(),
       py::arg("everywhere") = true, py::arg("threads") = 0,
-      "The local optimum near a start; `everywhere` also searches one free shape's whole range.");
+      "The local optimum near a start; `everywhere` also searches the free shapes' whole ranges.");
   m.def(
       "polish",
       [](const PenaltyFunction& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,

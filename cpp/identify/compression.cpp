@@ -8,6 +8,11 @@ namespace jointid::identify {
 namespace {
 
 constexpr std::int64_t kSamples = 3072;  // of a part: small enough to share 12 s among threads
+constexpr std::size_t kRows = 4096;      // digested at once: only running integrals have more
+// Operations that are done sooner than sleeping processors are awake: not handed to threads.
+constexpr double kBrief = 2e6;
+// Sums over the samples that cost as much as a usual genetic search by the direct sum.
+constexpr Eigen::Index kMostPasses = 20'000;
 // Where log(1 + s v^2 / kKnee) is even enough at its lower end (fewest nodes, on `well_excited`).
 constexpr double kKnee = 10.0;
 // Pieces an octave of the scale, as powers of 2.
@@ -37,14 +42,19 @@ std::vector<Stretch> parts_of(const Penalty& penalty) {
   return parts;
 }
 
-void accumulate(Eigen::MatrixXd& columns) {
+/// Running sums down the rows, on from those of the rows before.
+void accumulate(Eigen::MatrixXd& columns, Eigen::RowVectorXd& before) {
+  if (before.size() == 0) before.setZero(columns.cols());
+  columns.row(0) += before;
   for (Eigen::Index row = 1; row < columns.rows(); ++row) columns.row(row) += columns.row(row - 1);
+  before = columns.row(columns.rows() - 1);
 }
 
-Digest digest_group(const Penalty& penalty, const Stretch& part, const DecayRates& group,
-                    const base::Cancel* cancel) {
-  const auto rows = static_cast<Eigen::Index>(part.end - part.begin);
-  const auto first = static_cast<Eigen::Index>(part.begin);
+/// `before` holds the sums over the recording's windows before the block's, for running integrals.
+Digest digest_block(const Penalty& penalty, const Stretch& block, const DecayRates& group,
+                    const base::Cancel* cancel, Eigen::RowVectorXd& before) {
+  const auto rows = static_cast<Eigen::Index>(block.end - block.begin);
+  const auto first = static_cast<Eigen::Index>(block.begin);
   const auto shaped = static_cast<Eigen::Index>(penalty.shaped().size());
   Eigen::MatrixXd constant(rows, penalty.coefficients() - shaped + 1);
   Eigen::Index to = 0;
@@ -59,14 +69,44 @@ Digest digest_group(const Penalty& penalty, const Stretch& part, const DecayRate
   for (Eigen::Index j = 0; j < shaped; ++j) {
     const auto& term = penalty.shaped()[static_cast<std::size_t>(j)].term;
     if (shaped == 1) {
-      integrate_decays(penalty.nodes(term.direction), part, group, cancel, columns);
+      integrate_decays(penalty.nodes(term.direction), block, group, cancel, columns);
       break;
     }
-    integrate_decays(penalty.nodes(term.direction), part, group, cancel, own);
+    integrate_decays(penalty.nodes(term.direction), block, group, cancel, own);
     for (Eigen::Index k = 0; k < nodes; ++k) columns.col(k * shaped + j) = own.col(k);
   }
-  if (penalty.cumulative()) accumulate(columns);
+  if (penalty.cumulative()) accumulate(columns, before);  // the constant ones are sums already
   return digest(constant, columns, shaped);
+}
+
+/// A part in blocks, so that neither memory nor the time between two looks at the cancel flag grows
+/// with it.
+Digest digest_group(const Penalty& penalty, const Stretch& part, const DecayRates& group,
+                    const base::Cancel* cancel) {
+  Eigen::RowVectorXd before;
+  std::vector<Digest> blocks;
+  std::size_t begin = part.begin;
+  do {  // a part without windows has a digest, too
+    if (cancel != nullptr) cancel->check();
+    const Stretch block{begin, std::min(part.end, begin + kRows)};
+    blocks.push_back(digest_block(penalty, block, group, cancel, before));
+    begin = block.end;
+  } while (begin < part.end);
+  return merge(blocks);
+}
+
+/// Exponentials, and products on the way to a triangle: about a nanosecond each.
+double operations(const Penalty& penalty, const std::vector<DecayRates>& groups) {
+  double rates = 0.0;
+  for (const auto& group : groups) rates += static_cast<double>(group.rates.size());
+  double exponentials = 0.0;
+  for (const auto& shaped : penalty.shaped()) {
+    const auto& nodes = penalty.nodes(shaped.term.direction);
+    exponentials += rates * static_cast<double>(nodes.speed.size());
+  }
+  const auto constant = static_cast<double>(penalty.coefficients() + 1);
+  const double columns = constant + rates * static_cast<double>(penalty.shaped().size());
+  return exponentials + constant * columns * static_cast<double>(penalty.windows().size());
 }
 
 }  // namespace
@@ -116,9 +156,22 @@ std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Doma
   // The decay is felt through exponent * log(speed / velocity).
   const double reach = base::log(std::max(2.0, speed / velocities.shape(-1.0)));
   const auto outer = chebyshev_points(count_for(1.2 * exponents.length() * reach, 0.6 * density));
+  const auto inner_count = [&](double exponent) {
+    return count_for(exponent * velocities.length(), density);
+  };
+  Eigen::Index passes = 0;
+  for (const double place : outer) passes += inner_count(exponents.shape(place));
+  if (passes > kMostPasses) {
+    reason =
+        "the bounds of stribeck_velocity and stribeck_exponent are so wide that their table "
+        "takes " +
+        std::to_string(passes) + " sums over the samples, more than the " +
+        std::to_string(kMostPasses) + " that pay";
+    return std::nullopt;
+  }
   for (const double place : outer) {
     const double exponent = exponents.shape(place);
-    const auto inner = chebyshev_points(count_for(exponent * velocities.length(), density));
+    const auto inner = chebyshev_points(inner_count(exponent));
     result.lines.push_back({exponent, {}});
     for (const double point : inner) {
       result.lines.back().rates.push_back(rate(velocities.shape(point), exponent));
@@ -160,14 +213,19 @@ std::vector<Digest> digest_all(const Penalty& penalty, const std::vector<DecayRa
   const auto parts = parts_of(penalty);
   const std::size_t count = std::max<std::size_t>(1, groups.size());
   std::vector<std::vector<Digest>> digests(count, std::vector<Digest>(parts.size()));
-  pool.for_each(count * parts.size(), [&](std::size_t begin, std::size_t end) {
+  const auto work = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t part = i % parts.size();
       const std::size_t group = i / parts.size();
       digests[group][part] = digest_group(
           penalty, parts[part], groups.empty() ? DecayRates{} : groups[group], &pool.cancel());
     }
-  });
+  };
+  if (operations(penalty, groups) < kBrief) {
+    work(0, count * parts.size());
+  } else {
+    pool.for_each(count * parts.size(), work);
+  }
   std::vector<Digest> result;
   for (const auto& group : digests) result.push_back(merge(group));
   return result;

@@ -24,7 +24,8 @@ struct ShapeNodes {
 };
 
 /// Nodes for the domain's shapes, `density` times as many as usually suffice. `speed` is the
-/// largest. Says in `reason` why there are none when it returns nothing.
+/// largest. Says in `reason` why there are none when it returns nothing; more than a search by the
+/// direct sum would cost is such a reason.
 std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Domain& domain,
                                       double speed, double density, std::string& reason);
 
@@ -36,7 +37,7 @@ std::vector<DecayRates> rates_of(const ShapeNodes& nodes);
 std::vector<Digest> digest_part(const Penalty& penalty, const Stretch& windows,
                                 const std::vector<DecayRates>& groups, const base::Cancel* cancel);
 
-/// The same of all windows, their parts over the threads.
+/// The same of all windows, their parts over the threads unless there is little to do.
 std::vector<Digest> digest_all(const Penalty& penalty, const std::vector<DecayRates>& groups,
                                base::Pool& pool);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "base/clones.hpp"
@@ -13,6 +14,8 @@ namespace {
 
 // Rates side by side: the lanes of a vector. Windows hold some ten samples, too few to sum along.
 constexpr std::size_t kLanes = 8;
+// exp(-50) = 2e-22 of a sample's weight is nothing beside 1, which the samples at rest have.
+constexpr double kVanishing = 50.0;
 
 JOINTID_CLONES void squares(const double* speed, std::size_t count, double* x) {
   for (std::size_t i = 0; i < count; ++i) x[i] = speed[i] * speed[i];
@@ -27,13 +30,15 @@ JOINTID_CLONES void powers(const double* speed, double exponent, std::size_t cou
   }
 }
 
-/// For every window w, sums[w * kLanes + lane] = sum of weight exp(-rates[lane] x). first[w] counts
-/// from first[0].
+/// For every window w, sums[w * kLanes + lane] = sum of weight exp(-rates[lane] x), but for x of
+/// `vanishing` and more. first[w] counts from first[0].
 JOINTID_CLONES void window_sums(const double* x, const double* weight, const std::size_t* first,
-                                std::size_t windows, const double* rates, double* sums) {
+                                std::size_t windows, const double* rates, double vanishing,
+                                double* sums) {
   for (std::size_t w = 0; w < windows; ++w) {
     std::array<double, kLanes> sum{};
     for (std::size_t i = first[w] - first[0]; i < first[w + 1] - first[0]; ++i) {
+      if (x[i] >= vanishing) continue;
       for (std::size_t l = 0; l < kLanes; ++l) {
         sum[l] += weight[i] * base::exp_decay(rates[l] * x[i]);
       }
@@ -59,8 +64,10 @@ void integrate_decays(const FrictionNodes& nodes, const Stretch& windows, const 
     const std::size_t lanes = std::min(kLanes, group.rates.size() - from);
     std::array<double, kLanes> rates{};
     std::copy_n(group.rates.begin() + static_cast<std::ptrdiff_t>(from), lanes, rates.begin());
+    const double least = *std::min_element(rates.begin(), rates.begin() + lanes);
+    const double vanishing = least > 0.0 ? kVanishing / least : HUGE_VAL;
     window_sums(x.data(), nodes.weight.data() + begin, nodes.first.data() + windows.begin, rows,
-                rates.data(), sums.data());
+                rates.data(), vanishing, sums.data());
     const Eigen::Map<const Eigen::MatrixXd> found(sums.data(), kLanes,
                                                   static_cast<Eigen::Index>(rows));
     columns.middleCols(static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(lanes)) =

@@ -16,6 +16,10 @@ constexpr double kSlow = 0.003;            // of the peak speed: below, for long
 constexpr double kShortestStanding = 0.1;  // [s]
 constexpr double kStandingOfPeriod =
     0.01;  // a reversal of a slow motion is slow, too: allow for its period
+constexpr double kJolt =
+    0.05;  // of the largest torque: such a jump bends the motion within a sample
+constexpr Eigen::Index kRarest = 5;  // one interval in five may go for that, at most
+constexpr Eigen::Index kReach = 2;   // intervals left out on either side of what is not smooth
 constexpr double kResolved =
     0.005;  // of the peak speed: a motion slower than this per quantum looks stuck
 
@@ -67,10 +71,17 @@ void mark_runs(Eigen::Index count, std::vector<std::uint8_t>& mark, Same same,
   }
 }
 
-void mark_sticking(const RecordingView& r, double peak, const std::vector<std::uint8_t>& after_gap,
+double standing_time(const MotionScale& scale) {
+  return std::max(kShortestStanding, kStandingOfPeriod * scale.period);
+}
+
+double sticking_time(const MotionScale& scale) {
+  return scale.quantum / (kResolved * scale.peak);
+}
+
+void mark_sticking(const RecordingView& r, const MotionScale& scale,
+                   const std::vector<std::uint8_t>& after_gap,
                    std::vector<std::uint8_t>& standing) {
-  const double quantum = smallest_positive(
-      1, r.samples(), [&](Eigen::Index k) { return r.position[k] - r.position[k - 1]; });
   bool any = false;
   const auto unchanged = [&](Eigen::Index k) {  // the interval k-1 -> k, told by its end
     return k > 0 && after_gap[static_cast<std::size_t>(k)] == 0 &&
@@ -78,7 +89,7 @@ void mark_sticking(const RecordingView& r, double peak, const std::vector<std::u
   };
   mark_runs(r.samples(), standing, unchanged, [&](Eigen::Index first, Eigen::Index last) {
     const bool stuck =
-        last - first >= 2 && r.time[last] - r.time[first - 1] >= quantum / (kResolved * peak);
+        last - first >= 2 && r.time[last] - r.time[first - 1] >= sticking_time(scale);
     any = any || stuck;
     return stuck;
   });
@@ -87,9 +98,7 @@ void mark_sticking(const RecordingView& r, double peak, const std::vector<std::u
     if (standing[static_cast<std::size_t>(k)] != 0 && unchanged(k))
       standing[static_cast<std::size_t>(k - 1)] = 1;
   }
-  const double finest =
-      smallest_positive(1, r.samples(), [&](Eigen::Index k) { return r.velocity[k]; });
-  if (finest < kResolved * peak) {
+  if (scale.finest < kResolved * scale.peak) {
     mark_runs(
         r.samples(), standing, [&](Eigen::Index k) { return r.velocity[k] == 0.0; },
         [](Eigen::Index first, Eigen::Index last) { return last > first; });
@@ -151,11 +160,11 @@ std::vector<Region> quiet_regions(const RecordingView& r, double span, double re
   return regions;
 }
 
-void mark_standing(const RecordingView& r, double peak, double travelled,
+void mark_standing(const RecordingView& r, const MotionScale& scale,
                    const std::vector<std::uint8_t>& after_gap,
                    std::vector<std::uint8_t>& standing) {
-  const double span = std::max(kShortestStanding, kStandingOfPeriod * motion_period(r, travelled));
-  const double reach = kSlow * peak * span;
+  const double span = standing_time(scale);
+  const double reach = kSlow * scale.peak * span;
   std::deque<Eigen::Index> highest;
   std::deque<Eigen::Index> lowest;
   for (const auto& region : quiet_regions(r, span, reach)) {
@@ -188,6 +197,38 @@ void mark_standing(const RecordingView& r, double peak, double travelled,
         marked = k + 1;
       }
     }
+  }
+}
+
+/// Reversals at which a held command jumps: the joint turns, sticks or breaks away at an instant
+/// that the samples do not tell, which is worth friction times a sample's time.
+void mark_jolts(const RecordingView& r, const MotionScale& scale,
+                std::vector<std::uint8_t>& usable) {
+  const double least = kJolt * scale.push;
+  const Eigen::Index n = r.samples();
+  const auto jumps = [&](Eigen::Index k) {
+    const Eigen::Index from = std::max<Eigen::Index>(0, k - kReach);
+    const Eigen::Index to = std::min(n - 2, k + kReach);
+    for (Eigen::Index j = from; j <= to; ++j) {
+      if (std::fabs(r.torque[j + 1] - r.torque[j]) > least) return true;
+    }
+    return false;
+  };
+  std::vector<Eigen::Index> turns;
+  for (Eigen::Index k = 0; k + 1 < n; ++k) {
+    const double here = r.velocity[k];
+    const double next = r.velocity[k + 1];
+    const bool turning =
+        (here > 0.0 && next <= 0.0) || (here < 0.0 && next >= 0.0) || (here == 0.0 && next != 0.0);
+    if (turning && jumps(k)) turns.push_back(k);
+  }
+  // A motion of few samples a reversal jumps everywhere: better a bias there than nothing left.
+  constexpr Eigen::Index width = 2 * kReach + 1;
+  if (kRarest * width * static_cast<Eigen::Index>(turns.size()) > n) return;
+  for (const auto k : turns) {
+    const auto from = std::max<Eigen::Index>(0, k - kReach);
+    const auto to = std::min(n - 2, k + kReach);
+    std::fill(usable.begin() + from, usable.begin() + to + 1, std::uint8_t{0});
   }
 }
 
@@ -226,19 +267,40 @@ void RecordingView::validate() const {
   }
 }
 
-UsableIntervals usable_intervals(const RecordingView& r, bool mask_standstill,
-                                 const base::Cancel* cancel) {
-  double peak = 0.0;
+double MotionScale::memory() const {
+  const double sticking = sticking_time(*this);
+  return std::isfinite(sticking) ? std::max(standing_time(*this), sticking) : standing_time(*this);
+}
+
+MotionScale motion_scale(const RecordingView& r) {
+  MotionScale scale;
   double low = r.position[0];
   double high = low;
   for (Eigen::Index k = 0; k < r.samples(); ++k) {
-    peak = std::max(peak, std::fabs(r.velocity[k]));
+    scale.peak = std::max(scale.peak, std::fabs(r.velocity[k]));
     low = std::min(low, r.position[k]);
     high = std::max(high, r.position[k]);
   }
-  if (!(peak > 0.0) || low == high) {
+  scale.travel = high - low;
+  scale.period = motion_period(r, scale.travel);
+  scale.push = r.torque.cwiseAbs().maxCoeff();
+  scale.quantum = smallest_positive(
+      1, r.samples(), [&](Eigen::Index k) { return r.position[k] - r.position[k - 1]; });
+  scale.finest = smallest_positive(1, r.samples(), [&](Eigen::Index k) { return r.velocity[k]; });
+  return scale;
+}
+
+UsableIntervals usable_intervals(const RecordingView& r, bool mask_standstill,
+                                 const base::Cancel* cancel) {
+  const MotionScale scale = motion_scale(r);
+  if (!scale.moves()) {
     throw std::invalid_argument("the joint never moves: there is no friction to identify");
   }
+  return usable_intervals(r, scale, mask_standstill, cancel);
+}
+
+UsableIntervals usable_intervals(const RecordingView& r, const MotionScale& scale,
+                                 bool mask_standstill, const base::Cancel* cancel) {
   if (cancel != nullptr) cancel->check();
   const auto n = static_cast<std::size_t>(r.samples());
   UsableIntervals result{std::vector<std::uint8_t>(n - 1, 1), 0};
@@ -246,14 +308,14 @@ UsableIntervals usable_intervals(const RecordingView& r, bool mask_standstill,
     std::vector<std::uint8_t> standing(n, 0);
     std::vector<std::uint8_t> after_gap(n, 0);
     for (const auto gap : r.gap_after) after_gap[static_cast<std::size_t>(gap) + 1] = 1;
-    mark_sticking(r, peak, after_gap, standing);
+    mark_sticking(r, scale, after_gap, standing);
     if (cancel != nullptr) cancel->check();
-    mark_standing(r, peak, high - low, after_gap, standing);
+    mark_standing(r, scale, after_gap, standing);
     if (cancel != nullptr) cancel->check();
     result.standing = std::count(standing.begin(), standing.end(), std::uint8_t{1});
     // The interval that touches a stuck sample holds a break-away or a stop; the one beside it has
     // a derived velocity that saw the stop, and friction that changes too fast for the trapezoid.
-    constexpr std::size_t reach = 2;
+    constexpr auto reach = static_cast<std::size_t>(kReach);
     for (std::size_t k = 0; result.standing > 0 && k < n; ++k) {
       if (standing[k] == 0) continue;
       const std::size_t from = k >= reach ? k - reach : 0;
@@ -262,6 +324,7 @@ UsableIntervals usable_intervals(const RecordingView& r, bool mask_standstill,
                 result.usable.begin() + static_cast<std::ptrdiff_t>(to), std::uint8_t{0});
     }
   }
+  if (mask_standstill && r.torque_hold == Hold::zero_order) mark_jolts(r, scale, result.usable);
   for (const auto gap : r.gap_after) result.usable[static_cast<std::size_t>(gap)] = 0;
   return result;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
@@ -16,6 +17,7 @@ constexpr int kScan = 64;             // intervals over the domain of a single f
 constexpr int kGrid = 16;             // over each of several
 constexpr std::size_t kPolished = 3;  // best points of the grid that are polished
 constexpr double kGolden = 0.6180339887498949;
+constexpr double kNarrow = 1e-9;  // of a scale's range: as near as the lowest point is sought
 
 /// The penalty as a function of the free shapes alone.
 class Eliminated {
@@ -100,53 +102,122 @@ struct Interval {
   double right;
 };
 
-/// The scan's best point, between its neighbours.
-Interval scan(const Eliminated& reduced, const Scale& scale, SeparableResult& result) {
+/// Penalties at even steps over a scale.
+std::vector<double> scan(const Eliminated& reduced, const Scale& scale, SeparableResult& result) {
   std::vector<std::vector<double>> points;
   for (int i = 0; i <= kScan; ++i) points.push_back({scale.at(static_cast<double>(i) / kScan)});
-  const auto values = reduced.values(points);
   result.evaluations += kScan + 1;
+  return reduced.values(points);
+}
+
+/// The scan's best point, between its neighbours.
+Interval lowest(const std::vector<double>& scanned) {
   const auto best =
-      static_cast<double>(std::min_element(values.begin(), values.end()) - values.begin());
+      static_cast<double>(std::min_element(scanned.begin(), scanned.end()) - scanned.begin());
   return {std::max(0.0, best - 1.0) / kScan, std::min<double>(kScan, best + 1.0) / kScan};
 }
 
-/// Golden sections within an interval.
+/// Whether the scan falls all the way from a place to its best point: the two are in one valley.
+bool falls_from(const std::vector<double>& scanned, double from) {
+  const double share = std::clamp(from, 0.0, 1.0);
+  const auto best = std::min_element(scanned.begin(), scanned.end());
+  const auto first = scanned.begin() + static_cast<std::ptrdiff_t>(std::floor(share * kScan));
+  const auto last = scanned.begin() + static_cast<std::ptrdiff_t>(std::ceil(share * kScan));
+  if (last <= best) return std::is_sorted(first, best + 1, std::greater<>());
+  if (first >= best) return std::is_sorted(best, last + 1);
+  return true;
+}
+
+/// Parabolas through the last points, golden sections where they fail (Brent 1973, chapter 5).
 void narrow(const Eliminated& reduced, const Scale& scale, Interval interval, base::Pool& pool,
             SeparableResult& result) {
-  auto [left, right] = interval;
   const auto value = [&](double share) {
     pool.poll();
     ++result.evaluations;
     return reduced.values({{scale.at(share)}})[0];
   };
-  double a = right - kGolden * (right - left);
-  double b = left + kGolden * (right - left);
-  double at_a = value(a);
-  double at_b = value(b);
-  while (right - left > 1e-9) {
-    if (at_a <= at_b) {
-      right = b;
-      b = a;
-      at_b = at_a;
-      a = right - kGolden * (right - left);
-      at_a = value(a);
+  auto [left, right] = interval;
+  struct Point {
+    double share;
+    double value;
+  };
+  const double begin = left + (1.0 - kGolden) * (right - left);
+  Point best{begin, value(begin)};
+  Point second = best;
+  Point third = best;
+  double step = 0.0;
+  double before = 0.0;  // the step before the last
+  for (;;) {
+    const double middle = 0.5 * (left + right);
+    if (std::fabs(best.share - middle) <= 2.0 * kNarrow - 0.5 * (right - left)) break;
+    // The parabola's lowest point is best.share + p / q.
+    const double r = (best.share - second.share) * (best.value - third.value);
+    double q = (best.share - third.share) * (best.value - second.value);
+    double p = (best.share - third.share) * q - (best.share - second.share) * r;
+    q = 2.0 * (q - r);
+    p = q > 0.0 ? -p : p;
+    q = std::fabs(q);
+    if (std::fabs(p) < std::fabs(0.5 * q * before) && p > q * (left - best.share) &&
+        p < q * (right - best.share)) {
+      before = step;
+      step = p / q;
+      const double to = best.share + step;
+      if (to - left < 2.0 * kNarrow || right - to < 2.0 * kNarrow) {
+        step = best.share < middle ? kNarrow : -kNarrow;
+      }
     } else {
-      left = a;
-      a = b;
-      at_a = at_b;
-      b = left + kGolden * (right - left);
-      at_b = value(b);
+      before = (best.share < middle ? right : left) - best.share;
+      step = (1.0 - kGolden) * before;
+    }
+    if (std::fabs(step) < kNarrow) step = step > 0.0 ? kNarrow : -kNarrow;
+    const double share = best.share + step;
+    const Point next{share, value(share)};
+    if (next.value <= best.value) {
+      (next.share < best.share ? right : left) = best.share;
+      third = second;
+      second = best;
+      best = next;
+    } else {
+      (next.share < best.share ? left : right) = next.share;
+      if (next.value <= second.value || second.share == best.share) {
+        third = second;
+        second = next;
+      } else if (next.value <= third.value || third.share == best.share ||
+                 third.share == second.share) {
+        third = next;
+      }
     }
   }
-  reduced.offer(reduced.full({scale.at(at_a <= at_b ? a : b)}), result);
+  reduced.offer(reduced.full({scale.at(best.share)}), result);
 }
 
-/// A scan, golden sections around its best, then the ends, which golden sections never touch.
+/// The ends, which the narrowing never touches.
+void offer_ends(const Eliminated& reduced, const Scale& scale, SeparableResult& result) {
+  for (const double share : {0.0, 1.0}) reduced.offer(reduced.full({scale.at(share)}), result);
+}
+
+/// A scan, then narrowing about its best.
 void search_line(const Eliminated& reduced, const Scale& scale, base::Pool& pool,
                  SeparableResult& result) {
-  narrow(reduced, scale, scan(reduced, scale, result), pool, result);
-  for (const double share : {0.0, 1.0}) reduced.offer(reduced.full({scale.at(share)}), result);
+  narrow(reduced, scale, lowest(scan(reduced, scale, result)), pool, result);
+  offer_ends(reduced, scale, result);
+}
+
+/// The valley about the best so far. Widens until its floor is inside, or at the domain's end: the
+/// start may lie on a slope.
+void search_near(const Eliminated& reduced, const Scale& scale, base::Pool& pool,
+                 SeparableResult& result) {
+  for (double reach = 1.0 / kScan;; reach *= 4.0) {
+    const double share = scale.share(result.best[reduced.free()[0]]);
+    const Interval near{std::max(0.0, share - reach), std::min(1.0, share + reach)};
+    narrow(reduced, scale, near, pool, result);
+    const double found = scale.share(result.best[reduced.free()[0]]);
+    const double margin = 0.01 * reach;
+    if ((near.left <= 0.0 || found > near.left + margin) &&
+        (near.right >= 1.0 || found < near.right - margin)) {
+      return;
+    }
+  }
 }
 
 void search_grid(const Eliminated& reduced, const std::vector<Scale>& scales,
@@ -237,21 +308,18 @@ SeparableResult refine_separable(const PenaltyFunction& penalty, const search::D
       penalty.residuals(theta, residual, jacobian, &pool.cancel());
     };
     reduced.offer(search::polish(residuals, domain, result.best, pool).best, result);
+    if (everywhere) search_grid(reduced, scales, penalty, domain, pool, result);
     return result;
   }
-  // Widens until the best is inside, or at the domain's end: the start may lie on a slope.
-  for (double reach = 1.0 / kScan;; reach *= 4.0) {
-    const double share = scales[0].share(result.best[reduced.free()[0]]);
-    const Interval near{std::max(0.0, share - reach), std::min(1.0, share + reach)};
-    narrow(reduced, scales[0], near, pool, result);
-    const double found = scales[0].share(result.best[reduced.free()[0]]);
-    const double margin = 0.01 * reach;
-    if ((near.left <= 0.0 || found > near.left + margin) &&
-        (near.right >= 1.0 || found < near.right - margin)) {
-      break;
-    }
+  if (!everywhere) {
+    search_near(reduced, scales[0], pool, result);
+    return result;
   }
-  if (everywhere) search_line(reduced, scales[0], pool, result);
+  const double share = scales[0].share(result.best[reduced.free()[0]]);
+  const auto scanned = scan(reduced, scales[0], result);
+  if (!falls_from(scanned, share)) search_near(reduced, scales[0], pool, result);
+  narrow(reduced, scales[0], lowest(scanned), pool, result);
+  offer_ends(reduced, scales[0], result);
   return result;
 }
 

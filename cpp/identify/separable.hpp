@@ -17,15 +17,15 @@ struct SeparableResult {
   int evaluations = 0;   ///< shapes tried
 };
 
-/// The separable optimum. No free shape: a single solve. One: a scan, then golden sections around
-/// the best. Several: a grid, then polishes of all parameters from its best points.
+/// The separable optimum. No free shape: a single solve. One: a scan, then parabolas about its
+/// best. Several: a grid, then polishes of all parameters from its best points.
 SeparableResult minimise_separable(const PenaltyFunction& penalty, const search::Domain& domain,
                                    base::Pool& pool);
 
 /// The local optimum near a start, never worse than it: for one free shape by elimination and
-/// golden sections about the start's, for several by Levenberg-Marquardt. `everywhere`: one free
-/// shape is also searched over its whole range, which costs next to nothing on the compressed
-/// penalty.
+/// parabolas about the start's, for several by Levenberg-Marquardt. `everywhere`: the free
+/// shapes are also searched over their whole ranges, as by minimise_separable, which costs next to
+/// nothing on the compressed penalty.
 SeparableResult refine_separable(const PenaltyFunction& penalty, const search::Domain& domain,
                                  const Eigen::VectorXd& start, base::Pool& pool, bool everywhere);
 

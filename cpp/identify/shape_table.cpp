@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/clones.hpp"
 #include "base/elementary.hpp"
 
 namespace jointid::identify {
@@ -13,12 +14,34 @@ namespace {
 
 constexpr std::size_t kLanes = ShapeTable::kLanes;
 
-/// Values of T_0 .. T_(count-1) at x (also a little outside [-1, 1]).
-void chebyshev_values(double x, Eigen::Ref<Eigen::VectorXd> values) {
-  values[0] = 1.0;
-  if (values.size() > 1) values[1] = x;
-  for (Eigen::Index k = 2; k < values.size(); ++k) {
-    values[k] = 2.0 * x * values[k - 1] - values[k - 2];
+// Points side by side, the lanes of a vector, and functions whose sums stay in registers.
+constexpr std::size_t kPoints = 8;
+constexpr std::size_t kFunctions = 4;
+
+/// Some series' values at kPoints points x (also a little outside [-1, 1]). Coefficients lie one
+/// term after the other, `stride` apart, as do the values one point after the other.
+JOINTID_CLONES void series_at(const double* coefficients, std::size_t functions, std::size_t stride,
+                              std::size_t terms, const double* x, double* values) {
+  std::array<std::array<double, kPoints>, kFunctions> sums{};
+  std::array<double, kPoints> before{};
+  std::array<double, kPoints> now{};
+  for (std::size_t l = 0; l < kPoints; ++l) {
+    before[l] = x[l];  // T_-1 = T_1
+    now[l] = 1.0;
+  }
+  for (std::size_t k = 0; k < terms; ++k) {
+    for (std::size_t f = 0; f < kFunctions; ++f) {
+      const double c = f < functions ? coefficients[k * stride + f] : 0.0;
+      for (std::size_t l = 0; l < kPoints; ++l) sums[f][l] += c * now[l];
+    }
+    for (std::size_t l = 0; l < kPoints; ++l) {
+      const double next = 2.0 * x[l] * now[l] - before[l];
+      before[l] = now[l];
+      now[l] = next;
+    }
+  }
+  for (std::size_t f = 0; f < functions; ++f) {
+    for (std::size_t l = 0; l < kPoints; ++l) values[l * stride + f] = sums[f][l];
   }
 }
 
@@ -49,16 +72,28 @@ class Powers {
   Eigen::MatrixXd powers_;
 };
 
-/// The series' functions at all pieces' local points: series terms x points.
-Eigen::MatrixXd at_pieces(const ShapeAxis& axis, Eigen::Index order, Eigen::Index count) {
+/// Series through values over an axis's whole range (functions x Chebyshev points), at all pieces'
+/// local points: functions x points.
+Eigen::MatrixXd at_pieces(const ShapeAxis& axis, Eigen::Index order,
+                          const Eigen::MatrixXd& values) {
+  const Eigen::MatrixXd coefficients = chebyshev_coefficients(values);
   const Eigen::VectorXd local = chebyshev_points(order);
-  Eigen::MatrixXd result(count, axis.pieces() * order);
-  for (std::int64_t piece = 0; piece < axis.pieces(); ++piece) {
-    for (Eigen::Index l = 0; l < order; ++l) {
-      chebyshev_values(axis.position(axis.shape_in(piece, local[l])),
-                       result.col(piece * order + l));
+  const Eigen::Index points = axis.pieces() * order;
+  const auto lanes = static_cast<Eigen::Index>(kPoints);
+  const Eigen::Index padded = (points + lanes - 1) / lanes * lanes;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(padded);
+  for (Eigen::Index i = 0; i < points; ++i) {
+    x[i] = axis.position(axis.shape_in(i / order, local[i % order]));
+  }
+  const auto functions = static_cast<std::size_t>(values.rows());
+  Eigen::MatrixXd result(values.rows(), padded);
+  for (Eigen::Index i = 0; i < padded; i += lanes) {
+    for (std::size_t f = 0; f < functions; f += kFunctions) {
+      series_at(coefficients.data() + f, std::min(kFunctions, functions - f), functions,
+                static_cast<std::size_t>(values.cols()), x.data() + i, result.col(i).data() + f);
     }
   }
+  result.conservativeResize(Eigen::NoChange, points);
   return result;
 }
 
@@ -126,8 +161,7 @@ ShapeTable::ShapeTable(std::vector<ShapeAxis> axes, const Samples& samples, int 
 
 void ShapeTable::build_line(const Eigen::MatrixXd& values) {
   const auto order = static_cast<Eigen::Index>(order_);
-  const Eigen::MatrixXd points =
-      chebyshev_coefficients(values) * at_pieces(axes_[0], order, values.cols());
+  const Eigen::MatrixXd points = at_pieces(axes_[0], order, values);
   const Powers powers(order);
   rows_.assign(static_cast<std::size_t>(axes_[0].pieces()) * terms_ * width_, 0.0);
   for (std::int64_t piece = 0; piece < axes_[0].pieces(); ++piece) {
@@ -145,12 +179,10 @@ void ShapeTable::build_plane(const Samples& samples) {
   // First to the second axis's pieces, at every point of the first: (function, inner) x outer.
   Eigen::MatrixXd lines(functions_ * inner, outer);
   for (Eigen::Index k = 0; k < outer; ++k) {
-    const auto& values = samples.values[static_cast<std::size_t>(k)];
-    const Eigen::MatrixXd line =
-        chebyshev_coefficients(values) * at_pieces(axes_[1], order, values.cols());
-    lines.col(k) = line.reshaped();
+    lines.col(k) =
+        at_pieces(axes_[1], order, samples.values[static_cast<std::size_t>(k)]).reshaped();
   }
-  const Eigen::MatrixXd all = chebyshev_coefficients(lines) * at_pieces(axes_[0], order, outer);
+  const Eigen::MatrixXd all = at_pieces(axes_[0], order, lines);
   const Powers powers(order);
   rows_.assign(static_cast<std::size_t>(axes_[0].pieces() * axes_[1].pieces()) * terms_ * width_,
                0.0);

@@ -14,16 +14,18 @@ constexpr double kDensity = 1.2;
 }  // namespace
 
 SlidingPenalty::SlidingPenalty(std::vector<std::string> terms, Residual residual, double gear_ratio,
-                               double window_duration, bool mask_standstill, search::Domain domain,
-                               double speed)
+                               double window_duration, bool mask_standstill,
+                               const MotionScale& scale, search::Domain domain, double speed)
     : terms_(std::move(terms)),
       residual_(residual),
       gear_ratio_(gear_ratio),
       window_duration_(window_duration),
       mask_standstill_(mask_standstill),
+      scale_(scale),
       domain_(std::move(domain)),
       speed_(speed) {
   domain_.validate();
+  if (!scale.moves()) throw std::invalid_argument("scale must be that of a motion");
   if (!(speed > 0.0) || !(window_duration > 0.0)) {
     throw std::invalid_argument("speed and window_duration must be above 0, got " +
                                 std::to_string(speed) + " and " + std::to_string(window_duration));
@@ -42,7 +44,7 @@ void SlidingPenalty::append(const RecordingView& samples, Eigen::Index begin, Ei
                                 " s, before the last one's end at " +
                                 std::to_string(stretches_.back().end) + " s");
   }
-  UsableIntervals usable = usable_intervals(samples, mask_standstill_);
+  UsableIntervals usable = usable_intervals(samples, scale_, mask_standstill_);
   usable.usable = {usable.usable.begin() + begin, usable.usable.begin() + end};
   const auto cut = [&](const RecordingView::Signal& signal) {
     return signal.size() == 0 ? RecordingView::Signal(nullptr, 0)

@@ -18,9 +18,11 @@ namespace jointid::identify {
 
 class SlidingPenalty {
  public:
-  /// `speed` is the largest that the shapes' table must serve [rad/s or m/s].
+  /// `scale` is that of the whole motion; `speed` is the largest that the shapes' table must serve
+  /// [rad/s or m/s].
   SlidingPenalty(std::vector<std::string> terms, Residual residual, double gear_ratio,
-                 double window_duration, bool mask_standstill, search::Domain domain, double speed);
+                 double window_duration, bool mask_standstill, const MotionScale& scale,
+                 search::Domain domain, double speed);
 
   /// Digests the sample intervals begin .. end - 1. What lies beyond them in `samples` only tells
   /// whether the joint stood still at their ends. Throws std::invalid_argument when the stretch
@@ -57,6 +59,7 @@ class SlidingPenalty {
   double gear_ratio_;
   double window_duration_;
   bool mask_standstill_;
+  MotionScale scale_;
   search::Domain domain_;
   double speed_;
   std::optional<ShapeNodes> nodes_;  ///< once the terms are known to have shapes

@@ -79,8 +79,11 @@ class Loop {
       ++count_;
       outcome_->peak_error = std::max(outcome_->peak_error, std::fabs(error));
     }
-    if (sample && signals_) {
+    if (!signals_) return torque;
+    if (sample) {
       Signals& s = outcome_->signals;
+      held_ = 0.0;
+      commands_ = 0;
       s.position.push_back(shown.position);
       s.velocity.push_back(shown.velocity);
       s.torque.push_back(torque);
@@ -92,6 +95,10 @@ class Loop {
       s.friction.push_back(acting.friction);
       s.link_torque.push_back(acting.link_torque);
     }
+    // Over a sample the drive gave the mean of what was commanded until the next.
+    held_ += torque;
+    ++commands_;
+    if (commands_ > 1) outcome_->signals.torque.back() = held_ / commands_;
     return torque;
   }
   void finish() {
@@ -105,6 +112,8 @@ class Loop {
   bool signals_;
   double sum_ = 0.0;
   std::int64_t count_ = 0;
+  double held_ = 0.0;  ///< commands since the last sample, summed
+  int commands_ = 0;
 };
 
 /// As many runs as Number has lanes, or fewer: the last is then repeated and thrown away.

@@ -126,6 +126,50 @@ CHECK_CASE("compressed: equal with running integrals") {
   check_equal(kStribeck, Residual::sensor, {0, 0.05, 1.0, true}, 1000);
 }
 
+CHECK_CASE("compressed: running integrals go on from one block of rows to the next") {
+  base::Pool pool(2);
+  const auto direct = penalty_of(kStribeck, Residual::sensor, {0, 0.001, 1.0, true}, 0.5, 20'000);
+  const auto domain = domain_of(direct);
+  CHECK(direct.window_count() > 3 * 4096);
+  const CompressedPenalty compressed(direct, domain, pool);
+  CHECK_WITH(compressed.exact(), compressed.reason());
+  const double size = direct.target().squaredNorm();
+  for (const double share : {0.2, 0.5, 0.9}) {
+    const Eigen::VectorXd theta = domain.lower + share * (domain.upper - domain.lower);
+    const double gain = theta[direct.gain_index()];
+    const double expected = direct(theta);
+    CHECK_CLOSE(compressed(theta), expected, 1e-10 * expected + 1e-14 * size / (gain * gain));
+  }
+}
+
+CHECK_CASE("compressed: stops when asked, also without shapes") {
+  const auto direct = penalty_of(kCoulomb, Residual::sensor);
+  base::Cancel cancel;
+  const identify::Stretch all{0, direct.windows().size()};
+  CHECK(identify::digest_part(direct, all, {}, &cancel).size() == 1);
+  cancel.request();
+  bool stopped = false;
+  try {
+    identify::digest_part(direct, all, {}, &cancel);
+  } catch (const base::Cancelled&) {
+    stopped = true;
+  }
+  CHECK(stopped);
+}
+
+CHECK_CASE("compressed: bounds that ask for too many sums are left to the direct sum") {
+  base::Pool pool(2);
+  const auto direct = penalty_of(kGeneral, Residual::sensor, {0, 0.05});
+  auto domain = domain_of(direct);
+  const Eigen::Index shapes = direct.coefficients();
+  domain.lower.tail(2) << 1e-4, 0.1;
+  domain.upper.tail(2) << 50.0, 20.0;
+  CHECK(direct.names()[static_cast<std::size_t>(shapes)] == "stribeck_velocity");
+  const CompressedPenalty compressed(direct, domain, pool);
+  CHECK(!compressed.exact() && compressed.passes() == 0);
+  CHECK(contains(compressed.reason(), "bounds of stribeck_velocity and stribeck_exponent"));
+}
+
 CHECK_CASE("compressed: accurate and never negative where the penalty all but vanishes") {
   base::Pool pool(1);
   const auto direct = penalty_of(kStribeck, Residual::torque, {0, 0.02}, 0.0);
@@ -216,6 +260,19 @@ CHECK_CASE("compressed: finds the same optimum, by elimination and near a start"
     for (const auto& result : {found, near}) {
       CHECK_CLOSE(direct(result.best), expected.penalty, 1e-9 * expected.penalty);
     }
+  }
+}
+
+CHECK_CASE("compressed: with two shapes every start ends where the grid does") {
+  base::Pool pool(2);
+  const auto direct = penalty_of(kGeneral, Residual::sensor, {0, 0.05});
+  const auto domain = domain_of(direct);
+  const CompressedPenalty compressed(direct, domain, pool);
+  const double least = identify::minimise_separable(compressed, domain, pool).penalty;
+  for (const auto& start : {domain.lower, domain.upper}) {
+    const auto found = identify::refine_separable(compressed, domain, start, pool, true);
+    CHECK_WITH(found.penalty <= least * (1.0 + 1e-12), std::to_string(found.penalty / least));
+    CHECK(found.penalty == compressed(found.best));
   }
 }
 

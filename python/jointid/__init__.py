@@ -51,7 +51,7 @@ from jointid.simulation.simulated_recording import SimulatedRecording, Truth
 from jointid.simulation.simulation import simulate
 from jointid.simulation.trajectory import Trajectory
 from jointid.study.study_result import Study
-from jointid.study.sweeping import StudyInterruptedError, StudyStep, sweep
+from jointid.study.sweeping import StudyBrokenError, StudyInterruptedError, StudyStep, sweep
 
 __version__ = _core.__version__
 
@@ -81,6 +81,7 @@ __all__ = [
     "SimulatedBatch",
     "SimulatedRecording",
     "Study",
+    "StudyBrokenError",
     "StudyInterruptedError",
     "StudyStep",
     "Trajectory",

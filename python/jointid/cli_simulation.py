@@ -72,7 +72,11 @@ def scenario_arguments(command: argparse.ArgumentParser) -> None:
     )
     for name, shown, told in (
         ("--gain", "NAME=VALUE", "of the controller; may be repeated"),
-        ("--sensor", "NAME=VALUE", "such as torque_noise=0.5, encoder_counts=808000"),
+        (
+            "--sensor",
+            "NAME=VALUE",
+            "such as torque_noise=0.5, encoder_counts=8000 (of a motor turn)",
+        ),
     ):
         command.add_argument(name, action="append", type=pair, default=[], metavar=shown, help=told)
     command.add_argument(

@@ -42,30 +42,39 @@ class Engine:
         What the search evaluates.
     reason : str
         Why compression failed; empty otherwise.
+    threads : int
+        0: all.
     """
 
     direct: _core.Penalty
     form: _core.PenaltyFunction
     reason: str
+    threads: int = 0
 
     @classmethod
     def of(cls, penalty: _core.Penalty, domain: SearchDomain, threads: int, method: str) -> Engine:
         """Compress the penalty within the domain's shapes, if that pays and can be done to rounding."""
         if method == "separable" and _free_shapes(penalty, domain) > 1:
             # A few hundred sums over the samples; the table of two shapes takes thousands.
-            return cls(direct=penalty, form=penalty, reason="")
+            return cls(direct=penalty, form=penalty, reason="", threads=threads)
         compressed = _core.CompressedPenalty(penalty, domain.lower, domain.upper, threads=threads)
         if compressed.exact:
-            return cls(direct=penalty, form=compressed, reason="")
-        return cls(direct=penalty, form=penalty, reason=compressed.reason)
+            return cls(direct=penalty, form=compressed, reason="", threads=threads)
+        return cls(direct=penalty, form=penalty, reason=compressed.reason, threads=threads)
 
     def polished(self, domain: SearchDomain, start: Array) -> tuple[Array, int, bool]:
-        """The local optimum near a start, the steps it took, and whether it settled."""
-        if self.form is self.direct:
+        """The optimum over the shapes' whole ranges and near a start, the steps it took, and whether it settled.
+
+        Where one shape is left to the direct sum, near the start only.
+        """
+        shapes = _free_shapes(self.direct, domain)
+        if self.form is self.direct and shapes < 2:
             found = _core.polish(self.direct, domain.lower, domain.upper, start)
             return found.best, found.iterations, found.converged
-        near = _core.refine_separable(self.form, domain.lower, domain.upper, start)
-        if _free_shapes(self.direct, domain) < 2:
+        near = _core.refine_separable(
+            self.form, domain.lower, domain.upper, start, threads=self.threads
+        )
+        if shapes < 2:
             return near.best, near.evaluations, True
         # In several shapes the compressed residuals bend too much for the last digits.
         last = _core.polish(self.direct, domain.lower, domain.upper, near.best)

@@ -155,16 +155,8 @@ def domain_for(
     InputError
         A parameter that the model does not have, or bounds that cannot be.
     """
-    table = merge(_known_values(joint), joint.parameters if joint is not None else {})
-    table = merge(
-        table, {name: _freed(table, name, entry) for name, entry in (changes or {}).items()}
-    )
     names = tuple(penalty.names)
-    for name in changes or {}:
-        if name not in names and not any(other.startswith(f"{name}[") for other in names):
-            raise InputError(
-                f"parameters: '{name}' is not part of this identification; its parameters are {', '.join(names)}"
-            )
+    table = parameter_bounds(names, joint, changes)
     lower = np.empty(len(names))
     upper = np.empty(len(names))
     from_data = []
@@ -194,6 +186,30 @@ def domain_for(
     if bool(np.all(lower == upper)):
         raise InputError("parameters: every parameter is fixed; leave at least one to identify")
     return SearchDomain(names=names, lower=lower, upper=upper, from_data=tuple(from_data))
+
+
+def parameter_bounds(
+    names: tuple[str, ...],
+    joint: Joint | None,
+    changes: Mapping[str, float | Mapping[str, object] | Parameter] | None,
+) -> dict[str, Parameter]:
+    """What joint and call say of the parameters `names`, and of others that the joint knows.
+
+    Raises
+    ------
+    InputError
+        The call names a parameter that is not among them, or bounds that cannot be.
+    """
+    table = merge(_known_values(joint), joint.parameters if joint is not None else {})
+    table = merge(
+        table, {name: _freed(table, name, entry) for name, entry in (changes or {}).items()}
+    )
+    for name in changes or {}:
+        if name not in names and not any(other.startswith(f"{name}[") for other in names):
+            raise InputError(
+                f"parameters: '{name}' is not part of this identification; its parameters are {', '.join(names)}"
+            )
+    return table
 
 
 def _freed(

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import threading
-from collections import deque
+import weakref
 from collections.abc import Callable, Collection, Mapping
 from types import TracebackType
 from typing import Self
@@ -12,16 +11,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from jointid.errors import InputError
+from jointid.estimate.student import quantile
 from jointid.identification.model_terms import Request
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
 from jointid.online.online_estimate import OnlineEstimate
 from jointid.online.samples import checked
-from jointid.online.sliding import Settings, Sliding
+from jointid.online.settings import Settings
+from jointid.online.worker import Worker
 
 Array = NDArray[np.float64]
 
-_OPTIONAL = ("velocity", "sensor", "motor_position", "motor_torque", "current")
+_OPTIONAL = ("velocity", "sensor", "motor_torque", "current")
 
 
 class OnlineIdentifier:
@@ -30,7 +31,13 @@ class OnlineIdentifier:
     Samples are handed over by `feed`, which returns at once; a thread of the identifier's own digests
     them a stretch at a time, forgets what is older than `window`, and finds the estimate anew. Time
     and memory are bounded: an update costs a few milliseconds whatever the rate of sampling was, and
-    nothing older than the window is kept.
+    nothing older than the window is kept. Windows and bounds are chosen as `identify` would choose
+    them; they are looked at again as the window fills, and once a window from then on. A window of
+    integration has five samples or more: below some 50 samples a second the default half minute
+    holds few of them, and reversals blur.
+
+    `close`, or the end of a `with` block, ends the thread; so does dropping the identifier, unless
+    its callback holds it.
 
     Parameters
     ----------
@@ -40,13 +47,16 @@ class OnlineIdentifier:
     window : float
         How much of the past counts [s]; default 30.
     update : float
-        Time between estimates, and the stretch that is forgotten at once [s]; default 0.5.
+        Time between estimates, and the stretch that is forgotten at once [s], rounded up to a whole
+        number of integration windows; default 0.5.
     model, asymmetric, ripple, harmonics, load_friction, residual, parameters, torque_hold, mask_standstill
         As for `identify`; of the models those with at most one shape.
     windows : float, optional
-        Duration of an integration window [s]. Default: by the noise of the first seconds.
+        Duration of an integration window [s]; more than two a parameter must fit into `window`.
+        Default: by the noise of what is remembered.
     callback : callable, optional
-        Called with each `OnlineEstimate`, on the identifier's thread.
+        Called with each `OnlineEstimate`, on the identifier's thread. What it raises is raised by the
+        next call, or by the end of the `with` block.
 
     Raises
     ------
@@ -80,26 +90,12 @@ class OnlineIdentifier:
         mask_standstill: bool = True,
         callback: Callable[[OnlineEstimate], object] | None = None,
     ) -> None:
-        if joint is not None and not isinstance(joint, Joint):
-            raise InputError(f"joint must be a Joint, got {joint!r}")
-        for name, value in (("window", window), ("update", update), ("windows", windows)):
-            if value is not None and not (np.isfinite(value) and value > 0.0):
-                raise InputError(f"{name} must be above 0 and finite [s], got {value!r}")
-        if window < 4.0 * update:
-            raise InputError(
-                f"window must be at least four times update, got {window:g} and {update:g} s"
-            )
-        chosen = model or (joint.friction if joint is not None else None)
-        if chosen == "stribeck_general":
-            raise InputError(
-                "model 'stribeck_general' has two shapes, which is too much between two samples; use 'stribeck' on-line"
-            )
         if callback is not None and not callable(callback):
             raise InputError(f"callback must be callable, got {callback!r}")
         self._settings = Settings(
             joint=joint,
-            window=float(window),
-            update=float(update),
+            window=window,
+            update=update,
             request=Request(
                 model=model,
                 residual=residual,
@@ -114,18 +110,11 @@ class OnlineIdentifier:
             torque_hold=torque_hold,
             mask_standstill=mask_standstill,
         )
-        self._callback = callback
+        quantile(0.5, 1)  # loads what the first update would wait for
         self._signals: tuple[str, ...] | None = None
         self._last_time = -np.inf
-        self._condition = threading.Condition()
-        self._waiting: deque[dict[str, Array]] = deque()
-        self._held = 0.0  # seconds of samples that wait
-        self._dropped = 0
-        self._busy = False
-        self._closed = False
-        self._failure: BaseException | None = None
-        self._estimate: OnlineEstimate | None = None
-        self._thread: threading.Thread | None = None
+        self._worker = Worker(self._settings, callback)
+        weakref.finalize(self, self._worker.stop)
 
     def feed(
         self,
@@ -144,8 +133,8 @@ class OnlineIdentifier:
         position, torque : float or array
             Output side [rad, N·m] (or [m, N]).
         **others : float or array
-            velocity, sensor, and the motor's side: motor_position, motor_torque, current; the same
-            signals at every call.
+            velocity, sensor; instead of the torque, motor_torque or current, which a joint with
+            gear_ratio (and torque_constant) turns into it. The same signals at every call.
 
         Raises
         ------
@@ -160,9 +149,11 @@ class OnlineIdentifier:
         given = {"time": time, "position": position, "torque": torque, **others}
         here = tuple(name for name, value in given.items() if value is not None)
         signals = self._signals or here
-        if not {"position", "motor_position"} & set(signals):
-            raise InputError("feed: samples need a position, of the output or the motor's side")
+        if "position" not in signals:
+            raise InputError("feed: samples need a position, of the output side")
         samples = checked(given, signals)
+        if self._signals is None:
+            self._settings.check_signals(signals)
         times = samples["time"]
         if times.size == 0:
             return
@@ -172,27 +163,14 @@ class OnlineIdentifier:
                 if times[0] <= self._last_time
                 else "feed: time must increase from sample to sample"
             )
-        with self._condition:
-            self._raise_failure()
-            if self._closed:
-                raise InputError("feed: the identifier is closed")
-            self._signals = signals
-            self._last_time = float(times[-1])
-            self._waiting.append({name: values.copy() for name, values in samples.items()})
-            self._bound()
-            if self._thread is None:
-                self._thread = threading.Thread(
-                    target=self._work, name="jointid on-line", daemon=True
-                )
-                self._thread.start()
-            self._condition.notify_all()
+        self._worker.put({name: values.copy() for name, values in samples.items()})
+        self._signals = signals
+        self._last_time = float(times[-1])
 
     @property
     def estimate(self) -> OnlineEstimate | None:
         """The latest, or None before the first."""
-        with self._condition:
-            self._raise_failure()
-            return self._estimate
+        return self._worker.latest()
 
     def wait(self, timeout: float | None = None) -> OnlineEstimate | None:
         """Wait until all samples handed over have been looked at; the latest estimate.
@@ -201,24 +179,15 @@ class OnlineIdentifier:
         ------
         TimeoutError
             They have not within `timeout` seconds.
+        InputError
+            Called from the callback, which would wait for itself.
         """
-        with self._condition:
-            done = self._condition.wait_for(
-                lambda: self._failure is not None or (not self._waiting and not self._busy), timeout
-            )
-            self._raise_failure()
-            if not done:
-                raise TimeoutError(f"the samples were not digested within {timeout} s")
-            return self._estimate
+        return self._worker.wait(timeout)
 
     def close(self) -> None:
         """End the thread; samples that wait are not looked at."""
-        with self._condition:
-            self._closed = True
-            self._waiting.clear()
-            self._condition.notify_all()
-        if self._thread is not None and self._thread is not threading.current_thread():
-            self._thread.join()
+        self._worker.stop()
+        self._worker.join()
 
     def __enter__(self) -> Self:
         return self
@@ -230,53 +199,5 @@ class OnlineIdentifier:
         trace: TracebackType | None,
     ) -> None:
         self.close()
-
-    def _bound(self) -> None:
-        """Keep no more than a window of samples waiting: the oldest go."""
-        while (
-            len(self._waiting) > 1
-            and self._last_time - self._waiting[0]["time"][0] > self._settings.window
-        ):
-            self._dropped += self._waiting.popleft()["time"].size
-
-    def _raise_failure(self) -> None:
-        failure, self._failure = self._failure, None
-        if failure is not None:
-            raise failure
-
-    def _work(self) -> None:
-        assert self._signals is not None
-        sliding = Sliding(self._settings, self._signals)
-        while True:
-            with self._condition:
-                self._busy = False
-                self._condition.notify_all()
-                self._condition.wait_for(lambda: self._closed or bool(self._waiting))
-                if self._closed:
-                    return
-                taken = list(self._waiting)
-                self._waiting.clear()
-                self._busy = True
-                dropped = self._dropped
-            try:
-                for samples in taken:
-                    sliding.append(samples)
-                found = sliding.estimate(dropped)
-            except Exception as error:  # told by the next call; the past may have been at fault
-                with self._condition:
-                    self._failure = error
-                sliding = Sliding(self._settings, self._signals)
-                continue
-            if found is not None:
-                self._tell(found)
-
-    def _tell(self, found: OnlineEstimate) -> None:
-        with self._condition:
-            self._estimate = found
-        if self._callback is None:
-            return
-        try:
-            self._callback(found)
-        except Exception as error:  # the user's own, told by the next call
-            with self._condition:
-                self._failure = error
+        if error is None:
+            self._worker.tell()

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -15,59 +14,47 @@ from jointid.errors import InputError
 from jointid.identification.covariance import parameter_covariance
 from jointid.identification.inference import freedom_of, joint_of, parameters_of
 from jointid.identification.inner_products import columns_with, size
-from jointid.identification.model_terms import Request, choose_terms
-from jointid.identification.problem import Problem
-from jointid.identification.search_domain import SearchDomain, domain_for
-from jointid.joint.joint import Joint
-from jointid.joint.parameters import Parameter
 from jointid.online.online_estimate import OnlineEstimate
+from jointid.online.pieces import SHORTEST, next_piece
+from jointid.online.plan import Plan, make_plan, outdated
 from jointid.online.samples import Samples
+from jointid.online.settings import Settings
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-# Before and after a stretch, so that its ends know whether the joint stands still [s].
-CONTEXT = 0.15
-# Of the speed seen: room before the table of shapes has to be made anew.
-_FASTER = 1.5
 _LARGE_ERROR = 0.05
 # Error of the compressed penalty, of the columns' squared size: the direct sum is not there to help.
 _ROUGH = 1e-11
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Settings:
-    """What an on-line identification is told; see `OnlineIdentifier`."""
-
-    joint: Joint | None
-    window: float
-    update: float
-    request: Request
-    parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None
-    windows: float | None
-    torque_hold: str | None
-    mask_standstill: bool
-
-
-@dataclass(slots=True, kw_only=True)
-class _Plan:
-    """What the first seconds decided: terms, bounds, length of a window."""
-
-    problem: Problem
-    frame: _core.Penalty
-    domain: SearchDomain
-    penalty: _core.SlidingPenalty
-    speed: float
-    made: float
+# What is remembered has grown by this share: time to look whether the plan still suits it.
+_GROWTH = 0.4
+# Room behind the window while there is no plan that says how much [s].
+_ROOM = 0.3
 
 
 class Sliding:
-    """Digests samples a stretch at a time and estimates from the last `window` seconds."""
+    """Digests samples a stretch at a time and estimates from the last `window` seconds.
 
-    def __init__(self, settings: Settings, signals: tuple[str, ...]) -> None:
+    Parameters
+    ----------
+    settings : Settings
+    signals : tuple of str
+        "time" and others.
+    closed : callable, optional
+        Whether nobody waits for the answer any more; asked once a stretch.
+    """
+
+    def __init__(
+        self,
+        settings: Settings,
+        signals: tuple[str, ...],
+        closed: Callable[[], bool] = lambda: False,
+    ) -> None:
         self._settings = settings
+        self._closed = closed
         self._samples = Samples(signals)
-        self._plan: _Plan | None = None
+        self._plan: Plan | None = None
+        self._look = -np.inf  # when to plan, or to look at the plan, again [s]
         self._digested = 0  # samples before the first that is still to be digested
         self._updates = 0
 
@@ -78,18 +65,18 @@ class Sliding:
     def estimate(self, dropped: int) -> OnlineEstimate | None:
         """Digest what is complete; the estimate after it, or None while there is nothing new or too little."""
         began = time.perf_counter()
+        self._trim()
         if self._plan is None:
-            self._plan = self._made_plan()
-            if self._plan is None:
-                self._trim(len(self._samples))
-                return None
-        if not self._digest():
+            self._first_plan()
+        else:
+            self._review(self._plan)
+        if not self._digest() or self._plan is None:
             return None
         self._plan.penalty.forget(self._plan.penalty.end - self._settings.window)
-        self._trim(self._digested)
         found = self._solve(self._plan, began, dropped)
         if found is not None and self._outgrown(self._plan, found):
-            self._plan = None  # the next stretch begins with bounds from all that is remembered
+            self._plan.made = found.end
+            self._renew(self._remembered())  # the next stretch begins with bounds from all of it
         return found
 
     def _recording(self, begin: int, end: int) -> Recording:
@@ -97,97 +84,94 @@ class Sliding:
         kind = self._settings.joint.kind if self._settings.joint is not None else "revolute"
         return Recording(**signals, kind=kind)
 
-    def _made_plan(self) -> _Plan | None:
-        """Terms, bounds and windows from what is there; None while it does not suffice."""
-        settings = self._settings
-        if len(self._samples) < 3 or np.ptp(self._samples.time) < 2.0 * settings.update:
-            return None
-        recording = self._recording(0, len(self._samples))
-        choice = choose_terms((recording,), settings.joint, settings.request)
-        problem = Problem(
-            recordings=(recording,),
-            joint=settings.joint,
-            choice=choice,
-            torque_hold=settings.torque_hold,
-            mask_standstill=settings.mask_standstill,
-        )
-        speed = _FASTER * problem.peak_speed
-        if speed == 0.0:
-            return None
-        try:
-            frame = problem.penalty(settings.windows)
-            domain = domain_for(frame, settings.joint, settings.parameters, problem.peak_speed)
-        except InputError:
-            if np.ptp(self._samples.time) >= settings.window:
-                raise  # more of the same will not mend it
-            return None
-        penalty = _core.SlidingPenalty(
-            terms=list(choice.terms),
-            residual=_core.Residual[choice.residual],
-            gear_ratio=choice.gear_ratio,
-            window_duration=frame.window_duration,
-            mask_standstill=settings.mask_standstill,
-            lower=domain.lower,
-            upper=domain.upper,
-            speed=speed,
-        )
+    def _remembered(self) -> Recording:
+        return self._recording(0, len(self._samples))
+
+    def _adopt(self, plan: Plan) -> None:
+        """Begin with a new plan: what is remembered is digested again."""
+        self._plan = plan
         self._digested = 0
-        return _Plan(
-            problem=problem,
-            frame=frame,
-            domain=domain,
-            penalty=penalty,
-            speed=speed,
-            made=float(self._samples.time[-1]),
-        )
+        self._look_later()
+
+    def _look_later(self) -> None:
+        times, window = self._samples.time, self._settings.window
+        now = float(times[-1])
+        span = now - float(times[0])
+        self._look = now + (window if span >= window else min(_GROWTH * span, window - span))
+
+    def _first_plan(self) -> None:
+        times, update = self._samples.time, self._settings.update
+        if len(times) < SHORTEST or times[-1] - times[0] < 2.0 * update or times[-1] < self._look:
+            return
+        # A joint that rests would have its whole past looked at with every sample.
+        self._look = float(times[-1]) + update
+        plan = make_plan(self._settings, self._remembered(), 0.0)
+        if plan is not None:
+            self._adopt(plan)
+
+    def _review(self, plan: Plan) -> None:
+        """Plan anew where what is remembered by now asks for it."""
+        if self._samples.time[-1] < self._look:
+            return
+        self._look_later()
+        remembered = self._remembered()
+        if outdated(plan, self._settings, remembered):
+            self._renew(remembered)
+
+    def _renew(self, remembered: Recording) -> None:
+        """Adopt a new plan, if one can be made."""
+        try:
+            made = make_plan(self._settings, remembered, 0.0)
+        except InputError:
+            return  # the motion has become too poor to plan from; the old plan still holds
+        if made is not None:
+            self._adopt(made)
 
     def _digest(self) -> bool:
         """Digest every complete stretch; whether there was one."""
-        plan, settings = self._plan, self._settings
-        assert plan is not None
         fresh = False
-        times = self._samples.time
-        while True:
-            begin = self._digested
-            end = int(np.searchsorted(times, times[begin] + settings.update))
-            after = int(np.searchsorted(times, times[min(end, len(times) - 1)] + CONTEXT)) + 1
-            if after > len(times):
+        while self._plan is not None and not self._closed():
+            plan = self._plan
+            piece = next_piece(self._samples.time, self._digested, plan)
+            if piece is None:
                 return fresh
-            before = max(0, int(np.searchsorted(times, times[begin] - CONTEXT)) - 1)
-            recording = self._recording(before, after)
-            if float(np.abs(recording.velocity).max()) > plan.speed:
-                made = self._made_plan()  # what is remembered is digested again
-                if made is None:
-                    raise InputError("on-line: the last seconds cannot be identified any more")
-                self._plan = plan = made
-                continue
-            core = Problem(
-                recordings=(recording,),
-                joint=settings.joint,
-                choice=plan.problem.choice,
-                torque_hold=settings.torque_hold,
-                mask_standstill=settings.mask_standstill,
-            ).in_core[0]
-            plan.penalty.append(core, begin - before, end - before)
-            self._digested = end
-            fresh = True
+            if piece.end > piece.begin:
+                recording = self._recording(piece.before, piece.after)
+                inside = slice(piece.begin - piece.before, piece.end - piece.before)
+                # Not of the context: a derived velocity's outermost values are several times as noisy.
+                fastest = float(np.abs(recording.velocity[inside.start : inside.stop + 1]).max())
+                if fastest > plan.speed:
+                    fresh = False
+                    self._replan_for(fastest)
+                    continue
+                core = self._settings.problem(recording, plan.problem.choice).in_core[0]
+                plan.penalty.append(core, inside.start, inside.stop)
+                fresh = True
+            self._digested = piece.next
+        return fresh
 
-    def _outgrown(self, plan: _Plan, found: OnlineEstimate) -> bool:
+    def _replan_for(self, fastest: float) -> None:
+        self._plan = None
+        plan = make_plan(self._settings, self._remembered(), fastest)
+        if plan is not None:
+            self._adopt(plan)
+
+    def _outgrown(self, plan: Plan, found: OnlineEstimate) -> bool:
         """Whether a bound that came from the first seconds holds a value that the rest would free."""
         held = set(found.at_bound) & set(plan.domain.from_data)
         return bool(held) and found.end - plan.made >= 0.5 * self._settings.window
 
-    def _trim(self, digested: int) -> None:
-        """Forget samples that are older than the window and its context."""
-        times = self._samples.time
+    def _trim(self) -> None:
+        """Forget samples that are older than the window and its context, digested or not."""
+        times, settings, plan = self._samples.time, self._settings, self._plan
         if len(times) == 0:
             return
-        oldest = times[-1] - self._settings.window - self._settings.update - 2.0 * CONTEXT
-        count = min(int(np.searchsorted(times, oldest)), digested)
+        room = _ROOM + settings.update if plan is None else plan.stretch + 2.0 * plan.context
+        count = int(np.searchsorted(times, times[-1] - settings.window - room))
         self._samples.forget(count)
         self._digested = max(0, self._digested - count)
 
-    def _solve(self, plan: _Plan, began: float, dropped: int) -> OnlineEstimate | None:
+    def _solve(self, plan: Plan, began: float, dropped: int) -> OnlineEstimate | None:
         form = plan.penalty.compressed()
         domain = plan.domain
         if form is None or plan.penalty.window_count <= 2 * len(domain.names):
@@ -227,7 +211,7 @@ class Sliding:
         )
 
     @staticmethod
-    def _centre(plan: _Plan, free: list[int]) -> tuple[int, int, float] | None:
+    def _centre(plan: Plan, free: list[int]) -> tuple[int, int, float] | None:
         names = [plan.frame.names[i] for i in free]
         if not {"sensor_gain", "sensor_offset"} <= set(names):
             return None

@@ -160,8 +160,8 @@ def control_estimates(joint: Joint) -> dict[str, Any]:
     Returns
     -------
     dict of str to float
-        `inertia`, `coulomb`, `viscous`, `static` and `stribeck` where the model has them, `sensor_gain`
-        and `sensor_offset` (0 without a sensor: the inertia then holds the link's).
+        `inertia`, `coulomb`, `viscous`, `static` and `stribeck` (0 where the model has none),
+        `sensor_gain` and `sensor_offset` (0 without a sensor: the inertia then holds the link's).
 
     Raises
     ------
@@ -181,6 +181,8 @@ def control_estimates(joint: Joint) -> dict[str, Any]:
         estimates[name] = sum(values.both(name)) / 2.0
     if stribeck:
         estimates["stribeck"] = values.need("stribeck")
+    else:  # said, lest a controller keeps what it believed before
+        estimates |= {"static": 0.0, "stribeck": 0.0}
     for name in ("sensor_gain", "sensor_offset"):
         estimates[name] = values.need(name) if joint.sensor else 0.0
     return estimates

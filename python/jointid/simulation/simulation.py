@@ -46,7 +46,8 @@ def simulate(
     control_period : float
         Between commands [s]. Default 0.001.
     sample_period : float, optional
-        Between recorded samples [s], a whole number of control periods. Default: one.
+        Between recorded samples [s], a whole number of control periods. Default: one. The recorded
+        torque is then the mean of the commands until the next sample.
     integration_step : float, optional
         [s]; a whole number of them is a control period. Default: half of it.
     sensors : Sensors, optional

@@ -49,7 +49,12 @@ def header_of_work(work: Work, trials: int, truth: Mapping[str, float] | None) -
     text = json.dumps([header, values, holds], sort_keys=True)
     fingerprint = hashlib.sha256(text.encode()).hexdigest()[:16]
     settings["fingerprint"] = fingerprint
-    return header | {"fingerprint": fingerprint, "trials": trials, "truth": _truth(work, truth)}
+    return header | {
+        "fingerprint": fingerprint,
+        "trials": trials,
+        "truth": _truth(work, truth),
+        "truths": _truths(work, truth),
+    }
 
 
 def _truth(work: Work, given: Mapping[str, float] | None) -> dict[str, float]:
@@ -66,3 +71,16 @@ def _truth(work: Work, given: Mapping[str, float] | None) -> dict[str, float]:
         for name, value in tables[0].items()
         if isinstance(value, int | float) and all(table.get(name) == value for table in tables)
     }
+
+
+def _truths(work: Work, given: Mapping[str, float] | None) -> list[dict[str, float]]:
+    """What is true in each cell, where cells differ; else nothing."""
+    if not isinstance(work.subject, Scenario) or given is not None:
+        return []
+    truths = []
+    for cell in work.cells:
+        try:
+            truths.append(cell.scenario(work.subject).truth)
+        except InputError:  # its rows will say so
+            truths.append({})
+    return truths if any(truth != truths[0] for truth in truths) else []

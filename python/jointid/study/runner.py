@@ -14,8 +14,8 @@ from jointid.estimate.estimate import Estimate
 from jointid.identification.engine import Engine, Outcome
 from jointid.identification.prepared import Prepared, prepare
 from jointid.identification.search import Search
+from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
-from jointid.simulation.arguments import Controller
 from jointid.simulation.scenario import Scenario
 from jointid.study.row import REFUSED, Row
 from jointid.study.work import Place, Work
@@ -64,18 +64,36 @@ class Runner:
         trials = sorted({trial for _, trial in places})
         try:
             scenario = work.cells[places[0][0]].scenario(subject)
-            seeds = [work.seed + trial for trial in trials]
-            batch = scenario.simulate(seeds, threads=work.threads)
         except InputError as error:
             yield [self._refused(place, error) for place in places]
             return
-        recordings = dict(zip(trials, batch.recordings, strict=True))
+        recordings = self._recordings(scenario, trials)
         for (trial, analysis), group in itertools.groupby(
             places, key=lambda place: (place[1], work.analysis(place[0]))
         ):
+            made = recordings[trial]
+            if isinstance(made, InputError):
+                yield [self._refused(place, made) for place in group]
+                continue
             key = world, trial, analysis
-            found = self._searched(list(group), (recordings[trial],), key, scenario)
+            found = self._searched(list(group), (made,), key, scenario)
             yield self._tracked(found, scenario) if work.tracking else [row for row, _ in found]
+
+    def _recordings(
+        self, scenario: Scenario, trials: list[int]
+    ) -> dict[int, Recording | InputError]:
+        """A recording a trial; where a loop is not stable, why."""
+        work = self._work
+        seeds = [work.seed + trial for trial in trials]
+        try:
+            batch = scenario.simulate(seeds, threads=work.threads)
+        except InputError as error:
+            if len(trials) == 1:
+                return {trials[0]: error}
+            # One of them: each by itself, so that the others do not suffer.
+            alone = [self._recordings(scenario, [trial]) for trial in trials]
+            return {trial: made for each in alone for trial, made in each.items()}
+        return dict(zip(trials, batch.recordings, strict=True))
 
     def _searched(
         self,
@@ -141,13 +159,15 @@ class Runner:
     def _tracked(self, found: list[_Found], scenario: Scenario) -> list[Row]:
         """Rows with the tracking error before, after, and with the true parameters."""
         seed = found[0][0].seed
-        laws = {"before": scenario.controller, "true": scenario.believing(scenario.joint)}
-        errors = {name: self._error(scenario, law, seed) for name, law in laws.items()}
+        errors = {
+            "before": self._error(scenario, None, seed),
+            "true": self._error(scenario, scenario.joint, seed),
+        }
         rows = []
         for row, estimate in found:
             after = math.nan
             if estimate is not None:
-                after = self._error(scenario, scenario.believing(estimate.joint), seed)
+                after = self._error(scenario, estimate.joint, seed)
             rows.append(
                 replace(
                     row,
@@ -160,7 +180,12 @@ class Runner:
             )
         return rows
 
-    def _error(self, scenario: Scenario, law: Controller, seed: int) -> float:
+    def _error(self, scenario: Scenario, believed: Joint | None, seed: int) -> float:
+        """Tracking error of the controller as it is, or believing in a joint."""
+        try:
+            law = scenario.controller if believed is None else scenario.believing(believed)
+        except InputError:  # a friction model that no controller has
+            return math.nan
         try:
             batch = scenario.simulate(seed, controllers=law, recordings=False, threads=1)
         except InputError:  # a loop that is not stable with these estimates

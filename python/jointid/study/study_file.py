@@ -135,7 +135,7 @@ def _checked(path: Path, header: dict[str, Any]) -> dict[str, Any]:
         raise InputError(
             f"{path}: its schema is {header.get('schema')!r}; this version of jointid reads {SCHEMA}"
         )
-    for name in ("fingerprint", "trials", "seed", "cells", "swept", "truth", "settings"):
+    for name in ("fingerprint", "trials", "seed", "cells", "swept", "truth", "truths", "settings"):
         header[name]
     return header
 

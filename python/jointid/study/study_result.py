@@ -36,6 +36,8 @@ class Study:
         Trial t has the seed `seed` + t.
     truth : dict of str to float
         True parameters, as far as they are known [SI].
+    truths : tuple of dict
+        The same for each cell, where they differ; else empty.
     rows : tuple of Row
         In the order of cells, then trials.
     settings : dict
@@ -49,6 +51,7 @@ class Study:
     trials: int
     seed: int
     truth: dict[str, float]
+    truths: tuple[dict[str, float], ...]
     rows: tuple[Row, ...]
     settings: dict[str, Any]
     seconds: float = 0.0
@@ -84,9 +87,7 @@ class Study:
 
     def truth_of(self, cell: int) -> dict[str, float]:
         """True parameters in a cell: where they are swept, they differ."""
-        own = self.cells[cell]
-        swept = {n.removeprefix("truth."): v for n, v in own.items() if n.startswith("truth.")}
-        return self.truth | {n: float(v) for n, v in swept.items()}
+        return self.truths[cell] if self.truths else self.truth
 
     def summary(self, *, within: float = 0.05) -> Summary:
         """Mean, spread and, where the truth is known, bias and success of each cell.
@@ -152,6 +153,7 @@ def study_of(header: Mapping[str, Any], rows: list[Row], seconds: float = 0.0) -
         trials=header["trials"],
         seed=header["seed"],
         truth=dict(header["truth"]),
+        truths=tuple(dict(truth) for truth in header["truths"]),
         rows=tuple(wanted),
         settings=dict(header["settings"]),
         seconds=seconds,
@@ -170,5 +172,6 @@ def header_of(study: Study, fingerprint: str = "") -> dict[str, Any]:
         "trials": study.trials,
         "seed": study.seed,
         "truth": study.truth,
+        "truths": list(study.truths),
         "settings": study.settings,
     }

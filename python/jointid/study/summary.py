@@ -40,7 +40,7 @@ class CellSummary:
     bias, scatter : dict of str to float
         Mean and spread against the truth, as shares of it; empty where it is not known.
     success : float or None
-        Share of the trials with every parameter near enough to the truth.
+        Share of all trials, refused ones too, with every parameter near enough to the truth.
     tracking : dict of str to float
         Medians of the tracking errors [rad].
     """
@@ -148,7 +148,7 @@ def _cell(study: Study, number: int, rows: Sequence[Row], within: float) -> Cell
         spread={name: _deviation(v) for name, v in values.items()},
         bias={name: _mean(r) for name, r in ratios.items()},
         scatter={name: _deviation(r) for name, r in ratios.items()},
-        success=_share(np.all(near, axis=0).tolist() if done else []) if near else None,
+        success=float(np.all(near, axis=0).sum()) / len(rows) if near else None,
         tracking=tracking,
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -57,6 +57,22 @@ class StudyInterruptedError(KeyboardInterrupt):
 
     def __init__(self, study: Study) -> None:
         super().__init__(f"{len(study.rows)} of {len(study.cells) * study.trials} trials were done")
+        self.study = study
+
+
+class StudyBrokenError(RuntimeError):
+    """A sweep's executor lost a worker; `study` has what was done until then.
+
+    Parameters
+    ----------
+    study : Study
+    """
+
+    def __init__(self, study: Study) -> None:
+        super().__init__(
+            f"a worker of the executor died after {len(study.rows)} of {len(study.cells) * study.trials} "
+            "trials; out of memory perhaps. What is in output= can be gone on with by resume=True"
+        )
         self.study = study
 
 
@@ -129,6 +145,8 @@ def sweep(
     InputError
         Anything that cannot be used, in one sentence. Settings that cannot be used with a recording
         give rows with the status "refused"; only if all are refused is it an error.
+    StudyBrokenError
+        The executor lost a worker.
     StudyInterruptedError
         Ctrl-C, within 0.1 s; a `KeyboardInterrupt` whose `study` has the rows done so far.
     """
@@ -164,6 +182,8 @@ def sweep(
                     StudyStep(number=len(rows), total=total, rows=tuple(done))
                 ):
                     break
+    except BrokenExecutor as error:
+        raise StudyBrokenError(study_of(header, rows, time.perf_counter() - began)) from error
     except KeyboardInterrupt as interrupt:
         study = study_of(header, rows, time.perf_counter() - began)
         raise StudyInterruptedError(study) from interrupt

@@ -1,0 +1,81 @@
+"""Where a whole `identify()` spends its time: each step timed by itself, in a loop and behind other work."""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable
+
+import numpy as np
+from peers.contest import WINDOWS, Contest
+from store import Record
+
+import jointid as jid
+from jointid import _core
+from jointid.identification.engine import Engine, Outcome
+from jointid.identification.prepared import prepare
+from jointid.identification.search import Search
+
+STEPS = ("prepare", "compress", "genetic search", "polish", "inference")
+REPEATS = 31
+BEHIND = 0.1  # [s] of NumPy before each repeat: caches are cold, the other processors asleep
+
+
+def once(contest: Contest, windows: int | None) -> dict[str, float]:
+    """Seconds of each step of a default `identify()`."""
+    options = _core.GaOptions()
+    search = Search(method="ga", options=options, seed=0, threads=0, callback=None)
+    marks = [time.perf_counter()]
+    prepared = prepare(contest.recording, contest.joint, windows=windows)
+    marks.append(time.perf_counter())
+    engine = Engine.of(prepared.penalty, prepared.domain, 0, "ga")
+    marks.append(time.perf_counter())
+    low, high = prepared.domain.lower, prepared.domain.upper
+    found = _core.minimise_genetic(engine.form, low, high, options=options, seed=0)
+    marks.append(time.perf_counter())
+    best, _, settled = engine.polished(prepared.domain, found.best)
+    assert settled
+    marks.append(time.perf_counter())
+    outcome = Outcome(best=best, convergence=None, status="converged", message="")
+    prepared.estimate(search, engine.verified(outcome, prepared.domain), marks[0])
+    marks.append(time.perf_counter())
+    return dict(zip(STEPS, np.diff(marks).tolist(), strict=True))
+
+
+def measure(contest: Contest) -> list[Record]:
+    """Medians of the steps, and of the call they make up."""
+    rng = np.random.default_rng(4)
+    rows = rng.uniform(contest.lower, contest.upper, (200, contest.lower.size))
+
+    def nothing() -> None:
+        pass
+
+    def other_work() -> None:
+        ends = time.perf_counter() + BEHIND
+        while time.perf_counter() < ends:
+            contest.numpy.many(rows)
+
+    ways: dict[str, Callable[[], None]] = {"in a loop": nothing, "behind other work": other_work}
+    records = []
+    for windows in (WINDOWS, None):
+        for way, before in ways.items():
+            runs = []
+            whole = []
+            for _ in range(REPEATS):
+                before()
+                runs.append(once(contest, windows))
+                before()
+                began = time.perf_counter()
+                jid.identify(contest.recording, contest.joint, windows=windows)
+                whole.append(time.perf_counter() - began)
+            steps = {step: statistics.median(run[step] for run in runs) for step in STEPS}
+            records.append(
+                {
+                    "kind": "anatomy",
+                    "windows": windows,
+                    "way": way,
+                    "whole": statistics.median(whole),
+                    "steps": steps,
+                }
+            )
+    return records

@@ -1,0 +1,59 @@
+"""Where the next stretch of samples begins and ends, and what is looked at around it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.online.plan import Plan
+
+Array = NDArray[np.float64]
+
+SHORTEST = 8  # samples of a recording
+_LONG = 3.5  # sample periods: a gap, as in a recording
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Piece:
+    """Samples begin to end, both included, within their context, before to after - 1.
+
+    Attributes
+    ----------
+    next : int
+        Where the following piece begins: at `end`, or behind a gap.
+    """
+
+    begin: int
+    end: int
+    before: int
+    after: int
+    next: int
+
+
+def next_piece(times: Array, begin: int, plan: Plan) -> Piece | None:
+    """The piece that begins with sample `begin`, or None while it is not complete.
+
+    It ends where a gap begins, or else after the plan's stretch: what is older than the window then
+    never hides behind a gap.
+    """
+    if begin + 1 >= len(times):
+        return None
+    end = int(np.searchsorted(times, times[begin] + plan.stretch - 0.25 * plan.period))
+    end = max(end, begin + 1)
+    jumps = np.flatnonzero(np.diff(times[begin : end + 1]) > _LONG * plan.period)
+    if jumps.size > 0:
+        end = begin + int(jumps[0])
+        following, after = end + 1, end + 2
+    elif end >= len(times):
+        return None
+    else:
+        following = end
+        after = int(np.searchsorted(times, times[end] + plan.context)) + 1
+    before = max(0, int(np.searchsorted(times, times[begin] - plan.context)) - 1)
+    before = min(before, max(0, after - SHORTEST))
+    after = max(after, before + SHORTEST)
+    if after > len(times):
+        return None
+    return Piece(begin=begin, end=end, before=before, after=after, next=following)

@@ -1,0 +1,137 @@
+"""What an on-line identification is told, and whether it can be."""
+
+from __future__ import annotations
+
+import numbers
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from jointid.errors import InputError
+from jointid.identification.model_terms import Request, TermChoice, choose_terms
+from jointid.identification.problem import Problem, output_torque
+from jointid.identification.search_domain import parameter_bounds
+from jointid.joint.joint import Joint
+from jointid.joint.parameters import Parameter
+from jointid.recording.attributes import check_torque_hold
+from jointid.recording.recording import Recording
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Settings:
+    """What an on-line identification is told; see `OnlineIdentifier`.
+
+    Raises
+    ------
+    InputError
+        Values that cannot be, by themselves or for this joint.
+    """
+
+    joint: Joint | None
+    window: float
+    update: float
+    request: Request
+    parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None
+    windows: float | None
+    torque_hold: str | None
+    mask_standstill: bool
+
+    def __post_init__(self) -> None:
+        if self.joint is not None and not isinstance(self.joint, Joint):
+            raise InputError(f"joint must be a Joint, got {self.joint!r}")
+        for name in ("window", "update", "windows"):
+            _check_duration(name, getattr(self, name), optional=name == "windows")
+        if self.window < 4.0 * self.update:
+            raise InputError(
+                f"window must be at least four times update, got {self.window:g} and {self.update:g} s"
+            )
+        if isinstance(self.windows, numbers.Integral):
+            raise InputError(
+                f"windows is the whole number {self.windows}; on-line it is the duration of a window in seconds, "
+                "like 0.02"
+            )
+        if not isinstance(self.mask_standstill, bool):
+            raise InputError(
+                f"mask_standstill is {self.mask_standstill!r}; True or False is expected"
+            )
+        check_torque_hold(self.torque_hold)
+        self._check_terms()
+
+    def problem(self, recording: Recording, choice: TermChoice) -> Problem:
+        """What is identified from these samples."""
+        return Problem(
+            recordings=(recording,),
+            joint=self.joint,
+            choice=choice,
+            torque_hold=self.torque_hold,
+            mask_standstill=self.mask_standstill,
+        )
+
+    def check_signals(self, signals: tuple[str, ...]) -> None:
+        """Refuse signals that lack one that the terms need.
+
+        Raises
+        ------
+        InputError
+            No torque, or no sensor where the joint has one; parameters that these terms lack.
+        """
+        joint = self.joint
+        if joint is not None and joint.sensor and "sensor" not in signals:
+            raise InputError(
+                f"feed: joint '{joint.name}' has a torque sensor, but the samples have no 'sensor'; give its reading, "
+                "or drop [sensor] from the joint"
+            )
+        if not {"torque", "motor_torque", "current"} & set(signals):
+            raise InputError(
+                "feed: samples need a torque: 'torque' of the output, or 'motor_torque' or 'current' and a joint that "
+                "turns them into it"
+            )
+        recording = _rehearsal(signals, joint.kind if joint is not None else "revolute")
+        output_torque(recording, joint)
+        choice = choose_terms((recording,), joint, self.request)
+        names = tuple(self.problem(recording, choice).penalty(None).names)
+        parameter_bounds(names, joint, self.parameters)
+        if self.windows is not None and self.window <= 2 * len(names) * self.windows:
+            raise InputError(
+                f"windows of {self.windows:g} s are too few in a window of {self.window:g} s to tell "
+                f"{len(names)} parameters: more than {2 * len(names)} are needed"
+            )
+
+    def _check_terms(self) -> None:
+        """Refuse what no samples could make right; whether there is a sensor is known only with them."""
+        if self.request.load_friction not in (None, True, False):
+            raise InputError(f"load_friction is {self.request.load_friction!r}; give True or False")
+        if self.request.asymmetric not in (None, True, False):
+            raise InputError(f"asymmetric is {self.request.asymmetric!r}; give True or False")
+        chosen = self.request.model or (self.joint.friction if self.joint is not None else None)
+        if chosen == "stribeck_general":
+            raise InputError(
+                "model 'stribeck_general' has two shapes, which is too much between two samples; use 'stribeck' on-line"
+            )
+        with_sensor = ("time", "position", "torque", "sensor")
+        if self.joint is not None:
+            self.check_signals(with_sensor)
+            return
+        try:
+            self.check_signals(with_sensor)
+        except InputError:
+            self.check_signals(with_sensor[:-1])
+
+
+def _check_duration(name: str, value: object, *, optional: bool) -> None:
+    if optional and value is None:
+        return
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        raise InputError(f"{name} is {value!r}; a duration in seconds is expected")
+    if not 0.0 < float(value) < float("inf"):
+        raise InputError(f"{name} must be above 0 and finite [s], got {value!r}")
+
+
+def _rehearsal(signals: tuple[str, ...], kind: str) -> Recording:
+    """A second of some motion with these signals."""
+    time = np.arange(1000) * 1e-3
+    motion = np.sin(2.0 * np.pi * time)
+    signal: dict[str, Any] = {name: time if name == "time" else motion for name in signals}
+    return Recording(**signal, kind=kind)
