@@ -69,7 +69,7 @@ GROUPS: dict[str, Group] = {
         packages={"numpy", "can", "canopen"},
     ),
     "commissioning": Group(
-        modules={"commissioning"},
+        modules={"commissioning", "commissioning_report"},
         may_use={"core", "recording", "simulation", "analysis", "hardware"},
         packages={"numpy"},
     ),
@@ -83,7 +83,7 @@ GROUPS: dict[str, Group] = {
     ),
     "command line": Group(
         modules={
-            *("cli", "cli_arguments", "cli_commands", "cli_simulation", "cli_study"),
+            *("cli", "cli_arguments", "cli_commands", "cli_session", "cli_simulation", "cli_study"),
             *("__main__", "demo", "progress"),
         },
         may_use={
@@ -170,7 +170,7 @@ def _imports(path: Path, repository: Path) -> Iterator[str]:
             yield f"bears the name of what it defines, '{named}': from the package only one is seen"
     for line, target, inside in _imported(tree, module, package):
         root = target.split(".")[0]
-        light = name == "hardware" or inside
+        light = name in ("hardware", "commissioning") or inside  # loaded when asked for
         if root != "jointid":
             if root not in sys.stdlib_module_names and root not in GROUPS[name].packages:
                 allowed = ", ".join(sorted(GROUPS[name].packages)) or "none"

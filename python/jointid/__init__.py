@@ -7,6 +7,9 @@
 >>> print(estimate.report())
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 try:
     from jointid import _core
 except ModuleNotFoundError as error:
@@ -53,6 +56,9 @@ from jointid.simulation.trajectory import Trajectory
 from jointid.study.study_result import Study
 from jointid.study.sweeping import StudyBrokenError, StudyInterruptedError, StudyStep, sweep
 
+if TYPE_CHECKING:
+    from jointid import commissioning, hardware
+
 __version__ = _core.__version__
 
 __all__ = [
@@ -88,8 +94,10 @@ __all__ = [
     "Truth",
     "WindowOptions",
     "__version__",
+    "commissioning",
     "compare_models",
     "control_estimates",
+    "hardware",
     "identify",
     "load",
     "load_runs",
@@ -99,3 +107,10 @@ __all__ = [
     "sweep",
     "thesis_joint",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Load what moves a real joint when it is asked for: it brings python-can."""
+    if name in ("commissioning", "hardware"):
+        return import_module(f"jointid.{name}")
+    raise AttributeError(f"module 'jointid' has no attribute '{name}'")

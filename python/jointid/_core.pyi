@@ -26,6 +26,7 @@ __all__: list[str] = [
     "LugreObserver",
     "Model",
     "MotionScale",
+    "Observation",
     "OpenLoop",
     "Outcome",
     "Pd",
@@ -46,6 +47,7 @@ __all__: list[str] = [
     "SlidingPenalty",
     "Spike",
     "SpikeRule",
+    "SteppedJoint",
     "Stop",
     "Term",
     "Trajectory",
@@ -2523,6 +2525,77 @@ class Outcome:
     def signals(self) -> dict[str, typing.Any]:
         """
         Recorded and true signals by name.
+        """
+
+class Observation:
+    """
+    What sensors show at one instant.
+    """
+    @property
+    def position(self) -> float:
+        """
+        [rad]
+        """
+    @property
+    def reading(self) -> float:
+        """
+        Of the torque sensor.
+        """
+    @property
+    def velocity(self) -> float:
+        """
+        [rad/s]
+        """
+
+class SteppedJoint:
+    """
+    A simulated joint that is moved step by step.
+    """
+    def __init__(
+        self,
+        *,
+        joint: SimulatedJoint,
+        sensors: Sensors,
+        gear_ratio: typing.SupportsFloat | typing.SupportsIndex,
+        sensor_gain: typing.SupportsFloat | typing.SupportsIndex,
+        sensor_offset: typing.SupportsFloat | typing.SupportsIndex,
+        period: typing.SupportsFloat | typing.SupportsIndex,
+        step: typing.SupportsFloat | typing.SupportsIndex,
+        position: typing.SupportsFloat | typing.SupportsIndex,
+        velocity: typing.SupportsFloat | typing.SupportsIndex,
+        seed: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    def advance(
+        self,
+        torque: typing.SupportsFloat | typing.SupportsIndex,
+        duration: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None:
+        """
+        Hold a torque [N·m] for a time [s].
+        """
+    def observe(self) -> Observation:
+        """
+        What the sensors show; advances their noise.
+        """
+    @property
+    def link_torque(self) -> float:
+        """
+        [N·m]
+        """
+    @property
+    def position(self) -> float:
+        """
+        [rad]
+        """
+    @property
+    def time(self) -> float:
+        """
+        [s]
+        """
+    @property
+    def velocity(self) -> float:
+        """
+        [rad/s]
         """
 
 def friction_basis(

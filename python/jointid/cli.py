@@ -1,4 +1,4 @@
-"""The command line: `jointid demo | identify | compare | simulate | sweep | report | info`."""
+"""The command line: `jointid demo | identify | compare | simulate | sweep | run | report | info`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ DONE, BAD_INPUT, INTERRUPTED = 0, BAD_USAGE, 130
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line; returns the exit code (0 done, 2 bad input, 130 on Ctrl-C)."""
+    """Run the command line; returns the exit code (0 done, 2 bad input, 3 stopped, 130 on Ctrl-C)."""
     grammar = parser()
     arguments = grammar.parse_args(argv)
     if arguments.version:
@@ -25,7 +25,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     from jointid import cli_commands
 
     try:
-        getattr(cli_commands, arguments.command)(arguments)
+        code = getattr(cli_commands, arguments.command)(arguments)
     except KeyboardInterrupt:
         print("jointid: interrupted", file=sys.stderr)
         return INTERRUPTED
@@ -35,7 +35,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (ValueError, TypeError, OSError) as error:
         print(f"jointid {arguments.command}: {_one_line(error)}", file=sys.stderr)
         return BAD_INPUT
-    return DONE
+    return DONE if code is None else int(code)
 
 
 def _one_line(error: Exception) -> str:

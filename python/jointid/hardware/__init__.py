@@ -1,5 +1,56 @@
-"""A session on a real joint, or an emulated one: drives over CAN, limits, recording. No analysis here."""
+"""A session on a real joint, or an emulated one: drives over CAN, limits, recording. No analysis here.
 
+>>> bench = jid.hardware.Bench.load("joint.toml")
+>>> with jid.hardware.open_bus(bench.bus, bench.drive) as bus:
+...     drive = jid.hardware.ElmoDrive(bus, bench.joint, bench.drive)
+...     recording = jid.hardware.Session(drive, bench.controller, bench.trajectory, bench.limits).run()
+"""
+
+from jointid.hardware.bench import Bench, BusOptions, Emulation
+from jointid.hardware.drive import Drive, DriveFaultError, DriveSample
 from jointid.hardware.elmo_codec import Command, DriveError, Reply
+from jointid.hardware.elmo_drive import ElmoDrive
+from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.emulated_bench import emulated_devices, true_joint
+from jointid.hardware.emulated_bus import EmulatedBus
+from jointid.hardware.emulated_converter import EmulatedConverter
+from jointid.hardware.emulated_elmo import ElmoSettings, EmulatedElmo
+from jointid.hardware.faults import BusFault
+from jointid.hardware.limits import SessionLimits, Stop
+from jointid.hardware.session import (
+    Session,
+    SessionOptions,
+    SessionRefusedError,
+    SessionStoppedError,
+)
+from jointid.hardware.torque_source import AnalogInput, SensorScaling, SyncedConverter
 
-__all__ = ["Command", "DriveError", "Reply"]
+__all__ = [
+    "AnalogInput",
+    "Bench",
+    "BusFault",
+    "BusOptions",
+    "Command",
+    "Drive",
+    "DriveError",
+    "DriveFaultError",
+    "DriveSample",
+    "ElmoDrive",
+    "ElmoOptions",
+    "ElmoSettings",
+    "EmulatedBus",
+    "EmulatedConverter",
+    "EmulatedElmo",
+    "Emulation",
+    "Reply",
+    "SensorScaling",
+    "Session",
+    "SessionLimits",
+    "SessionOptions",
+    "SessionRefusedError",
+    "SessionStoppedError",
+    "Stop",
+    "SyncedConverter",
+    "emulated_devices",
+    "true_joint",
+]

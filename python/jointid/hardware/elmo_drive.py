@@ -137,6 +137,8 @@ class ElmoDrive:
         self._wait(
             lambda: self._seen.complete, timeout, "no answer to the SYNC", kind="stale_position"
         )
+        # Drive and converter sample when the SYNC has arrived.
+        taken += canopen.bits_on_wire(0) / self.options.bitrate
         return DriveSample(
             time=taken,
             position=self._seen.position,
@@ -184,7 +186,7 @@ class ElmoDrive:
     def bus_load(self, period: float) -> float:
         """Share of the bus: SYNC, position, command with echo, heartbeat, sensor."""
         bits = canopen.bits_on_wire
-        total = bits(0) + 3 * bits(8) + bits(1)
+        total = float(bits(0) + 3 * bits(8) + bits(1))
         if isinstance(self.options.torque, SyncedConverter):
             total += bits(4)
         elif isinstance(self.options.torque, AnalogInput):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import struct
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import can
@@ -60,7 +60,7 @@ class ElmoSettings:
     idle_loop: float = 0.3e-3
     mantissa_bits: int = 24
     position_offset: float = 0.0
-    analog: SensorScaling = SensorScaling()
+    analog: SensorScaling = field(default_factory=SensorScaling)
 
 
 class EmulatedElmo:

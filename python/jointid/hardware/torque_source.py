@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import struct
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from jointid.errors import InputError
 
@@ -66,7 +66,7 @@ class SyncedConverter:
     lowest: float = 0.0
     highest: float = 3.0
     conversions: int = 128
-    scaling: SensorScaling = SensorScaling()
+    scaling: SensorScaling = field(default_factory=SensorScaling)
 
     def voltage(self, payload: bytes) -> float:
         """The mean voltage of a frame [V].
@@ -81,12 +81,12 @@ class SyncedConverter:
                 f"a converter's frame of {len(payload)} bytes; at least 4 are expected"
             )
         total = float(struct.unpack_from("<i", payload)[0])
-        share = (total + 0.5) / self.conversions / 2**self.bits
+        share = (total + 0.5) / self.conversions / (1 << self.bits)
         return self.lowest + share * (self.highest - self.lowest)
 
     def clipped(self, voltage: float) -> bool:
         """Whether it is at the end of its range."""
-        step = (self.highest - self.lowest) / 2**self.bits
+        step = (self.highest - self.lowest) / (1 << self.bits)
         return not self.lowest + 2.0 * step < voltage < self.highest - 2.0 * step
 
 
@@ -105,7 +105,7 @@ class AnalogInput:
 
     number: int = 1
     every: int = 4
-    scaling: SensorScaling = SensorScaling()
+    scaling: SensorScaling = field(default_factory=SensorScaling)
 
     def __post_init__(self) -> None:
         if self.number not in (1, 2):

@@ -19,7 +19,11 @@ from jointid.identification.signal_checks import clipped, constant, repeated, sp
 
 def diagnose(facts: Facts) -> tuple[Warned, ...]:
     """All warnings, the gravest first."""
-    found = [warning for check in _CHECKS for warning in check(facts)]
+    drawn = [(check, warning) for check in _CHECKS for warning in check(facts)]
+    # A controller feeds a rippling sensor back, and the motion that follows looks like a lag of it.
+    modelled = any(name.startswith("ripple_") for name in facts.parameters)
+    ripples = modelled or any(check is ripple for check, _ in drawn)
+    found = [warning for check, warning in drawn if not (ripples and check is sensor_lags)]
     units = [warning for warning in found if warning.code == "implausible_units"]
     # Degrees make the motor's angle wrong, too: what swings with it is not ripple.
     spurious = [warning for warning in found if units and warning.code == "ripple"]

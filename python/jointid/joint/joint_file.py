@@ -40,14 +40,26 @@ _KEYS: dict[str, tuple[str, ...]] = {
     "parameters": (),  # the core knows the names
     "limits": tuple(field.name for field in fields(Limits)),
 }
-# Not the joint's: kept as they are. `estimate` tells where values come from, `user` is free.
-_KEPT = ("estimate", "user")
+# Not the joint's: kept as they are. `estimate` tells where values come from, `session` how the joint is
+# moved on its bench, `user` is free.
+_KEPT = ("estimate", "session", "user")
 
 
 def load_joint(path: str | os.PathLike[str]) -> Joint:
     """Read a joint file: see `Joint.load`."""
+    return joint_from_document(read_document(path), str(Path(path)))
+
+
+def read_document(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Return the tables and keys of a joint file, unchecked.
+
+    Raises
+    ------
+    InputError
+        No such file, or not TOML.
+    """
     place = Path(path)
-    return joint_from_document(_parsed(_text(place), place), str(place))
+    return _parsed(_text(place), place)
 
 
 def save_joint(joint: Joint, path: str | os.PathLike[str]) -> None:
@@ -91,7 +103,7 @@ def joint_from_document(document: Mapping[str, Any], source: str) -> Joint:
     Parameters
     ----------
     document : mapping
-        Tables `estimate` and `user` are ignored.
+        Tables `estimate`, `session` and `user` are ignored.
     source : str
         Where it comes from, for complaints: the name of a file.
 

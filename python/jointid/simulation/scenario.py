@@ -167,11 +167,22 @@ class Scenario:
         InputError
             The controller uses no estimates, or the joint lacks a value.
         """
-        estimates = control_estimates(joint)
-        used = {n: v for n, v in estimates.items() if n in self.controller.asdict()}
-        if "coulomb" not in used:
-            raise InputError(
-                f"Scenario: {type(self.controller).__name__} uses no estimates of friction, so there is "
-                "nothing to improve; use CompensatedPid, AdaptiveRobust or LugreObserver"
-            )
-        return self.controller.replace(**used)
+        return believing(self.controller, joint)
+
+
+def believing(controller: Controller, joint: Joint) -> Controller:
+    """Return a controller with what `control_estimates` reads from a joint, e.g. an estimate's.
+
+    Raises
+    ------
+    InputError
+        The controller uses no estimates, or the joint lacks a value.
+    """
+    estimates = control_estimates(joint)
+    used = {n: v for n, v in estimates.items() if n in controller.asdict()}
+    if "coulomb" not in used:
+        raise InputError(
+            f"{type(controller).__name__} uses no estimates of friction, so there is nothing to improve; "
+            "use CompensatedPid, AdaptiveRobust or LugreObserver"
+        )
+    return controller.replace(**used)

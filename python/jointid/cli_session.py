@@ -1,0 +1,166 @@
+"""The command `run`: a joint on its bench, or an emulated one, moved, identified, and moved again better."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointid.cli_arguments import TEXT, whole_seed
+
+if TYPE_CHECKING:
+    from jointid.commissioning import Commissioning
+    from jointid.hardware.bench import Bench
+
+STOPPED = 3
+"""Exit code when a limit, a fault or the user stopped a session, or it was refused."""
+
+
+def add_run(commands: Any) -> None:
+    """Add the command's grammar."""
+    run = commands.add_parser(
+        "run",
+        help="move a joint over CAN, identify it, move it again better",
+        epilog=(
+            "examples:\n"
+            "  jointid run joint.toml --cycles 2 --emulate --output runs\n"
+            "  jointid run joint.toml --dry-run\n"
+            "  jointid run joint.toml --cycles 2 --output runs --save joint.toml\n"
+            "the joint file has a table [session]: examples/hardware/joint.toml; before the first motion\n"
+            "of a real joint: docs/hardware.md. Exit code 3: stopped by a limit, a fault or you, or refused."
+        ),
+        formatter_class=TEXT,
+    )
+    run.add_argument("joint", type=Path, help="joint file (.toml) with a table [session]")
+    run.add_argument("--cycles", type=int, default=2, help="identify and run again so often (2)")
+    run.add_argument(
+        "--emulate", action="store_true", help="an emulated drive and joint on virtual time"
+    )
+    run.add_argument(
+        "--dry-run", action="store_true", help="only check what speaks against a start; motor off"
+    )
+    run.add_argument(
+        "--yes", action="store_true", help="do not ask before a real joint moves for the first time"
+    )
+    run.add_argument("--seed", type=whole_seed, default=0, help="of emulated noise and search (0)")
+    run.add_argument("--threads", type=int, default=0, help="of the search; 0: all")
+    run.add_argument(
+        "--output", type=Path, help="folder for recordings, frame logs, estimates and a picture"
+    )
+    run.add_argument("--save", type=Path, help="write the last estimate to a joint file (.toml)")
+    run.add_argument("--json", action="store_true", help="print the outcome as JSON")
+    run.add_argument("--quiet", action="store_true", help="no line on what the joint does")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Close the ring on a bench; returns the exit code."""
+    from jointid.commissioning import bench_drive, commission
+    from jointid.errors import InputError
+    from jointid.files import write_whole
+    from jointid.hardware.bench import Bench
+    from jointid.hardware.session import Session, SessionRefusedError, SessionStoppedError
+
+    _check(arguments)
+    bench = Bench.load(arguments.joint)
+    try:
+        if arguments.dry_run:
+            with bench_drive(bench, emulate=arguments.emulate, seed=arguments.seed) as drive:
+                Session(
+                    drive, bench.controller, bench.trajectory, bench.limits, options=bench.options
+                ).run(dry_run=True)
+            print("nothing speaks against a start")
+            return 0
+        if not (arguments.emulate or arguments.yes or _agreed(bench)):
+            print("jointid run: not started", file=sys.stderr)
+            return STOPPED
+        result = commission(
+            bench,
+            cycles=arguments.cycles,
+            emulate=arguments.emulate,
+            seed=arguments.seed,
+            threads=arguments.threads,
+            output=arguments.output,
+            callback=None if arguments.quiet else _say,
+        )
+    except (SessionRefusedError, SessionStoppedError) as error:
+        print(f"jointid run: {error}", file=sys.stderr)
+        return STOPPED
+    if arguments.save is not None:
+        if not arguments.save.exists():  # the bench's words and its table [session] stay
+            write_whole(arguments.save, arguments.joint.read_bytes())
+        try:
+            result.estimates[-1].save(arguments.save)
+        except InputError as error:
+            raise InputError(f"--save {error}") from error
+    if arguments.output is not None:
+        _write(result, arguments.output)
+    if arguments.json:
+        print(json.dumps(result.to_dict(), indent=1, ensure_ascii=False))
+    else:
+        print(result.report())
+        if arguments.output is not None:
+            print(f"\nrecordings, frame logs, estimates and tracking_error.png: {arguments.output}")
+    return 0
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    """Refuse before the joint moves what cannot be written afterwards."""
+    from jointid.cli_arguments import check_folder
+    from jointid.errors import InputError
+
+    if arguments.cycles < 1:
+        raise InputError(f"--cycles is {arguments.cycles}; at least 1 is expected")
+    if arguments.save is not None and arguments.save.suffix != ".toml":
+        raise InputError(f"--save {arguments.save}: a joint file is a .toml")
+    check_folder("--save", arguments.save)
+    output = arguments.output
+    if output is not None:
+        if output.exists() and not output.is_dir():
+            raise InputError(f"--output {output}: this is a file; a folder is expected")
+        if output.is_dir() and any(output.iterdir()):
+            raise InputError(
+                f"--output {output}: the folder is not empty, and a session overwrites nothing"
+            )
+        check_folder("--output", output)
+
+
+def _say(step: str) -> None:
+    print(step, file=sys.stderr)
+
+
+def _agreed(bench: Bench) -> bool:
+    """Whether the user wants the real joint to move."""
+    low, high = bench.limits.position
+    print(
+        f"'{bench.joint.name}' will move between {low:.3g} and {high:.3g} rad with up to "
+        f"{bench.limits.torque:.4g} N·m, over {bench.bus.interface} {bench.bus.channel}.",
+        file=sys.stderr,
+    )
+    if not sys.stdin.isatty():
+        print("give --yes to start without being asked", file=sys.stderr)
+        return False
+    return input("Is the space free, and the emergency stop at hand? [yes/no] ").strip() == "yes"
+
+
+def _write(result: Commissioning, folder: Path) -> None:
+    """A picture of the tracking errors, and the last estimate's page."""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    from matplotlib import pyplot
+
+    from jointid import plotting_motion
+    from jointid.files import write_whole
+    from jointid.plotting_style import style
+    from jointid.reporting import save_report
+
+    with style():
+        figure, axes = pyplot.subplots(figsize=(8.0, 4.5))
+        plotting_motion.tracking_error(result.recordings(), axes)
+        figure.savefig(folder / "tracking_error.png", dpi=150, bbox_inches="tight")
+        pyplot.close(figure)
+    save_report(result.estimates[-1], folder / "report.html")
+    write_whole(folder / "ring.txt", (result.report() + "\n").encode())
+    write_whole(folder / "ring.json", json.dumps(result.to_dict(), indent=1).encode())

@@ -1,0 +1,237 @@
+"""The ring closed on a bench: run with what is believed, identify from it, run with what was identified."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jointid.errors import InputError
+from jointid.estimate.estimate import Estimate
+from jointid.hardware.bench import Bench
+from jointid.hardware.drive import Drive
+from jointid.hardware.elmo_drive import ElmoDrive
+from jointid.hardware.emulated_bench import emulated_devices, true_joint
+from jointid.hardware.emulated_bus import EmulatedBus
+from jointid.hardware.session import Session
+from jointid.identification.identification import identify
+from jointid.recording.recording import Recording
+from jointid.simulation.arguments import Controller
+from jointid.simulation.scenario import believing
+
+Observer = Callable[..., object]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BenchRun:
+    """One motion of the joint.
+
+    Attributes
+    ----------
+    name : str
+        "initial", "cycle 1", …, "true parameters".
+    recording : Recording
+    controller : AdaptiveRobust, CompensatedPid or LugreObserver
+        With what it believed.
+    tracking_error, peak_error : float
+        Root mean square and largest magnitude of position less reference, without the first sixth
+        [rad].
+    """
+
+    name: str
+    recording: Recording
+    controller: Controller
+    tracking_error: float
+    peak_error: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Commissioning:
+    """What the ring gave.
+
+    Attributes
+    ----------
+    runs : tuple of BenchRun
+        The initial one, then one for each cycle.
+    estimates : tuple of Estimate
+        One for each cycle, each of all that was recorded until then.
+    truth : mapping of str to float
+        Of an emulated joint; empty otherwise.
+    true_run : BenchRun or None
+        Of an emulated joint: with the true parameters.
+    without_ripple : Estimate or None
+        When the joint's model has ripple: the last estimate, had it none.
+    """
+
+    runs: tuple[BenchRun, ...]
+    estimates: tuple[Estimate, ...]
+    truth: Mapping[str, float]
+    true_run: BenchRun | None = None
+    without_ripple: Estimate | None = None
+
+    @property
+    def improvement(self) -> float:
+        """How many times smaller the tracking error of the last run is than that of the first."""
+        return self.runs[0].tracking_error / self.runs[-1].tracking_error
+
+    def recordings(self) -> dict[str, Recording]:
+        """The runs' recordings by name, e.g. for `jointid.plot.tracking_error`."""
+        last = () if self.true_run is None else (self.true_run,)
+        return {run.name: run.recording for run in (*self.runs, *last)}
+
+    def to_dict(self) -> dict[str, Any]:
+        """The numbers, of JSON's types."""
+        estimates = [
+            {name: found.value for name, found in estimate.parameters.items()}
+            for estimate in self.estimates
+        ]
+        last = () if self.true_run is None else (self.true_run,)
+        return {
+            "runs": [
+                {"name": r.name, "tracking_error": r.tracking_error, "peak_error": r.peak_error}
+                for r in (*self.runs, *last)
+            ],
+            "improvement": self.improvement,
+            "estimates": estimates,
+            "truth": dict(self.truth),
+            "without_ripple": None
+            if self.without_ripple is None
+            else {name: found.value for name, found in self.without_ripple.parameters.items()},
+        }
+
+    def report(self) -> str:
+        """Tables of tracking errors and parameters, in words."""
+        from jointid.commissioning_report import told
+
+        return told(self)
+
+
+def commission(
+    bench: Bench,
+    *,
+    cycles: int = 2,
+    emulate: bool = False,
+    seed: int = 0,
+    threads: int = 0,
+    output: str | Path | None = None,
+    observer: Observer | None = None,
+    callback: Callable[[str], object] | None = None,
+) -> Commissioning:
+    """Move the joint, identify it from that, and move it again with what was identified.
+
+    Parameters
+    ----------
+    bench : Bench
+        Whose joint holds what is believed at first.
+    cycles : int
+        How often to identify and run again. Default 2.
+    emulate : bool
+        Move an emulated joint on a bus with virtual time; at the end once with the true parameters.
+        Default False: the real one.
+    seed : int
+        Of the emulated sensor's noise and of the search. Default 0.
+    threads : int
+        Of the search; 0 (default): all.
+    output : path, optional
+        A folder, made if need be: recordings, frame logs and estimates go there.
+    observer : callable, optional
+        As in `Session`.
+    callback : callable, optional
+        Called with a sentence before each step.
+
+    Raises
+    ------
+    InputError
+        The controller uses no estimates, `cycles` is below 1, or the bench cannot be emulated.
+    SessionRefusedError, SessionStoppedError
+        As in `Session.run`; what was recorded until then is in the folder.
+    """
+    if cycles < 1:
+        raise InputError(f"cycles is {cycles}; at least 1 is expected")
+    controller = believing(bench.controller, bench.joint)
+    tell = callback if callback is not None else lambda _: None
+    folder = None if output is None else Path(output)
+    if folder is not None:
+        folder.mkdir(parents=True, exist_ok=True)
+    runs: list[BenchRun] = []
+    estimates: list[Estimate] = []
+    true_run: BenchRun | None = None
+    with bench_drive(bench, emulate=emulate, seed=seed) as drive:
+
+        def run(name: str, law: Controller) -> BenchRun:
+            tell(f"run: {name}")
+            place = None if folder is None else folder / f"{name.replace(' ', '_')}.csv"
+            recording = Session(
+                drive,
+                law,
+                bench.trajectory,
+                bench.limits,
+                options=bench.options,
+                output=place,
+                observer=observer,
+            ).run()
+            assert recording is not None, "only a dry run has none"
+            return _assessed(name, recording, law)
+
+        runs.append(run("initial", controller))
+        for cycle in range(1, cycles + 1):
+            tell(f"identify: cycle {cycle}")
+            recordings = [each.recording for each in runs]
+            estimate = identify(recordings, bench.joint, seed=seed, threads=threads)
+            estimates.append(estimate)
+            if folder is not None:
+                estimate.save(folder / f"cycle_{cycle}.json")
+            runs.append(run(f"cycle {cycle}", believing(controller, estimate.joint)))
+        if emulate:
+            true_run = run("true parameters", believing(controller, true_joint(bench)))
+    plain = None
+    if bench.joint.ripple:
+        recordings = [each.recording for each in runs[:-1]]
+        plain = identify(recordings, bench.joint, ripple=(), seed=seed, threads=threads)
+    truth = bench.emulation.truth if emulate and bench.emulation is not None else {}
+    return Commissioning(
+        runs=tuple(runs),
+        estimates=tuple(estimates),
+        truth=truth,
+        true_run=true_run,
+        without_ripple=plain,
+    )
+
+
+@contextmanager
+def bench_drive(bench: Bench, *, emulate: bool, seed: int = 0) -> Iterator[Drive]:
+    """A bench's drive: the real one over its bus, or an emulated one on virtual time.
+
+    Raises
+    ------
+    InputError
+        The bus cannot be opened, or the bench says nothing of an emulated joint.
+    """
+    if emulate:
+        with EmulatedBus(
+            *emulated_devices(bench, seed), bitrate=float(bench.bus.bitrate)
+        ) as emulated:
+            yield ElmoDrive(emulated, bench.joint, bench.drive)
+        return
+    from jointid.hardware.bus import open_bus
+
+    with open_bus(bench.bus, bench.drive) as bus:
+        yield ElmoDrive(bus, bench.joint, bench.drive)
+
+
+def _assessed(name: str, recording: Recording, controller: Controller) -> BenchRun:
+    assert recording.reference is not None, "a session records it"
+    elapsed = recording.time - recording.time[0]
+    later = elapsed >= elapsed[-1] / 6.0
+    error = (recording.position - recording.reference)[later]
+    return BenchRun(
+        name=name,
+        recording=recording,
+        controller=controller,
+        tracking_error=float(np.sqrt(np.mean(error**2))),
+        peak_error=float(np.abs(error).max()),
+    )

@@ -1,0 +1,99 @@
+"""The ring in words: how far each run missed its reference, what was identified, what ripple costs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from jointid.commissioning import Commissioning
+    from jointid.estimate.estimate import Estimate
+
+
+def told(result: Commissioning) -> str:
+    """Tables of tracking errors and parameters."""
+    lines = _runs(result)
+    lines += ["", *_parameters(result)]
+    if result.without_ripple is not None and result.truth:
+        lines += ["", _ripple(result)]
+    warned = [f"- {found.code}: {found.message}" for found in result.estimates[-1].warnings]
+    if warned:
+        lines += ["", "The last estimate warns:", *warned]
+    return "\n".join(lines)
+
+
+def _runs(result: Commissioning) -> list[str]:
+    revolute = result.estimates[0].joint.kind == "revolute"
+    unit, factor = ("mrad", 1e3) if revolute else ("mm", 1e3)
+    rows = [["run", f"rms error [{unit}]", f"largest [{unit}]", "times the first"]]
+    last = () if result.true_run is None else (result.true_run,)
+    first = result.runs[0].tracking_error
+    rows += [
+        [
+            run.name,
+            f"{factor * run.tracking_error:.4f}",
+            f"{factor * run.peak_error:.4f}",
+            f"1/{first / run.tracking_error:.1f}",
+        ]
+        for run in (*result.runs, *last)
+    ]
+    told = [*_table(rows), "", "Errors without each run's first sixth, by the encoder."]
+    summary = f"The tracking error fell by a factor of {result.improvement:.1f}"
+    if result.true_run is not None:
+        ratio = result.runs[-1].tracking_error / result.true_run.tracking_error
+        summary += f"; it ended at {ratio:.3f} times that with the true parameters"
+    return [*told, summary + "."]
+
+
+def _parameters(result: Commissioning) -> list[str]:
+    last = result.estimates[-1]
+    head = ["parameter", "believed at first"]
+    head += [f"cycle {number}" for number in range(1, len(result.estimates) + 1)]
+    head.append("± std. error")
+    if result.truth:
+        head += ["truth", "off by"]
+    rows = [head]
+    believed = last.joint.parameters
+    initial = result.runs[0].controller.asdict()
+    for name in last.free:
+        if name not in believed:
+            continue
+        found = [estimate.parameters[name] for estimate in result.estimates]
+        row = [name, f"{initial[name]:.4g}" if name in initial else ""]
+        row += [f"{each.value:.5g}" for each in found]
+        error = found[-1].stderr
+        row.append("" if error is None else f"{error:.2g}")
+        if result.truth:
+            row += _beside_truth(found[-1].value, result.truth.get(name))
+        rows.append(row)
+    return _table(rows)
+
+
+def _beside_truth(value: float, truth: float | None) -> list[str]:
+    if not truth:
+        return ["", ""]
+    return [f"{truth:.5g}", f"{100.0 * (value / truth - 1.0):+.2f} %"]
+
+
+def _ripple(result: Commissioning) -> str:
+    def worst(estimate: Estimate) -> str:
+        off = {
+            name: 100.0 * (estimate.parameters[name].value / value - 1.0)
+            for name, value in result.truth.items()
+            if value
+        }
+        return ", ".join(f"{name} {share:+.2f} %" for name, share in off.items())
+
+    assert result.without_ripple is not None
+    return f"Were the sensor's ripple not in the model, off by: {worst(result.without_ripple)}."
+
+
+def _table(rows: list[list[str]]) -> list[str]:
+    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+    lines = [
+        "  ".join(
+            cell.ljust(width) if column == 0 else cell.rjust(width)
+            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in rows
+    ]
+    return [lines[0], "  ".join("-" * width for width in widths), *lines[1:]]

@@ -1,0 +1,122 @@
+"""A bench: a joint, how its drive is reached, how it is to be moved, and within what limits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from jointid import _core
+from jointid.errors import InputError
+from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.limits import SessionLimits
+from jointid.hardware.session import SessionOptions
+from jointid.joint.joint import Joint
+from jointid.simulation.arguments import Controller
+from jointid.simulation.trajectory import Trajectory
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BusOptions:
+    """A CAN bus, as python-can names it.
+
+    Attributes
+    ----------
+    interface : str
+        "socketcan", "pcan", "kvaser", … Default "socketcan".
+    channel : str
+        Default "can0".
+    bitrate : int
+        [bit/s]; with socketcan it is set with the interface, not here. Default 500 000.
+    """
+
+    interface: str = "socketcan"
+    channel: str = "can0"
+    bitrate: int = 500_000
+
+    def __post_init__(self) -> None:
+        if not 10_000 <= self.bitrate <= 1_000_000:
+            raise InputError(f"bitrate is {self.bitrate}; 10 000 to 1 000 000 bit/s is expected")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Emulation:
+    """What an emulated bench truly is; a session does not know it.
+
+    Attributes
+    ----------
+    truth : mapping of str to float
+        Values of the joint's parameters, by name [SI].
+    sensors : Sensors
+        Noise, ripple and the rest of the torque sensor. Encoder and converter are the drive's.
+    idle_loop : float
+        Time between two interpreter commands of the drive [s].
+    mantissa_bits : int
+        Of a current command that count: 24 for a float, 4 for the thesis's link.
+    integration_step : float
+        Of the joint, at most [s].
+    position : float
+        Where the joint stands at first [rad].
+    """
+
+    truth: Mapping[str, float]
+    sensors: _core.Sensors = field(default_factory=_core.Sensors)
+    idle_loop: float = 0.3e-3
+    mantissa_bits: int = 24
+    integration_step: float = 2.5e-4
+    position: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.idle_loop <= 0.01:
+            raise InputError(f"idle_loop is {self.idle_loop!r}; 0 to 0.01 s is expected")
+        if not 1 <= self.mantissa_bits <= 24:
+            raise InputError(f"mantissa_bits is {self.mantissa_bits!r}; 1 to 24 is expected")
+        if not 0.0 < self.integration_step <= 0.01:
+            raise InputError(
+                f"integration_step is {self.integration_step!r}; more than 0 and at most 0.01 s is expected"
+            )
+        if not math.isfinite(self.position):
+            raise InputError(f"position is {self.position!r}; a finite angle is expected")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bench:
+    """All that a session needs but the bus itself.
+
+    Attributes
+    ----------
+    joint : Joint
+        Its parameters' values are what the controller believes at first.
+    controller : AdaptiveRobust, CompensatedPid, LugreObserver, …
+        Believing the joint's values.
+    trajectory : Trajectory
+    drive : ElmoOptions
+    limits : SessionLimits
+    options : SessionOptions
+    bus : BusOptions
+    emulation : Emulation or None
+        What an emulated drive moves.
+    """
+
+    joint: Joint
+    controller: Controller
+    trajectory: Trajectory
+    drive: ElmoOptions
+    limits: SessionLimits
+    options: SessionOptions
+    bus: BusOptions = field(default_factory=BusOptions)
+    emulation: Emulation | None = None
+
+    @classmethod
+    def load(cls, path: str | Path) -> Bench:
+        """Read a joint file with a table `[session]`; `examples/hardware/joint.toml` explains it.
+
+        Raises
+        ------
+        InputError
+            Names file, table and key.
+        """
+        from jointid.hardware.bench_file import load_bench
+
+        return load_bench(path)

@@ -1,0 +1,84 @@
+"""An emulated bench: the drive and the converter of a bench, moving a simulated joint."""
+
+from __future__ import annotations
+
+from jointid.errors import InputError
+from jointid.hardware.bench import Bench
+from jointid.hardware.emulated_converter import EmulatedConverter
+from jointid.hardware.emulated_elmo import ElmoSettings, EmulatedElmo
+from jointid.hardware.torque_source import AnalogInput, SensorScaling, SyncedConverter
+from jointid.joint.joint import Joint
+from jointid.simulation.plant import torque_limit
+from jointid.simulation.stepped import stepped_joint
+
+
+def true_joint(bench: Bench) -> Joint:
+    """The emulated joint, with its true parameters.
+
+    Raises
+    ------
+    InputError
+        The bench says nothing about an emulated joint.
+    """
+    if bench.emulation is None:
+        raise InputError(
+            "there is no [session.emulated] in the joint file, which says what an emulated joint truly is"
+        )
+    return bench.joint.replace(ripple=(), parameters=dict(bench.emulation.truth))
+
+
+def emulated_devices(
+    bench: Bench, seed: int = 0
+) -> tuple[EmulatedElmo, EmulatedConverter] | tuple[EmulatedElmo]:
+    """The devices of a bench, to be put on an `EmulatedBus` or in an `EmulatorThread`.
+
+    Parameters
+    ----------
+    bench : Bench
+    seed : int
+        Of the torque sensor's noise. Default 0.
+
+    Raises
+    ------
+    InputError
+        The bench says nothing about an emulated joint, or not enough.
+    """
+    joint, emulation = true_joint(bench), bench.emulation
+    assert emulation is not None
+    stepped = stepped_joint(
+        joint,
+        sensors=emulation.sensors,
+        period=bench.options.period,
+        integration_step=emulation.integration_step,
+        position=emulation.position,
+        seed=seed,
+    )
+    assert joint.torque_constant is not None, "ElmoDrive asks for it"
+    limit = torque_limit(joint)
+    largest = 1e3 if limit is None else limit / (joint.torque_constant * abs(joint.gear_ratio))
+    source = bench.drive.torque
+    settings = ElmoSettings(
+        node=bench.drive.node,
+        counts_per_turn=bench.drive.counts_per_turn,
+        gear_ratio=joint.gear_ratio,
+        torque_constant=joint.torque_constant,
+        peak_current=largest,
+        continuous_current=largest,
+        idle_loop=emulation.idle_loop,
+        mantissa_bits=emulation.mantissa_bits,
+        position_offset=bench.drive.position_offset,
+        analog=source.scaling if isinstance(source, AnalogInput) else SensorScaling(),
+    )
+    drive = EmulatedElmo(stepped, settings)
+    if not isinstance(source, SyncedConverter):
+        return (drive,)
+    converter = EmulatedConverter(
+        drive,
+        source.scaling,
+        identifier=source.identifier,
+        bits=source.bits,
+        lowest=source.lowest,
+        highest=source.highest,
+        conversions=source.conversions,
+    )
+    return drive, converter
