@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 from pathlib import Path
@@ -39,6 +40,12 @@ _SOURCES: dict[str, type | None] = {
 # Of the emulated sensor, these are the encoder's and the converter's own business.
 _NOT_EMULATED = {"encoder_counts", "velocity", "velocity_counts", "velocity_time"}
 _NOT_EMULATED |= {"converter_bits", "converter_range", "converter_noise", "converter_samples"}
+_KINDS: dict[str, tuple[tuple[type, ...], str]] = {
+    "float": ((int, float), "a number"),
+    "int": ((int,), "a whole number"),
+    "str": ((str,), "a text"),
+    "tuple[float, float]": ((list,), "a list of two numbers"),
+}
 Made = TypeVar("Made")
 
 
@@ -66,7 +73,7 @@ def load_bench(path: str | Path) -> Bench:
         drive=drive,
         limits=inner["limits"].call(
             lambda **given: SessionLimits.of(joint, **given),
-            [item.name for item in fields(SessionLimits)],
+            _types(SessionLimits),
         ),
         options=options,
         bus=bus,
@@ -94,11 +101,11 @@ class _Table:
 
     def make(self, kind: Callable[..., Made], **given: Any) -> Made:
         """A value of options, from the entries that are no tables."""
-        known = [item.name for item in fields(kind) if item.name not in given]  # type: ignore[arg-type]
+        known = {name: type_ for name, type_ in _types(kind).items() if name not in given}
         return self.call(kind, known, **given)
 
-    def call(self, kind: Callable[..., Made], known: list[str], **given: Any) -> Made:
-        """What `kind` returns for the entries."""
+    def call(self, kind: Callable[..., Made], known: Mapping[str, str], **given: Any) -> Made:
+        """What `kind` returns for the entries; `known` has their types, "" if it checks them."""
         entries = {n: v for n, v in self.entries.items() if not isinstance(v, Mapping)}
         tables = [n for n, v in self.entries.items() if isinstance(v, Mapping)]
         for name in [*entries, *tables]:
@@ -107,13 +114,19 @@ class _Table:
             if name in tables and self.place == "session" and name not in _TABLES:
                 self.refuse(f"{name!r} is unknown; {suggestion(name, _TABLES)}")
         for name, value in entries.items():
+            self.check(name, value, known[name])
             if isinstance(value, list):
                 entries[name] = tuple(value)
         try:
             return kind(**entries, **given)
         except (ValueError, TypeError) as error:
-            reason = str(error).removeprefix(f"{getattr(kind, '__name__', '')}: ")
+            reason = re.sub(r"^[A-Z]\w+: ", "", str(error))
             raise InputError(f"{self.source}: [{self.place}] {reason}") from error
+
+    def check(self, name: str, value: object, type_: str) -> None:
+        wanted = _KINDS.get(type_.removesuffix(" | None"))
+        if wanted is not None and (isinstance(value, bool) or not isinstance(value, wanted[0])):
+            self.refuse(f"{name} is {value!r}; {wanted[1]} is expected")
 
     def without(self, *names: str) -> _Table:
         left = {name: value for name, value in self.entries.items() if name not in names}
@@ -121,6 +134,10 @@ class _Table:
 
     def refuse(self, told: str) -> None:
         raise InputError(f"{self.source}: [{self.place}] {told}")
+
+
+def _types(kind: Any) -> dict[str, str]:
+    return {item.name: str(item.type) for item in fields(kind)}
 
 
 def _angle(value: Any) -> Any:
@@ -164,7 +181,7 @@ def _trajectory(table: _Table) -> Trajectory:
 def _controller(table: _Table, joint: Joint) -> Controller:
     law = _LAWS[table.word("law", "adaptive_robust", _LAWS)]
     given = table.without("law")
-    names = [*law().asdict()]
+    names = dict.fromkeys(law().asdict(), "")
     controller: Controller = given.call(law, names)
     if "coulomb" not in names:
         return controller
@@ -179,7 +196,7 @@ def _controller(table: _Table, joint: Joint) -> Controller:
 
 def _emulation(table: _Table, joint: Joint) -> Emulation:
     truth, sensors = table.table("truth"), table.table("sensors")
-    known = [name for name in _core.Sensors().asdict() if name not in _NOT_EMULATED]
+    known = {name: "" for name in _core.Sensors().asdict() if name not in _NOT_EMULATED}
     for name, value in truth.entries.items():
         if isinstance(value, bool) or not isinstance(value, int | float):
             truth.refuse(f"{name} is {value!r}; a number is expected")

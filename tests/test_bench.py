@@ -1,0 +1,122 @@
+"""Bench files: what is read, and how what is wrong is told."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+import jointid as jid
+from jointid.hardware.bench import Bench
+from jointid.hardware.torque_source import AnalogInput, SyncedConverter
+
+EXAMPLE = Path(__file__).parent.parent / "examples" / "hardware" / "joint.toml"
+TEXT = EXAMPLE.read_text(encoding="utf-8")
+
+
+def written(folder: Path, before: str, after: str) -> Path:
+    """The example with one text for another."""
+    assert TEXT.count(before) >= 1, before
+    path = folder / "joint.toml"
+    path.write_text(TEXT.replace(before, after, 1), encoding="utf-8")
+    return path
+
+
+def test_the_example_is_the_thesis_bench() -> None:
+    bench = Bench.load(EXAMPLE)
+    thesis = jid.thesis_joint()
+    assert bench.joint.gear_ratio == thesis.gear_ratio
+    assert bench.joint.reflected_inertia == thesis.reflected_inertia
+    assert bench.joint.limits.current == thesis.limits.current
+    assert bench.joint.parameters["stribeck"].max == thesis.parameters["stribeck"].max
+    assert isinstance(bench.controller, jid.AdaptiveRobust)
+    believed = {name: p.value for name, p in bench.joint.parameters.items()}
+    assert {name: getattr(bench.controller, name) for name in believed} == believed
+    assert bench.trajectory == jid.Trajectory.thesis(math.radians(60), cycle=3.0, duration=12.0)
+    assert isinstance(bench.drive.torque, SyncedConverter)
+    assert bench.limits.torque == 160.0
+    assert bench.options.resolution == pytest.approx(2.0 * math.pi / 808_000)
+    assert bench.emulation is not None
+    assert bench.emulation.truth["sensor_gain"] == 2.4
+
+
+def test_a_joint_file_still_reads_it() -> None:
+    joint = jid.Joint.load(EXAMPLE)
+    assert joint == Bench.load(EXAMPLE).joint
+
+
+def test_saving_an_estimate_keeps_the_session(tmp_path: Path) -> None:
+    path = tmp_path / "joint.toml"
+    path.write_text(TEXT, encoding="utf-8")
+    jid.Joint.load(path).with_parameters({"coulomb": 25.0}).save(path)
+    kept = Bench.load(path)
+    assert kept.joint.parameters["coulomb"].value == 25.0
+    assert kept.drive == Bench.load(EXAMPLE).drive
+    assert "the drive's PL[1] must not be larger" in path.read_text(encoding="utf-8")
+
+
+def test_the_drives_analog_input_is_a_source(tmp_path: Path) -> None:
+    begin = TEXT.index("[session.torque]")
+    end = TEXT.index("[session.trajectory]")
+    path = tmp_path / "joint.toml"
+    table = '[session.torque]\nsource = "analog"\nnumber = 2\nevery = 5\nfull_scale = 300.0\n\n'
+    path.write_text(TEXT[:begin] + table + TEXT[end:], encoding="utf-8")
+    source = Bench.load(path).drive.torque
+    assert isinstance(source, AnalogInput)
+    assert (source.number, source.every, source.scaling.full_scale) == (2, 5, 300.0)
+    table = '[session.torque]\nsource = "none"\n\n'
+    path.write_text(TEXT[:begin] + table + TEXT[end:], encoding="utf-8")
+    assert Bench.load(path).drive.torque is None
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "told"),
+    [
+        ("period = 0.002", "periode = 0.002", r"\[session\] 'periode' is unknown; did you mean"),
+        ("period = 0.002", "period = 0.0", r"\[session\] period is 0.0; more than 0"),
+        ("period = 0.002", 'period = "fast"', r"\[session\] period is 'fast'; a number"),
+        ("node = 127", "node = 12.5", r"\[session.drive\] node is 12.5; a whole number"),
+        ("node = 127", "node = 128", r"\[session.drive\] node is 128; 1 to 127"),
+        ("heartbeat = 0.05", "heartbeat = 60", r"\[session.drive\] heartbeat is 60"),
+        (
+            'source = "converter"',
+            'source = "convertor"',
+            r"\[session.torque\] source is 'convertor'",
+        ),
+        ('form = "thesis"', 'form = "cosine"', r"\[session.trajectory\] form is 'cosine'"),
+        ("cycle = 3.0", "cyle = 3.0", r"\[session.trajectory\] .*cyle"),
+        ('law = "adaptive_robust"', 'law = "magic"', r"\[session.controller\] law is 'magic'"),
+        ("friction_velocity =", "friction_speed =", r"\[session.controller\] 'friction_speed'"),
+        ("tracking_error = 0.1 ", "tracking_error = -1.0 ", r"\[session.limits\] tracking_error"),
+        ("tracking_error = 0.1 ", "tracking = 0.1 ", r"\[session.limits\] 'tracking' is unknown"),
+        ("bitrate = 500000", "bitrate = 5", r"\[session.bus\] bitrate is 5"),
+        ("mantissa_bits = 24", "mantissa_bits = 40", r"\[session.emulated\] mantissa_bits is 40"),
+        ("ripple = 2.6 ", "encoder_counts = 8000 ", r"\[session.emulated.sensors\] 'encoder_co"),
+        ("viscous = 20.0\nsensor", 'viscous = "x"\nsensor', r"\[session.emulated.truth\] viscous"),
+        ("viscous = 20.0\nsensor", "viscos = 20.0\nsensor", r"\[session.emulated.truth\] .*viscos"),
+        (
+            "[session.emulated.truth]",
+            "[session.emulator.truth]",
+            r"\[session\] 'emulator' is unkno",
+        ),
+        ("coulomb = { value = 10.0, min", "coulomb = { min", "coulomb"),
+        ("torque_constant = 0.198", "", "torque_constant"),
+    ],
+)
+def test_what_is_wrong_is_told_with_its_place(
+    tmp_path: Path, before: str, after: str, told: str
+) -> None:
+    path = written(tmp_path, before, after)
+    with pytest.raises(jid.InputError, match=told) as caught:
+        from jointid.hardware.elmo_drive import ElmoDrive
+        from jointid.hardware.emulated_bus import EmulatedBus
+
+        bench = Bench.load(path)
+        ElmoDrive(EmulatedBus(), bench.joint, bench.drive)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_joint_without_a_session_is_no_bench(tmp_path: Path) -> None:
+    path = tmp_path / "joint.toml"
+    jid.thesis_joint().save(path)
+    with pytest.raises(jid.InputError, match=r"no table \[session\]"):
+        Bench.load(path)

@@ -1,0 +1,124 @@
+"""The ring on an emulated bench: what is identified through the bus, and how far the error falls."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import jointid as jid
+from jointid.cli import main
+from jointid.commissioning import Commissioning, commission
+from jointid.hardware.bench import Bench
+
+EXAMPLE = Path(__file__).parent.parent / "examples" / "hardware" / "joint.toml"
+
+
+@pytest.fixture(scope="module")
+def ring() -> Commissioning:
+    return commission(Bench.load(EXAMPLE), cycles=2, emulate=True, seed=1)
+
+
+def test_the_error_falls_to_that_with_the_true_parameters(ring: Commissioning) -> None:
+    assert ring.true_run is not None
+    assert ring.runs[-1].tracking_error <= 1.05 * ring.true_run.tracking_error
+    assert ring.improvement >= 3.0
+
+
+def test_what_is_identified_is_the_emulators_truth(ring: Commissioning) -> None:
+    last = ring.estimates[-1]
+    for name, value in ring.truth.items():
+        within = 0.05 if name == "stribeck" else 0.02
+        assert last.parameters[name].value == pytest.approx(value, rel=within), name
+    assert last.warnings == ()
+
+
+def test_what_ripple_costs_is_told(ring: Commissioning) -> None:
+    assert ring.without_ripple is not None
+    truth = ring.truth["static"]
+    plain = abs(ring.without_ripple.parameters["static"].value / truth - 1.0)
+    modelled = abs(ring.estimates[-1].parameters["static"].value / truth - 1.0)
+    assert plain > 1.5 * modelled
+    assert "Were the sensor's ripple not in the model" in ring.report()
+
+
+def test_the_same_seed_gives_the_same_bits(ring: Commissioning) -> None:
+    again = commission(Bench.load(EXAMPLE), cycles=2, emulate=True, seed=1)
+    assert again.to_dict() == ring.to_dict()
+    for name, recording in again.recordings().items():
+        assert recording.fingerprint == ring.recordings()[name].fingerprint
+    other = commission(Bench.load(EXAMPLE), cycles=1, emulate=True, seed=2)
+    assert other.to_dict()["runs"] != ring.to_dict()["runs"]
+
+
+def test_a_session_is_no_simulation_but_close_to_it(ring: Commissioning) -> None:
+    """The joint is moved by frames that take their time: errors differ, but by little."""
+    bench = Bench.load(EXAMPLE)
+    truth = bench.joint.replace(ripple=(), parameters=dict(ring.truth))
+    simulated = jid.simulate(
+        truth,
+        ring.runs[0].controller,
+        bench.trajectory,
+        control_period=bench.options.period,
+        sensors=jid.Sensors(torque_noise=0.5, ripple=2.6, encoder_counts=8000),
+    )
+    assert simulated.reference is not None
+    late = simulated.time > 2.0
+    error = float(((simulated.position - simulated.reference)[late] ** 2).mean() ** 0.5)
+    assert error == pytest.approx(ring.runs[0].tracking_error, rel=0.05)
+
+
+def test_a_controller_that_believes_nothing_is_refused() -> None:
+    bench = replace(Bench.load(EXAMPLE), controller=jid.Pd(stiffness=8000.0, damping=400.0))
+    with pytest.raises(jid.InputError, match="uses no estimates"):
+        commission(bench, emulate=True)
+
+
+def test_the_command_writes_runs_and_saves_the_bench(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    runs, saved = tmp_path / "runs", tmp_path / "found.toml"
+    words = ["run", str(EXAMPLE), "--emulate", "--cycles", "1", "--output", str(runs)]
+    assert main([*words, "--save", str(saved), "--json", "--quiet"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["improvement"] >= 3.0
+    found = Bench.load(saved)
+    assert found.joint.parameters["coulomb"].value == pytest.approx(25.0, rel=0.02)
+    assert "docs/hardware.md first" in saved.read_text(encoding="utf-8")
+    recording = jid.load(runs / "cycle_1.csv")
+    assert recording.duration == pytest.approx(12.0, abs=0.01)
+    for name in ("initial.log", "cycle_1.json", "tracking_error.png", "report.html", "ring.txt"):
+        assert (runs / name).stat().st_size > 0
+    assert main([*words, "--quiet"]) == 2
+    assert "overwrites nothing" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "told"),
+    [
+        (["--emulate", "--cycles", "0"], 2, "--cycles is 0"),
+        (["--emulate", "--save", "x.csv"], 2, "a joint file is a .toml"),
+        (["--emulate", "--output", "no/such/folder"], 2, "no/such"),
+        (["--emulate", "--dry-run"], 0, ""),
+        (["--cycles", "1"], 3, "--yes"),
+    ],
+)
+def test_the_command_refuses_before_it_moves(
+    words: list[str], code: int, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", str(EXAMPLE), *words]) == code
+    assert told in capsys.readouterr().err
+
+
+def test_a_stop_is_exit_code_three(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "joint.toml"
+    text = EXAMPLE.read_text(encoding="utf-8")
+    path.write_text(
+        text.replace("tracking_error = 0.1 ", "tracking_error = 0.001 "), encoding="utf-8"
+    )
+    output = tmp_path / "runs"
+    assert main(["run", str(path), "--emulate", "--output", str(output), "--quiet"]) == 3
+    told = capsys.readouterr().err
+    assert "tracking_error" in told
+    assert told.count("\n") == 1
+    assert (output / "initial.csv").exists()
