@@ -7,6 +7,8 @@ import pytest
 
 import jointid as jid
 from jointid.hardware.bench import Bench
+from jointid.hardware.elmo_drive import ElmoDrive
+from jointid.hardware.emulated_bus import EmulatedBus
 from jointid.hardware.torque_source import AnalogInput, SyncedConverter
 
 EXAMPLE = Path(__file__).parent.parent / "examples" / "hardware" / "joint.toml"
@@ -68,6 +70,12 @@ def test_the_drives_analog_input_is_a_source(tmp_path: Path) -> None:
     assert Bench.load(path).drive.torque is None
 
 
+def driven(path: Path) -> ElmoDrive:
+    """The drive of a bench file."""
+    bench = Bench.load(path)
+    return ElmoDrive(EmulatedBus(), bench.joint, bench.drive)
+
+
 @pytest.mark.parametrize(
     ("before", "after", "told"),
     [
@@ -107,11 +115,7 @@ def test_what_is_wrong_is_told_with_its_place(
 ) -> None:
     path = written(tmp_path, before, after)
     with pytest.raises(jid.InputError, match=told) as caught:
-        from jointid.hardware.elmo_drive import ElmoDrive
-        from jointid.hardware.emulated_bus import EmulatedBus
-
-        bench = Bench.load(path)
-        ElmoDrive(EmulatedBus(), bench.joint, bench.drive)
+        driven(path)
     assert "\n" not in str(caught.value)
 
 
