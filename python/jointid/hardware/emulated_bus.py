@@ -39,6 +39,7 @@ class EmulatedBus(can.BusABC):
         self._agenda = Agenda()
         self._inbox: deque[can.Message] = deque()
         self.sent = 0
+        self.host_work = 0.0  # [s] that passes with each frame of the host's: its own computing
         self._devices = devices
         for device in devices:
             device.attach(self)
@@ -66,6 +67,8 @@ class EmulatedBus(can.BusABC):
             The bus is down or off.
         """
         del timeout  # an emulated wire always takes a frame
+        if self.host_work > 0.0:
+            self.sleep_until(self._time + self.host_work)
         self._check_up()
         self.sent += 1
         self._on_wire(msg, self._to_devices, from_host=True)
