@@ -16,13 +16,14 @@ from jointid.hardware.emulated_bus import EmulatedBus
 from jointid.hardware.emulated_converter import EmulatedConverter
 from jointid.hardware.emulated_elmo import ElmoSettings, EmulatedElmo
 from jointid.hardware.faults import BusFault
-from jointid.hardware.limits import SessionLimits, Stop
+from jointid.hardware.limits import SessionLimits
 from jointid.hardware.session import (
     Session,
     SessionOptions,
     SessionRefusedError,
     SessionStoppedError,
 )
+from jointid.hardware.stop import Stop
 from jointid.hardware.torque_source import AnalogInput, SensorScaling, SyncedConverter
 
 __all__ = [

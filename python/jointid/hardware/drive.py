@@ -14,13 +14,23 @@ class DriveFaultError(RuntimeError):
     Parameters
     ----------
     kind : str
-        "stale_position", "drive_fault", "emergency", "heartbeat_lost", "bus", "refused".
+        "stale_position", "drive_fault", "heartbeat_lost" (the drive's), "host_heartbeat_lost" (ours, so
+        the drive says), "bus".
     message : str
+    measured, allowed : float, optional
+        The number that was beyond a limit, and the limit.
     """
 
-    def __init__(self, kind: str, message: str) -> None:
+    def __init__(
+        self,
+        kind: str,
+        message: str,
+        *,
+        measured: float | None = None,
+        allowed: float | None = None,
+    ) -> None:
         super().__init__(message)
-        self.kind = kind
+        self.kind, self.measured, self.allowed = kind, measured, allowed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,6 +50,8 @@ class DriveSample:
         The sensor's converter is at the end of its range.
     current : float
         Active, in the motor [A]; not a number when the drive does not tell.
+    torque : float
+        Of that current, at the output [N·m]; not a number when the drive does not tell.
     """
 
     time: float
@@ -48,6 +60,23 @@ class DriveSample:
     fresh: bool = True
     clipped: bool = False
     current: float = float("nan")
+    torque: float = float("nan")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveEnd:
+    """What a drive says after it was told to switch its motor off.
+
+    Attributes
+    ----------
+    motor_off : bool or None
+        Whether it said so when asked; None: it cannot be asked.
+    failure : str
+        Why it had shut the motor down by itself; empty when it had not.
+    """
+
+    motor_off: bool | None = None
+    failure: str = ""
 
 
 class Drive(Protocol):
@@ -76,8 +105,12 @@ class Drive(Protocol):
     def command(self, torque: float) -> float:
         """Send a torque [N·m], to be held until the next; return what the drive was told [N·m]."""
 
-    def disable(self) -> None:
-        """Zero torque, then motor off; tries to the end, whatever fails on the way."""
+    def disable(self) -> DriveEnd | None:
+        """Zero torque, then motor off, at once and whatever fails on the way; then see that it is off.
+
+        Called again when the motor was not seen off. Returns in bounded time, and raises nothing for a
+        bus that fails. None: the drive cannot be asked.
+        """
 
     def close(self) -> None:
         """Leave the drive and the bus as they were found."""

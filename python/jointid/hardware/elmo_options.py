@@ -26,7 +26,11 @@ class ElmoOptions:
         COB-IDs of interpreter commands, replies, and the position's PDO. Default: 0x300, 0x280 and
         0x480 plus the node.
     heartbeat : float
-        Without our heartbeat for so long the drive stops by itself [s].
+        Without our heartbeat for so long the drive stops by itself; without the drive's, the session [s].
+    drive_heartbeat : float
+        Between two heartbeats of the drive [s]; at most half of `heartbeat`.
+    acknowledge : bool
+        Start although the drive has shut its motor down before; enabling clears what it says of it.
     torque : SyncedConverter, AnalogInput or None
         Where the joint's torque sensor is read.
     bitrate : float
@@ -42,6 +46,8 @@ class ElmoOptions:
     cob_reply: int | None = None
     cob_position: int | None = None
     heartbeat: float = 0.05
+    drive_heartbeat: float = 0.02
+    acknowledge: bool = False
     torque: SyncedConverter | AnalogInput | None = field(default_factory=SyncedConverter)
     bitrate: float = 500_000.0
     execution_delay: float = 0.3e-3
@@ -56,6 +62,12 @@ class ElmoOptions:
         if not 0.005 <= self.heartbeat <= 10.0:
             raise InputError(
                 f"ElmoOptions: heartbeat is {self.heartbeat}; 0.005 to 10 s is expected"
+            )
+
+        if not 0.001 <= self.drive_heartbeat <= 0.5 * self.heartbeat:
+            raise InputError(
+                f"ElmoOptions: drive_heartbeat is {self.drive_heartbeat}; 0.001 s to half of heartbeat, "
+                f"{0.5 * self.heartbeat:g} s, is expected"
             )
 
     @property

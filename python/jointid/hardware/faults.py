@@ -1,4 +1,4 @@
-"""What can go wrong on an emulated bus, on demand."""
+"""What can go wrong on an emulated bus and in an emulated drive, on demand."""
 
 from __future__ import annotations
 
@@ -9,6 +9,18 @@ import can
 
 from jointid.errors import InputError
 
+# What a drive shuts its motor down for: MF, and the emergency that it sends.
+DRIVE_FAILURES = {
+    "encoder loss": (0x4, 0x7300),
+    "peak current": (0x8, 0x8311),
+    "host heartbeat lost": (0x800, 0x8130),
+    "under-voltage": (0x3000, 0x3120),
+    "over-voltage": (0x5000, 0x3310),
+    "short circuit": (0xB000, 0x2340),
+    "over-temperature": (0xD000, 0x4310),
+    "speed limit": (0x20000, 0x8481),
+    "motor stuck": (0x200000, 0x7121),
+}
 BUS_FAULTS = ("drop", "delay", "duplicate", "corrupt", "down", "bus_off")
 
 
@@ -45,6 +57,21 @@ class BusFault:
     def acts(self, now: float) -> bool:
         """Whether it is on."""
         return self.start <= now < self.stop
+
+
+def drive_failure(kind: str) -> tuple[int, int]:
+    """MF and emergency code of a failure.
+
+    Raises
+    ------
+    InputError
+        There is none of this name.
+    """
+    if kind not in DRIVE_FAILURES:
+        raise InputError(
+            f"drive failure is {kind!r}; one of {', '.join(DRIVE_FAILURES)} is expected"
+        )
+    return DRIVE_FAILURES[kind]
 
 
 def mangled(

@@ -3,86 +3,39 @@
 from __future__ import annotations
 
 import math
-import signal
-import threading
-from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 import numpy as np
 
 from jointid import _core
-from jointid.errors import InputError
-from jointid.hardware.drive import Drive, DriveFaultError, DriveSample
-from jointid.hardware.limits import Guard, LimitError, SessionLimits, Stop
+from jointid.hardware.drive import Drive, DriveEnd, DriveFaultError
+from jointid.hardware.following import Follower, Observer
+from jointid.hardware.guard import Guard
+from jointid.hardware.interruptions import Interruptions
+from jointid.hardware.limits import SessionLimits
 from jointid.hardware.recorder import Recorder
-from jointid.hardware.velocity_estimator import VelocityEstimator
+from jointid.hardware.session_options import SessionOptions
+from jointid.hardware.start_checks import problems_at_rest, problems_on_paper
+from jointid.hardware.stop import LimitError, SessionRefusedError, SessionStoppedError, Stop
 from jointid.recording.recording import Recording
 from jointid.simulation.arguments import Controller
 from jointid.simulation.trajectory import Trajectory
 
-_FULLEST_BUS = 0.8
-
-
-class SessionRefusedError(RuntimeError):
-    """The session was not begun: the motor has not been on."""
-
-
-class SessionStoppedError(RuntimeError):
-    """A limit stopped the session; torque and motor are off.
-
-    Parameters
-    ----------
-    stop : Stop
-    recording : Recording or None
-        What was recorded until then, if it is long enough to be one.
-    """
-
-    def __init__(self, stop: Stop, recording: Recording | None) -> None:
-        super().__init__(str(stop))
-        self.stop, self.recording = stop, recording
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SessionOptions:
-    """How a session goes.
-
-    Attributes
-    ----------
-    period : float
-        Between commands [s].
-    approach_velocity : float
-        Largest, on the way to the start [rad/s].
-    settle : float
-        Time of standing at the start [s].
-    velocity_counts, velocity_time : int, float
-        Of the velocity estimator (6.3.1): counts at least, [s] at most.
-    resolution : float
-        Output angle of an encoder count [rad].
-    """
-
-    period: float = 2e-3
-    approach_velocity: float = 0.3
-    settle: float = 0.5
-    velocity_counts: int = 5
-    velocity_time: float = 0.01
-    resolution: float = 2.0 * math.pi / 808_000
-
-    def __post_init__(self) -> None:
-        for name in ("period", "approach_velocity", "velocity_time", "resolution"):
-            value = getattr(self, name)
-            if not 0.0 < value < math.inf:
-                raise InputError(f"SessionOptions: {name} is {value!r}; more than 0 is expected")
-        if not 0.0 <= self.settle < math.inf:
-            raise InputError(f"SessionOptions: settle is {self.settle!r}; at least 0 is expected")
+__all__ = [
+    "Session",
+    "SessionLimits",
+    "SessionOptions",
+    "SessionRefusedError",
+    "SessionStoppedError",
+    "Stop",
+]
 
 
 class Session:
     """One run on a joint: check, enable, move to the start, settle, run, stop.
 
-    Every way out leaves zero torque and the motor off.
+    Every way out leaves zero torque and the motor off, and asks the drive whether it is.
 
     Parameters
     ----------
@@ -109,46 +62,29 @@ class Session:
         *,
         options: SessionOptions | None = None,
         output: str | Path | None = None,
-        observer: Callable[[str, float, DriveSample, float, float], object] | None = None,
+        observer: Observer | None = None,
     ) -> None:
         self._drive, self._controller, self._trajectory = drive, controller, trajectory
         self._limits = limits
         self._options = options if options is not None else SessionOptions()
         self._output = None if output is None else Path(output)
         self._observer = observer
-        self._phase, self._began = "check", 0.0
-        self._rows: list[tuple[float, ...]] = []
-        self._late: list[float] = []
-        self._interrupt: str | None = None
-        self._estimate = VelocityEstimator(
-            self._options.resolution, self._options.velocity_counts, self._options.velocity_time
-        )
+        self._follower: Follower | None = None
+        self._end: DriveEnd | None = None
 
     def check(self) -> list[str]:
         """Bring the drive up and say what speaks against a start; the motor stays off."""
-        load = self._drive.bus_load(self._options.period)
-        if load > _FULLEST_BUS:
-            return [
-                f"a cycle takes {100.0 * load:.0f} % of the bus, more than {100.0 * _FULLEST_BUS:.0f} %; "
-                "take a longer period"
-            ]
-        self._drive.connect(self._options.period)
-        reasons = self._drive.problems(self._limits.torque)
-        sample = self._drive.read(10.0 * self._options.period)
-        low, high = self._limits.position
-        if not low <= sample.position <= high:
-            reasons.append(
-                f"the joint stands at {sample.position:.4f} rad, outside {low:.4f} to {high:.4f} rad: is it "
-                "homed?"
+        options, limits = self._options, self._limits
+        reasons = list(
+            problems_on_paper(
+                self._drive, self._controller, self._trajectory, limits, options.period
             )
-        wanted = self._trajectory.sample(np.linspace(0.0, self._trajectory.duration, 2000))[0]
-        if wanted.min() < low or wanted.max() > high:
-            reasons.append(
-                f"the trajectory goes from {wanted.min():.4f} to {wanted.max():.4f} rad, outside {low:.4f} "
-                f"to {high:.4f} rad"
-            )
-        if sample.clipped:
-            reasons.append("the torque sensor is at the end of its range")
+        )
+        if reasons:
+            return reasons
+        self._drive.connect(options.period)
+        reasons += self._drive.problems(limits.torque)
+        reasons += problems_at_rest(self._drive.read(10.0 * options.period), limits)
         return reasons
 
     def run(self, *, dry_run: bool = False) -> Recording | None:
@@ -162,7 +98,8 @@ class Session:
         Returns
         -------
         Recording
-            Of the run itself; `metadata` has timing, limits and the drive's identity.
+            Of the run itself; `metadata` has timing, limits, the drive's identity, and whether the motor
+            was seen off afterwards.
 
         Raises
         ------
@@ -172,140 +109,129 @@ class Session:
             A limit, a fault, or the user stopped it; with what was recorded.
         """
         recorder: Recorder | None = None
-        stop: Stop | None = None
-        try:
+        cause: Exception | KeyboardInterrupt | None = None
+        self._follower, self._end = None, None
+        with Interruptions() as interruptions:
             try:
-                reasons = self.check()
-            except DriveFaultError as error:
-                raise SessionRefusedError(f"not started: {error}") from error
-            if reasons:
-                raise SessionRefusedError("not started: " + "; ".join(reasons))
-            if dry_run:
-                return None
-            if self._output is not None:
-                recorder = Recorder(self._output, self._metadata(), self._output.stem)
-                if hasattr(self._drive, "tap"):
-                    self._drive.tap = recorder.frame
-            with _Interruptions(self._interrupted):
-                stop = self._guarded(recorder)
-        finally:
-            self._drive.disable()
-            self._drive.close()
-            if hasattr(self._drive, "tap"):
-                self._drive.tap = None
-            if recorder is not None:
-                recorder.close()
+                self._refuse_or_go_on()
+                if dry_run:
+                    return None
+                if self._output is not None:
+                    recorder = Recorder(self._output, self._metadata(), self._output.stem)
+                    if hasattr(self._drive, "tap"):
+                        self._drive.tap = recorder.frame
+                cause, moment = self._guarded(recorder, interruptions)
+            finally:
+                self._leave(recorder)
+        if cause is None and interruptions.reason is not None:
+            cause = LimitError("user", interruptions.reason)  # it came with the end of the run
+        stop = None if cause is None else self._stop(cause, moment)
         recording = self._recording(stop)
         if stop is not None:
-            raise SessionStoppedError(stop, recording)
+            raise SessionStoppedError(stop, recording) from cause
         return recording
 
     # The phases.
 
-    def _guarded(self, recorder: Recorder | None) -> Stop | None:
-        """Move, settle and run; why it ended early, if it did. The motor is off afterwards."""
+    def _refuse_or_go_on(self) -> None:
         try:
-            self._enter("enable")
-            self._drive.enable()
-            start = float(self._trajectory.sample(np.zeros(1))[0][0])
-            here = self._drive.read(10.0 * self._options.period).position
-            law = self._controller.start(
-                period=self._options.period, torque_limit=self._limits.torque
-            )
-            guard = Guard(self._limits, self._options.period)
-            self._move(law, guard, here, start)
-            self._enter("run")
-            self._follow(law, guard, self._trajectory, recorder)
-        except LimitError as error:
-            return self._stop(error.limit, str(error))
+            reasons = self.check()
         except DriveFaultError as error:
-            return self._stop(error.kind, str(error))
-        except KeyboardInterrupt:
-            return self._stop("user", "interrupted from the keyboard")
-        except Exception as error:
-            self._drive.disable()
-            return self._stop("error", f"{type(error).__name__}: {error}")
-        return None
+            raise SessionRefusedError(f"not started: {error}") from error
+        if reasons:
+            raise SessionRefusedError("not started: " + "; ".join(reasons))
 
-    def _stop(self, limit: str, message: str) -> Stop:
-        self._drive.disable()
-        now = self._drive.clock.now()
-        return Stop(limit=limit, phase=self._phase, time=now - self._began, message=message)
-
-    def _enter(self, phase: str) -> None:
-        self._phase, self._began = phase, self._drive.clock.now()
-
-    def _move(self, law: _core.ControlRun, guard: Guard, here: float, start: float) -> None:
-        """To the start of the trajectory, smoothly, and stand there."""
-        distance = start - here
-        rise = max(0.2, 0.5 * math.pi * abs(distance) / self._options.approach_velocity)
-        approach = Trajectory.sigmoid(distance, rise=rise, duration=rise + self._options.settle)
-        self._enter("move")
-        self._follow(law, guard, approach, None, offset=here, settled=rise)
-
-    def _follow(
-        self,
-        law: _core.ControlRun,
-        guard: Guard,
-        trajectory: Trajectory,
-        recorder: Recorder | None,
-        *,
-        offset: float = 0.0,
-        settled: float | None = None,
-    ) -> None:
-        options, clock = self._options, self._drive.clock
-        period = options.period
-        count = round(trajectory.duration / period)
-        wanted = trajectory.sample(np.arange(count) * period)
-        reference, velocity, acceleration = (each.tolist() for each in wanted)
-        open_loop = isinstance(self._controller, _core.OpenLoop)
-        running = self._phase == "run"
-        begin = clock.now() + period
-        before = 0.0
-        for k in range(count):
-            if settled is not None and self._phase == "move" and k * period > settled:
-                self._phase = "settle"
-            clock.sleep_until(begin + k * period)
-            if self._interrupt is not None:
-                raise LimitError("user", self._interrupt)
-            sample = self._drive.read(0.5 * period)
-            speed = self._estimate(sample.time, sample.position)
-            target = reference[k] + offset
-            error = None if open_loop else sample.position - target
-            guard.measured(sample.position, speed, error, clipped=sample.clipped)
-            torque = law.step(
-                time=k * period,
-                position=sample.position,
-                velocity=speed,
-                sensor=sample.reading,
-                reference=target,
-                reference_velocity=velocity[k],
-                reference_acceleration=acceleration[k],
+    def _guarded(
+        self, recorder: Recorder | None, interruptions: Interruptions
+    ) -> tuple[Exception | KeyboardInterrupt | None, float]:
+        """Enable, move, settle and run; what ended it early, if anything, and when. The motor is off then."""
+        options, limits = self._options, self._limits
+        try:
+            feedback = not isinstance(self._controller, _core.OpenLoop)
+            law = self._controller.start(period=options.period, torque_limit=limits.torque)
+            follower = Follower(
+                self._drive,
+                law,
+                Guard(limits, options.period, options.resolution),
+                options,
+                interruptions=interruptions,
+                observer=self._observer,
+                feedback=feedback,
             )
-            guard.commanded(torque, law.saturations)
-            told = self._drive.command(torque)
-            now = clock.now()
-            if running:
-                # Until the drive acts, the last command holds: the mean over the cycle is kept.
-                share = min(1.0, (now - sample.time + self._drive.command_latency) / period)
-                held = share * before + (1.0 - share) * told
-                row = (k * period, sample.position, held, sample.reading, target, sample.current)
-                self._rows.append(row)
-                if recorder is not None:
-                    recorder.sample(row)
-                    if recorder.failure is not None:
-                        raise recorder.failure
-            before = told
-            if self._observer is not None:
-                self._observer(self._phase, k * period, sample, target, told)
-            late = clock.now() - (begin + (k + 1) * period)
-            self._late.append(late)
-            guard.timed(late)
+            self._follower = follower
+            if interruptions.reason is not None:
+                raise LimitError("user", interruptions.reason)
+            follower.enter("enable")
+            self._drive.enable()
+            if feedback:
+                self._approach(follower)
+            follower.enter("run")
+            follower.follow(self._trajectory, recorder)
+        except (Exception, KeyboardInterrupt) as error:
+            moment = self._drive.clock.now()
+            self._switch_off()
+            return error, moment
+        moment = self._drive.clock.now()
+        self._switch_off()
+        return None, moment
+
+    def _approach(self, follower: Follower) -> None:
+        """To the start of the trajectory, smoothly, and stand there."""
+        options = self._options
+        start = float(self._trajectory.sample(np.zeros(1))[0][0])
+        here = self._drive.read(10.0 * options.period).position
+        distance = start - here
+        rise = max(0.2, 0.5 * math.pi * abs(distance) / options.approach_velocity)
+        approach = Trajectory.sigmoid(distance, rise=rise, duration=rise + options.settle)
+        follower.enter("move")
+        follower.follow(approach, None, offset=here, settled=rise)
+
+    # Ways out.
+
+    def _switch_off(self) -> None:
+        """Torque to zero, motor off; what a drive raises now must not keep the rest from being done."""
+        try:
+            self._end = self._drive.disable()
+        except (Exception, KeyboardInterrupt) as error:
+            self._end = DriveEnd(motor_off=False, failure=f"{type(error).__name__}: {error}")
+
+    def _leave(self, recorder: Recorder | None) -> None:
+        try:
+            if self._end is None or not self._end.motor_off:
+                self._switch_off()
+            self._drive.close()
+        finally:
+            if hasattr(self._drive, "tap"):
+                self._drive.tap = None
+            if recorder is not None:
+                recorder.close()
+
+    def _stop(self, cause: Exception | KeyboardInterrupt, moment: float) -> Stop:
+        follower = self._follower
+        limit, message = "error", f"{type(cause).__name__}: {cause}"
+        if isinstance(cause, LimitError):
+            limit, message = cause.limit, str(cause)
+        elif isinstance(cause, DriveFaultError):
+            limit, message = cause.kind, str(cause)
+        elif isinstance(cause, KeyboardInterrupt):
+            limit, message = "user", "interrupted from the keyboard"
+        end = self._end if self._end is not None else DriveEnd()
+        if end.failure:
+            message = f"{message}; the drive says: {end.failure}"
+        if end.motor_off is False:
+            message = f"{message}; THE MOTOR WAS NOT SEEN OFF"
+        return Stop(
+            limit=limit,
+            phase="check" if follower is None else follower.phase,
+            time=0.0 if follower is None else moment - follower.began,
+            moment=moment,
+            message=message,
+            measured=getattr(cause, "measured", None),
+            allowed=getattr(cause, "allowed", None),
+            motor_off=end.motor_off,
+        )
 
     # What is left.
-
-    def _interrupted(self, reason: str) -> None:
-        self._interrupt = reason
 
     def _metadata(self) -> dict[str, Any]:
         limits = {name: getattr(self._limits, name) for name in self._limits.__slots__}
@@ -319,12 +245,13 @@ class Session:
         }
 
     def _recording(self, stop: Stop | None) -> Recording | None:
-        if len(self._rows) < 8:
+        follower = self._follower
+        if follower is None or len(follower.rows) < 8:
             return None
         time, position, torque, sensor, reference, current = map(
-            np.array, zip(*self._rows, strict=True)
+            np.array, zip(*follower.rows, strict=True)
         )
-        late = np.array(self._late)
+        late = np.array(follower.late)
         return Recording(
             time=time,
             position=position,
@@ -338,6 +265,8 @@ class Session:
                 **self._metadata(),
                 "session": True,
                 "stop": None if stop is None else str(stop),
+                "stopped": None if stop is None else stop.to_dict(),
+                "motor_off": None if self._end is None else self._end.motor_off,
                 "timing": {
                     "cycles": len(late),
                     "missed": int((late > 0.0).sum()),
@@ -352,25 +281,3 @@ def _json(value: Any) -> Any:
     if isinstance(value, tuple):
         return list(value)
     return None if isinstance(value, float) and math.isinf(value) else value
-
-
-class _Interruptions:
-    """SIGINT and SIGTERM as a wish to stop, for the time of a session on the main thread."""
-
-    def __init__(self, tell: Callable[[str], None]) -> None:
-        self._tell = tell
-        self._before: dict[int, Any] = {}
-
-    def __enter__(self) -> None:
-        if threading.current_thread() is not threading.main_thread():
-            return
-        for number in (signal.SIGINT, signal.SIGTERM):
-            self._before[number] = signal.signal(number, self._caught)
-
-    def __exit__(self, *_: object) -> None:
-        for number, handler in self._before.items():
-            signal.signal(number, handler)
-
-    def _caught(self, number: int, frame: FrameType | None) -> None:
-        del frame
-        self._tell(f"stopped by {signal.Signals(number).name}")

@@ -1,0 +1,265 @@
+"""The way to one Elmo drive: frames out, frames in, answers told apart, what speaks of a fault kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import can
+
+from jointid.errors import InputError
+from jointid.hardware import canopen_frames as canopen
+from jointid.hardware.clock import Clock, MonotonicClock
+from jointid.hardware.drive import DriveFaultError
+from jointid.hardware.elmo_codec import Command, DriveError, Reply
+from jointid.hardware.elmo_decoder import ElmoDecoder
+from jointid.hardware.elmo_errors import Emergency
+from jointid.hardware.elmo_options import ElmoOptions
+
+_ANSWER = 0.2  # [s] to wait for one
+_HOST_HEARTBEAT = 0x8130  # emergency: ours has stayed away
+_MOST_WAITING = 10_000  # frames; a bus that brings more at once is not read to its end
+_MASTERS = (1, 2)  # our node, whose heartbeat the drive watches: the first that is not the drive's
+Tap = Callable[[float, int, bytes, bool], None]  # time, identifier, payload, whether sent
+
+
+class ElmoLink:
+    """Frames to and from one drive.
+
+    Parameters
+    ----------
+    bus : can.BusABC
+    options : ElmoOptions
+    seen : ElmoDecoder
+        Reads the cyclic frames.
+    clock : Clock, optional
+        Default: the bus's own if it has one, else a `MonotonicClock`.
+    """
+
+    def __init__(
+        self,
+        bus: can.BusABC,
+        options: ElmoOptions,
+        seen: ElmoDecoder,
+        clock: Clock | None = None,
+    ) -> None:
+        self._bus, self._options, self._seen = bus, options, seen
+        own: Any = bus if hasattr(bus, "sleep_until") else MonotonicClock()
+        self.clock: Clock = own if clock is None else clock
+        self.tap: Tap | None = None
+        self.booted = False
+        self.up = False  # from then on a boot-up message or another state is a fault
+        self.heard = 0.0  # [s], when the drive's heartbeat came last
+        node = options.node
+        self._command_id, self._reply_id = options.command_id, options.reply_id
+        self.master = next(each for each in _MASTERS if each != node)
+        # Some interfaces, e.g. udp_multicast, give us our own frames back.
+        self._ours = {
+            *(canopen.NMT, canopen.SYNC, self._command_id, 0x600 + node),
+            canopen.heartbeat_id(self.master),
+        }
+        self._replies: dict[tuple[str, int], Reply | DriveError] = {}
+        self._answers: list[bytes] = []
+        self._fault: DriveFaultError | None = None
+
+    # Towards the drive.
+
+    def send(self, identifier: int, payload: bytes) -> None:
+        """Send a frame.
+
+        Raises
+        ------
+        DriveFaultError
+            The bus does not take it.
+        """
+        message = can.Message(arbitration_id=identifier, data=payload, is_extended_id=False)
+        try:
+            self._bus.send(message, timeout=0.01)
+        except can.CanError as error:
+            raise DriveFaultError("bus", f"a frame could not be sent: {error}") from error
+        if self.tap is not None:
+            self.tap(self.clock.now(), identifier, payload, True)
+
+    def command(self, command: Command) -> None:
+        """Send a command and wait for nothing."""
+        self._replies.pop(command.key, None)
+        self.send(self._command_id, command.payload())
+
+    def ask(self, command: Command, timeout: float = _ANSWER) -> Reply:
+        """Send a command and wait for its reply; one of a kind at a time."""
+        self.command(command)
+        self.wait(lambda: command.key in self._replies, timeout, f"no reply to {command.letters}")
+        reply = self._replies.pop(command.key)
+        if isinstance(reply, DriveError):
+            raise DriveFaultError("drive_fault", str(reply))
+        return reply
+
+    def number(self, letters: str, timeout: float = _ANSWER) -> int | None:
+        """The value of a register, whatever else the drive reports; None when it does not tell."""
+        command = Command(letters=letters)
+        end = self.clock.now() + timeout
+        try:
+            self.command(command)
+            while command.key not in self._replies:
+                left = end - self.clock.now()
+                if left <= 0.0:
+                    return None
+                self.receive(left)
+        except DriveFaultError:
+            self.clock.sleep_until(end)  # the bus may come back
+            return None
+        reply = self._replies.pop(command.key)
+        return int(reply.value) if isinstance(reply, Reply) else None
+
+    def transfer(self, request: canopen.SdoRequest) -> int:
+        """Read or write an object.
+
+        Raises
+        ------
+        SdoAbortError
+            The drive refuses.
+        DriveFaultError
+        """
+        self._answers.clear()
+        self.send(0x600 + self._options.node, request.payload())
+        found: list[int] = []
+
+        def answered() -> bool:
+            for payload in self._answers:
+                result = canopen.sdo_result(payload, request)
+                if result is not None:
+                    found.append(result)
+            return bool(found)
+
+        self.wait(answered, _ANSWER, f"no answer to object {request.index:04X}h")
+        return found[0]
+
+    # From the drive.
+
+    def wait(
+        self,
+        done: Callable[[], bool],
+        timeout: float,
+        told: str,
+        kind: str = "drive_fault",
+    ) -> None:
+        """Receive until something is so, or a fault speaks against going on.
+
+        What had arrived before the time was over counts, also when this program looks late.
+
+        Raises
+        ------
+        DriveFaultError
+        """
+        begin = self.clock.now()
+        end = begin + timeout
+        while not done():
+            left = end - self.clock.now()
+            if (not self.receive(max(0.0, left)) and left <= 0.0) or left < -timeout:
+                raise DriveFaultError(
+                    kind,
+                    f"{told} within {1e3 * timeout:g} ms",
+                    measured=self.clock.now() - begin,
+                    allowed=timeout,
+                )
+            self.raise_fault()
+
+    def drain(self, timeout: float) -> None:
+        """Read what comes in a while."""
+        end = self.clock.now() + timeout
+        while self.receive(max(0.0, end - self.clock.now())):
+            pass
+
+    def read_waiting(self) -> None:
+        """Read what has come, e.g. while the host stood still.
+
+        Raises
+        ------
+        DriveFaultError
+        """
+        for _ in range(_MOST_WAITING):
+            if not self.receive(0.0):
+                break
+        self.raise_fault()
+
+    def forget_fault(self) -> None:
+        """What was wrong is known, or was before our time."""
+        self._fault = None
+
+    def raise_fault(self) -> None:
+        """Raise the first fault that was heard of, once."""
+        if self._fault is not None:
+            fault, self._fault = self._fault, None
+            raise fault
+
+    def receive(self, timeout: float) -> bool:
+        """Read a frame; whether there was one."""
+        try:
+            message = self._bus.recv(timeout)
+        except can.CanError as error:
+            raise DriveFaultError("bus", f"nothing can be received: {error}") from error
+        if message is None:
+            return False
+        if message.is_error_frame:
+            kind = message.arbitration_id
+            self._note("bus", f"an error frame (class 0x{kind:X}): bus-off or bad wiring")
+            return True
+        if message.arbitration_id in self._ours:
+            return True
+        payload = bytes(message.data)
+        if self.tap is not None:
+            self.tap(self.clock.now(), message.arbitration_id, payload, False)
+        self._sort(message.arbitration_id, payload)
+        return True
+
+    def _sort(self, identifier: int, payload: bytes) -> None:
+        node = self._options.node
+        if self._seen.take(identifier, payload):
+            return
+        if identifier == self._reply_id:
+            self._take_reply(payload)
+        elif identifier == 0x580 + node:
+            self._answers.append(payload)
+        elif identifier == canopen.emergency_id(node):
+            self._take_emergency(payload)
+        elif identifier == canopen.heartbeat_id(node) and len(payload) == 1:
+            self._take_heartbeat(payload[0])
+
+    def _take_reply(self, payload: bytes) -> None:
+        try:
+            reply = Reply.of(payload)
+        except DriveError as error:
+            self._replies[error.letters, error.index] = error
+            if error.letters == "TC":
+                self._note("drive_fault", str(error))
+            return
+        except InputError as error:
+            self._note("drive_fault", f"an unreadable reply: {error}")
+            return
+        if reply.letters == "AN":
+            self._seen.take_voltage(float(reply.value))
+        self._replies[reply.key] = reply
+
+    def _take_emergency(self, payload: bytes) -> None:
+        emergency = Emergency.of(payload)
+        if emergency is not None and emergency.code:
+            ours = emergency.code == _HOST_HEARTBEAT
+            self._note(
+                "host_heartbeat_lost" if ours else "drive_fault",
+                f"the drive reports {emergency.meaning} (emergency 0x{emergency.code:04X})",
+            )
+
+    def _take_heartbeat(self, state: int) -> None:
+        self.heard = self.clock.now()
+        if state == 0:
+            self.booted = True
+            if self.up:
+                self._note("drive_fault", "the drive has started anew")
+        elif self.up and canopen.STATES.get(state) != "operational":
+            name = canopen.STATES.get(state, f"0x{state:02X}")
+            self._note("drive_fault", f"the drive has left the state operational: it is {name}")
+
+    def _note(self, kind: str, message: str) -> None:
+        """Keep the first fault: what follows is often its consequence."""
+        if self._fault is None:
+            self._fault = DriveFaultError(kind, message)

@@ -1,0 +1,62 @@
+"""Objects of an Elmo drive that a session sets: position at each SYNC, heartbeats both ways."""
+
+from __future__ import annotations
+
+from jointid.hardware.canopen_frames import SdoAbortError, SdoRequest
+from jointid.hardware.drive import DriveFaultError
+from jointid.hardware.elmo_link import ElmoLink
+from jointid.hardware.elmo_options import ElmoOptions
+
+_Write = tuple[int, int, int, int]  # index, subindex, value, size
+
+
+def identity(link: ElmoLink) -> dict[str, str]:
+    """What object 1018h says of the drive."""
+    told = {}
+    for name, subindex in (("vendor", 1), ("product", 2), ("revision", 3)):
+        try:
+            value = link.transfer(SdoRequest(index=0x1018, subindex=subindex))
+        except SdoAbortError:
+            continue
+        told[name] = f"0x{value:X}"
+    return told
+
+
+def map_position(link: ElmoLink, options: ElmoOptions) -> None:
+    """Position and torque in the fourth PDO, at each SYNC: off, mapped, on."""
+    cob = options.position_id
+    _write(
+        link,
+        (0x1803, 1, 0xC0000000 | cob, 4),
+        (0x1A03, 0, 0, 1),
+        (0x1803, 2, 1, 1),
+        (0x1A03, 1, 0x60640020, 4),
+        (0x1A03, 2, 0x60770010, 4),
+        (0x1A03, 0, 2, 1),
+        (0x1803, 1, cob, 4),
+    )
+
+
+def arm_watchdogs(link: ElmoLink, options: ElmoOptions) -> None:
+    """The drive stops by itself when our heartbeat stays away, and tells us that it lives."""
+    _write(
+        link,
+        (0x1016, 1, link.master << 16 | round(1e3 * options.heartbeat), 4),
+        (0x1017, 0, round(1e3 * options.drive_heartbeat), 2),
+        (0x6007, 0, 2, 2),
+        (0x1029, 1, 1, 1),
+        (0x2F21, 0, 0x188, 4),
+    )
+
+
+def disarm_watchdogs(link: ElmoLink) -> None:
+    """Nobody sends heartbeats from now on, which is no failure."""
+    _write(link, (0x1016, 1, 0, 4), (0x1017, 0, 0, 2))
+
+
+def _write(link: ElmoLink, *objects: _Write) -> None:
+    for index, subindex, value, size in objects:
+        try:
+            link.transfer(SdoRequest(index=index, subindex=subindex, value=value, size=size))
+        except SdoAbortError as error:
+            raise DriveFaultError("drive_fault", str(error)) from error

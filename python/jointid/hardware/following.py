@@ -1,0 +1,155 @@
+"""The cycle of a session: measure, look at the limits, command; again and again along a trajectory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from jointid import _core
+from jointid.hardware.drive import Drive, DriveSample
+from jointid.hardware.guard import Guard
+from jointid.hardware.interruptions import Interruptions
+from jointid.hardware.recorder import Recorder
+from jointid.hardware.session_options import SessionOptions
+from jointid.hardware.stop import LimitError
+from jointid.hardware.velocity_estimator import VelocityEstimator
+from jointid.simulation.trajectory import Trajectory
+
+Observer = Callable[[str, float, DriveSample, float, float], object]
+
+
+class Follower:
+    """Moves a joint along trajectories and keeps what it saw on the last one.
+
+    Parameters
+    ----------
+    drive : Drive
+    law : ControlRun
+        A controller at work.
+    guard : Guard
+    options : SessionOptions
+    interruptions : Interruptions
+    observer : callable, optional
+    feedback : bool
+        False: the trajectory is a torque, and there is no tracking error.
+    """
+
+    def __init__(
+        self,
+        drive: Drive,
+        law: _core.ControlRun,
+        guard: Guard,
+        options: SessionOptions,
+        *,
+        interruptions: Interruptions,
+        observer: Observer | None = None,
+        feedback: bool = True,
+    ) -> None:
+        self._drive, self._law, self._guard, self._options = drive, law, guard, options
+        self._interruptions = interruptions
+        self._observer, self._feedback = observer, feedback
+        self._estimate = VelocityEstimator(
+            options.resolution, options.velocity_counts, options.velocity_time
+        )
+        self.phase, self.began = "check", drive.clock.now()
+        self.rows: list[tuple[float, ...]] = []
+        self.late: list[float] = []
+
+    def enter(self, phase: str) -> None:
+        """Begin a phase: stops are told by its name and the time since."""
+        self.phase, self.began = phase, self._drive.clock.now()
+
+    def follow(
+        self,
+        trajectory: Trajectory,
+        recorder: Recorder | None,
+        *,
+        offset: float = 0.0,
+        settled: float | None = None,
+    ) -> None:
+        """Follow a trajectory; while the phase is "run", keep a row of each cycle.
+
+        Parameters
+        ----------
+        trajectory : Trajectory
+        recorder : Recorder or None
+        offset : float
+            Added to the reference [rad].
+        settled : float, optional
+            From this time on the phase is "settle" [s].
+
+        Raises
+        ------
+        LimitError, DriveFaultError
+        """
+        options, clock, guard = self._options, self._drive.clock, self._guard
+        period = options.period
+        timeout = 0.5 * period if options.answer_timeout is None else options.answer_timeout
+        count = round(trajectory.duration / period)
+        wanted = trajectory.sample(np.arange(count) * period)
+        reference, velocity, acceleration = (each.tolist() for each in wanted)
+        running = self.phase == "run"
+        begin = clock.now() + period
+        before = 0.0
+        for k in range(count):
+            if settled is not None and self.phase == "move" and k * period > settled:
+                self.enter("settle")
+            clock.sleep_until(begin + k * period)
+            if self._interruptions.reason is not None:
+                raise LimitError("user", self._interruptions.reason)
+            sample = self._drive.read(timeout)
+            speed = self._estimate(sample.time, sample.position)
+            target = reference[k] + offset
+            error = sample.position - target if self._feedback else None
+            guard.measured(sample, speed, error)
+            torque = self._asked(k * period, sample, speed, (target, velocity[k], acceleration[k]))
+            guard.commanded(torque, self._law.saturations)
+            told = self._drive.command(torque)
+            guard.told(told)
+            now = clock.now()
+            if running:
+                # Until the drive acts, the last command holds: the mean over the cycle is kept.
+                share = min(1.0, (now - sample.time + self._drive.command_latency) / period)
+                held = share * before + (1.0 - share) * told
+                row = (k * period, sample.position, held, sample.reading, target, sample.current)
+                self.rows.append(row)
+                if recorder is not None:
+                    recorder.sample(row)
+                    if recorder.failure is not None:
+                        raise recorder.failure
+            before = told
+            if self._observer is not None:
+                self._shown(k * period, sample, target, told)
+            late = clock.now() - (begin + (k + 1) * period)
+            self.late.append(late)
+            guard.timed(late)
+
+    def _asked(
+        self, time: float, sample: DriveSample, speed: float, wanted: tuple[float, float, float]
+    ) -> float:
+        """What the controller asks for [N·m]."""
+        try:
+            return self._law.step(
+                time=time,
+                position=sample.position,
+                velocity=speed,
+                sensor=sample.reading,
+                reference=wanted[0],
+                reference_velocity=wanted[1],
+                reference_acceleration=wanted[2],
+            )
+        except Exception as error:
+            raise LimitError("user", f"the controller raised {_told(error)}") from error
+
+    def _shown(self, time: float, sample: DriveSample, target: float, told: float) -> None:
+        """Call the observer."""
+        assert self._observer is not None
+        try:
+            self._observer(self.phase, time, sample, target, told)
+        except Exception as error:
+            raise LimitError("user", f"the observer raised {_told(error)}") from error
+
+
+def _told(error: Exception) -> str:
+    return f"{type(error).__name__}: {error}"

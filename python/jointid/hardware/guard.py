@@ -1,0 +1,181 @@
+"""Holds what a session measures and commands against its limits, cycle by cycle."""
+
+from __future__ import annotations
+
+import math
+
+from jointid.hardware.drive import DriveSample
+from jointid.hardware.limits import SessionLimits
+from jointid.hardware.stop import LimitError
+
+_DIFFERING = 10  # samples in a row; a drive follows a command within one or two
+# Counts in a cycle: from such a speed no friction brings a joint to a stand within the next.
+_MOVING = 20
+
+
+class Guard:
+    """Holds what a session measures and commands against its limits.
+
+    Parameters
+    ----------
+    limits : SessionLimits
+    period : float
+        [s]
+    resolution : float
+        Output angle of an encoder count [rad].
+    """
+
+    def __init__(self, limits: SessionLimits, period: float, resolution: float) -> None:
+        self._limits, self._period = limits, period
+        self._largest_measured = limits.largest_measured
+        self._largest_difference = limits.largest_difference
+        self._moving = _MOVING * resolution / period
+        self._last: float | None = None  # commanded by the controller
+        self._told = 0.0  # what the drive was told
+        self._missed = self._clipped = self._differing = self._repeated = 0
+        self._place = math.nan
+        self._speed_there = self._told_there = 0.0
+
+    def measured(self, sample: DriveSample, velocity: float, error: float | None) -> None:
+        """Look at what was measured.
+
+        Parameters
+        ----------
+        sample : DriveSample
+        velocity : float
+            Estimated [rad/s].
+        error : float or None
+            Position less reference [rad]; None without feedback.
+
+        Raises
+        ------
+        LimitError
+        """
+        limits = self._limits
+        low, high = limits.position
+        position = sample.position
+        if not low <= position <= high:
+            raise LimitError(
+                "position",
+                f"{position:.4f} rad, outside {low:.4f} to {high:.4f} rad",
+                measured=position,
+                allowed=low if position < low else high,
+            )
+        _hold("velocity", velocity, limits.velocity, "rad/s")
+        if error is not None:
+            _hold("tracking_error", error, limits.tracking_error, "rad")
+        self._read(sample)
+        self._repeats(position, velocity)
+        if not math.isnan(sample.torque):
+            self._felt(sample.torque)
+
+    def commanded(self, torque: float, saturations: int) -> None:
+        """Look at what the controller asks for [N·m], before the drive is told.
+
+        Raises
+        ------
+        LimitError
+        """
+        limits = self._limits
+        if not math.isfinite(torque):
+            raise LimitError("torque", f"the controller asks for {torque}, which is no number")
+        # A law clamps to the limit itself; rounding is no excess.
+        if abs(torque) > limits.torque * (1.0 + 1e-9):
+            _hold("torque", torque, limits.torque, "N·m")
+        if self._last is not None:
+            rate = (torque - self._last) / self._period
+            _hold("torque_rate", rate, limits.torque_rate, "N·m/s")
+        self._last = torque
+        if saturations > limits.saturated_samples:
+            raise LimitError(
+                "saturated_samples",
+                f"the torque limit cut the command {saturations} times, more than "
+                f"{limits.saturated_samples}",
+                measured=saturations,
+                allowed=limits.saturated_samples,
+            )
+
+    def told(self, torque: float) -> None:
+        """Remember what the drive was told [N·m]."""
+        self._told = torque
+
+    def timed(self, late: float) -> None:
+        """Look at how late a cycle ended against the next one's begin [s]; negative: in time.
+
+        Raises
+        ------
+        LimitError
+        """
+        self._missed = self._missed + 1 if late > 0.0 else 0
+        if self._missed > self._limits.missed_deadlines:
+            raise LimitError(
+                "missed_deadlines",
+                f"{self._missed} cycles in a row were not done in time, the last one by {1e3 * late:.2f} ms",
+                measured=self._missed,
+                allowed=self._limits.missed_deadlines,
+            )
+
+    def _read(self, sample: DriveSample) -> None:
+        """The torque sensor."""
+        if not math.isfinite(sample.reading):
+            raise LimitError(
+                "sensor", f"the torque sensor reads {sample.reading}, which is no number"
+            )
+        self._clipped = self._clipped + 1 if sample.clipped else 0
+        if self._clipped > self._limits.clipped_samples:
+            raise LimitError(
+                "clipped_samples",
+                f"the torque sensor is at the end of its range for {self._clipped} samples",
+                measured=self._clipped,
+                allowed=self._limits.clipped_samples,
+            )
+
+    def _repeats(self, position: float, velocity: float) -> None:
+        """An encoder that hangs: the very same count, though speed or torque say otherwise."""
+        if position != self._place:
+            self._place, self._repeated = position, 0
+            self._speed_there, self._told_there = velocity, self._told
+            return
+        self._repeated += 1
+        if self._repeated <= self._limits.repeated_positions:
+            return
+        change = abs(self._told - self._told_there)
+        if abs(self._speed_there) > self._moving:
+            reason = f"it was {abs(self._speed_there):.3f} rad/s fast before"
+        elif change > self._limits.torque:
+            reason = f"the torque has changed by {change:.0f} N·m since"
+        else:
+            return
+        raise LimitError(
+            "repeated_positions",
+            f"the joint has been at {position:.6f} rad for {self._repeated} cycles, though {reason}: the "
+            "encoder hangs, or the joint is blocked",
+            measured=self._repeated,
+            allowed=self._limits.repeated_positions,
+        )
+
+    def _felt(self, torque: float) -> None:
+        """The torque of the active current."""
+        if abs(torque) > self._largest_measured:
+            _hold("measured_torque", torque, self._largest_measured, "N·m")
+        difference = torque - self._told
+        self._differing = self._differing + 1 if abs(difference) > self._largest_difference else 0
+        if self._differing >= _DIFFERING:
+            raise LimitError(
+                "torque_difference",
+                f"the drive gives {torque:.1f} N·m where {self._told:.1f} N·m is commanded, for "
+                f"{self._differing} samples; {self._largest_difference:g} N·m is allowed",
+                measured=abs(difference),
+                allowed=self._largest_difference,
+            )
+
+
+def _hold(limit: str, value: float, allowed: float, unit: str) -> None:
+    """Also a value that is no number is beyond its limit."""
+    if not abs(value) <= allowed:
+        raise LimitError(
+            limit,
+            f"{value:.4g} {unit}, more than {allowed:g} {unit}",
+            measured=value,
+            allowed=allowed,
+        )

@@ -1,0 +1,44 @@
+"""The user's wish to stop, by Ctrl-C or SIGTERM, taken between two cycles and not in the middle of one."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from types import FrameType, TracebackType
+from typing import Any
+
+_PATIENCE = 3  # Ctrl-C so often: a drive that does not come back is left by an exception
+
+
+class Interruptions:
+    """Catches SIGINT and SIGTERM as a wish to stop while it is entered, on the main thread.
+
+    On other threads Python delivers no signals, and nothing is caught.
+    """
+
+    def __init__(self) -> None:
+        self.reason: str | None = None
+        self._count = 0
+        self._before: dict[int, Any] = {}
+
+    def __enter__(self) -> Interruptions:
+        if threading.current_thread() is threading.main_thread():
+            for number in (signal.SIGINT, signal.SIGTERM):
+                self._before[number] = signal.signal(number, self._caught)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        for number, before in self._before.items():
+            signal.signal(number, before)
+
+    def _caught(self, number: int, frame: FrameType | None) -> None:
+        del frame
+        self.reason = self.reason or f"stopped by {signal.Signals(number).name}"
+        self._count += 1
+        if self._count >= _PATIENCE:
+            raise KeyboardInterrupt

@@ -1,0 +1,89 @@
+"""How a session ends before its time: which limit, when, by how much; and as what exception."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from jointid.recording.recording import Recording
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stop:
+    """Why a session ended before its time.
+
+    Attributes
+    ----------
+    limit : str
+        Its name: a field of `SessionLimits`, or "stale_position", "drive_fault", "heartbeat_lost" (the drive's),
+        "host_heartbeat_lost" (ours, so the drive says), "bus", "sensor" (a reading that is no number), "user", "error".
+    phase : str
+        "check", "enable", "move", "settle" or "run".
+    time : float
+        Since the phase began [s].
+    moment : float
+        On the drive's clock, which stamps the frames too [s].
+    message : str
+        What happened, by how much.
+    measured, allowed : float or None
+        The number that was beyond the limit, and the limit, in the limit's unit; None where there is no number.
+    motor_off : bool or None
+        Whether the drive was asked afterwards and said so; None: this drive cannot tell.
+    """
+
+    limit: str
+    phase: str
+    time: float
+    moment: float
+    message: str
+    measured: float | None = None
+    allowed: float | None = None
+    motor_off: bool | None = None
+
+    def __str__(self) -> str:
+        return f"stopped by {self.limit} after {self.time:.3f} s of {self.phase}: {self.message}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The fields, of JSON's types."""
+        return asdict(self)
+
+
+class LimitError(RuntimeError):
+    """A limit was passed.
+
+    Parameters
+    ----------
+    limit, message : str
+    measured, allowed : float, optional
+        As in `Stop`.
+    """
+
+    def __init__(
+        self,
+        limit: str,
+        message: str,
+        *,
+        measured: float | None = None,
+        allowed: float | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.limit, self.measured, self.allowed = limit, measured, allowed
+
+
+class SessionRefusedError(RuntimeError):
+    """The session was not begun: the motor has not been on."""
+
+
+class SessionStoppedError(RuntimeError):
+    """A limit stopped the session; torque and motor are off.
+
+    Parameters
+    ----------
+    stop : Stop
+    recording : Recording or None
+        What was recorded until then, if it is long enough to be one.
+    """
+
+    def __init__(self, stop: Stop, recording: Recording | None) -> None:
+        super().__init__(str(stop))
+        self.stop, self.recording = stop, recording
