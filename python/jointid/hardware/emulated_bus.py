@@ -2,28 +2,14 @@
 
 from __future__ import annotations
 
-import heapq
-import itertools
 from collections import deque
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 import can
 
-from jointid.hardware.canopen_frames import bits_on_wire
-from jointid.hardware.faults import BusFault, mangled
-
-Event = Callable[[], None]
-
-
-class Device(Protocol):
-    """What hangs on an emulated bus."""
-
-    def attach(self, bus: EmulatedBus) -> None:
-        """Remember the bus; it sends with `bus.transmit`."""
-
-    def receive(self, message: can.Message) -> None:
-        """A frame from the host has arrived, now."""
+from jointid.hardware.device import Agenda, Device, Event, Wire
+from jointid.hardware.faults import BusFault
 
 
 class EmulatedBus(can.BusABC):
@@ -49,9 +35,8 @@ class EmulatedBus(can.BusABC):
         self.bitrate = bitrate
         self._faults = faults
         self._time = 0.0
-        self._free = 0.0  # the wire is busy until then
-        self._count = itertools.count()
-        self._events: list[tuple[float, int, Event]] = []
+        self._wire = Wire(bitrate, faults)
+        self._agenda = Agenda()
         self._inbox: deque[can.Message] = deque()
         self.sent = 0
         self._devices = devices
@@ -64,11 +49,11 @@ class EmulatedBus(can.BusABC):
 
     def at(self, when: float, event: Event) -> None:
         """Run something when the clock gets there."""
-        heapq.heappush(self._events, (max(when, self._time), next(self._count), event))
+        self._agenda.add(max(when, self._time), event)
 
     def sleep_until(self, deadline: float) -> None:
         """Run what is due until the deadline, and be there."""
-        while self._events and self._events[0][0] <= deadline:
+        while self._agenda.next <= deadline:
             self._run_next()
         self._time = max(self._time, deadline)
 
@@ -102,7 +87,7 @@ class EmulatedBus(can.BusABC):
             self._check_up()
             if self._inbox:
                 return self._inbox.popleft()
-            if not self._events or self._events[0][0] > deadline:
+            if self._agenda.next > deadline:
                 self._time = deadline
                 self._check_up()
                 return None
@@ -116,21 +101,15 @@ class EmulatedBus(can.BusABC):
         super().shutdown()
 
     def _run_next(self) -> None:
-        when, _, event = heapq.heappop(self._events)
+        when, event = self._agenda.pop()
         self._time = max(self._time, when)
         event()
 
     def _on_wire(
         self, message: can.Message, arrive: Callable[[can.Message], None], *, from_host: bool
     ) -> None:
-        for copy, delay in mangled(message, self._faults, self._time, from_host=from_host):
-            begin = max(self._time + delay, self._free)
-            took = 0.0
-            if self.bitrate is not None:
-                took = bits_on_wire(copy.dlc) / self.bitrate
-            if delay == 0.0:
-                self._free = begin + took
-            self.at(begin + took, lambda arrived=copy: arrive(arrived))  # type: ignore[misc]
+        for copy, when in self._wire.arrivals(message, self._time, from_host=from_host):
+            self.at(when, lambda arrived=copy: arrive(arrived))  # type: ignore[misc]
 
     def _to_devices(self, message: can.Message) -> None:
         for device in self._devices:

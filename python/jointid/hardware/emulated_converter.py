@@ -12,7 +12,7 @@ from jointid.hardware.canopen_frames import SYNC
 from jointid.hardware.torque_source import SensorScaling
 
 if TYPE_CHECKING:
-    from jointid.hardware.emulated_bus import EmulatedBus
+    from jointid.hardware.device import DeviceBus
     from jointid.hardware.emulated_elmo import EmulatedElmo
 
 
@@ -50,10 +50,10 @@ class EmulatedConverter:
         self._levels = 2**bits
         self._lowest, self._highest = lowest, highest
         self._conversions = conversions
-        self._bus: EmulatedBus | None = None
+        self._bus: DeviceBus | None = None
         self.stuck: bytes | None = None
 
-    def attach(self, bus: EmulatedBus) -> None:
+    def attach(self, bus: DeviceBus) -> None:
         """Remember the bus."""
         self._bus = bus
 

@@ -17,7 +17,7 @@ from jointid.hardware.torque_source import SensorScaling
 
 if TYPE_CHECKING:
     from jointid._core import SteppedJoint
-    from jointid.hardware.emulated_bus import EmulatedBus
+    from jointid.hardware.device import DeviceBus
 
 TWO_PI = 2.0 * math.pi
 _PERIOD_OF_GUARDS = 0.5e-3  # [s] between looks at speed and heartbeat
@@ -85,7 +85,7 @@ class EmulatedElmo:
         self.last_error = 0
         self.stuck_encoder: int | None = None
         self.saturated = False
-        self._bus: EmulatedBus | None = None
+        self._bus: DeviceBus | None = None
         self._waiting: deque[Command] = deque()
         self._busy_until = 0.0
         self._time = 0.0
@@ -99,12 +99,12 @@ class EmulatedElmo:
         self.torque_commands: list[tuple[float, float]] = []
 
     @property
-    def bus(self) -> EmulatedBus:
+    def bus(self) -> DeviceBus:
         """The bus that it hangs on."""
         assert self._bus is not None, "attach the drive to a bus"
         return self._bus
 
-    def attach(self, bus: EmulatedBus) -> None:
+    def attach(self, bus: DeviceBus) -> None:
         """Power up: a boot-up message, then guards look at speed and heartbeat."""
         self._bus = bus
         self._send(canopen.heartbeat_id(self.settings.node), b"\x00")
