@@ -25,30 +25,38 @@ class ElmoDecoder:
         self.current = math.nan
         self.position = 0.0
         self.reading = 0.0
-        self.positioned = self.fresh = self.clipped = False
+        self.fresh = self.clipped = False
+        self._positions_due = self._readings_due = 0
 
     def begin(self) -> None:
-        """A SYNC goes out: what comes now is new."""
-        self.positioned = self.fresh = False
+        """A SYNC goes out: what answers it is new."""
+        self._positions_due += 1
+        self._readings_due += 1
+        self.fresh = False
+
+    def forget(self) -> None:
+        """What earlier SYNCs asked for will not come any more."""
+        self._positions_due = self._readings_due = 0
 
     @property
     def complete(self) -> bool:
         """Whether all that a SYNC asks for has come."""
         synced = isinstance(self._options.torque, SyncedConverter)
-        return self.positioned and (self.fresh or not synced)
+        return self._positions_due == 0 and (self._readings_due == 0 or not synced)
 
     def take(self, identifier: int, payload: bytes) -> bool:
         """Read a frame; whether it was one of these."""
         source = self._options.torque
         if identifier == self._options.position_id and len(payload) >= 4:
             self.position = self._options.angle(struct.unpack_from("<i", payload)[0], self._joint)
-            self.positioned = True
+            self._positions_due = max(0, self._positions_due - 1)
             if len(payload) >= 6:
                 share = struct.unpack_from("<h", payload, 4)[0]
                 self.current = share / 1000.0 * self.rated_current
             return True
         if isinstance(source, SyncedConverter) and identifier == source.identifier:
             if len(payload) >= 4:
+                self._readings_due = max(0, self._readings_due - 1)
                 self.take_voltage(source.voltage(payload))
             return True
         return False

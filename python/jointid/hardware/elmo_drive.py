@@ -22,7 +22,8 @@ from jointid.joint.joint import Joint
 
 _BOOT, _ANSWER, _ENABLE = 2.0, 0.2, 3.0  # [s] to wait for each
 Tap = Callable[[float, int, bytes, bool], None]  # time, identifier, payload, whether sent
-_MASTER = 1  # our node, whose heartbeat the drive watches
+_MOST_WAITING = 10_000  # frames; a bus that brings more at once is not read to its end
+_MASTERS = (1, 2)  # our node, whose heartbeat the drive watches: the first that is not the drive's
 
 
 class ElmoDrive:
@@ -35,6 +36,8 @@ class ElmoDrive:
     joint : Joint
         With gear ratio and torque constant.
     options : ElmoOptions
+    clock : Clock, optional
+        Default: the bus's own if it has one, else a `MonotonicClock`.
 
     Raises
     ------
@@ -42,7 +45,14 @@ class ElmoDrive:
         The joint has no torque constant.
     """
 
-    def __init__(self, bus: can.BusABC, joint: Joint, options: ElmoOptions | None = None) -> None:
+    def __init__(
+        self,
+        bus: can.BusABC,
+        joint: Joint,
+        options: ElmoOptions | None = None,
+        *,
+        clock: Clock | None = None,
+    ) -> None:
         if joint.torque_constant is None:
             raise InputError(
                 "ElmoDrive: the joint has no torque_constant, so no torque can be commanded; give it in "
@@ -52,9 +62,17 @@ class ElmoDrive:
         node = self.options.node
         self._bus = bus
         self.tap: Tap | None = None
-        self._clock: Clock = bus if hasattr(bus, "sleep_until") else MonotonicClock()  # type: ignore[assignment]
+        own: Any = bus if hasattr(bus, "sleep_until") else MonotonicClock()
+        self._clock: Clock = own if clock is None else clock
         self._per_ampere = joint.torque_constant * joint.gear_ratio
         self._command_id = self.options.command_id
+        self._master = next(each for each in _MASTERS if each != node)
+        # Some interfaces, e.g. udp_multicast, give us our own frames back.
+        self._ours = {
+            *(canopen.NMT, canopen.SYNC, self._command_id, 0x600 + node),
+            canopen.heartbeat_id(self._master),
+        }
+        self._asked = 0.0
         self._seen = ElmoDecoder(joint, self.options)
         self._replies: dict[tuple[str, int], Reply | DriveError] = {}
         self._answers: list[bytes] = []
@@ -66,7 +84,7 @@ class ElmoDrive:
 
     @property
     def clock(self) -> Clock:
-        """The bus's own clock if it has one, else the machine's."""
+        """What the samples are stamped by."""
         return self._clock
 
     def identity(self) -> dict[str, Any]:
@@ -78,6 +96,7 @@ class ElmoDrive:
         node = self.options.node
         self._up = False
         self._drain(0.01)
+        self._seen.forget()
         self._booted, self._fault = False, None
         self._send(canopen.NMT, canopen.network(canopen.RESET_COMMUNICATION, node))
         self._wait(
@@ -127,16 +146,17 @@ class ElmoDrive:
 
     def read(self, timeout: float) -> DriveSample:
         """Position, current and sensor at a SYNC."""
-        taken = self._clock.now()
+        end = self._clock.now() + timeout
+        self._read_waiting()
+        self._settle(timeout)
+        taken = self._asked = self._clock.now()
         self._seen.begin()
         self._send(canopen.SYNC, b"")
         source = self.options.torque
         if isinstance(source, AnalogInput) and self._cycle % source.every == 0:
             self._send(self._command_id, Command(letters="AN", index=source.number).payload())
         self._cycle += 1
-        self._wait(
-            lambda: self._seen.complete, timeout, "no answer to the SYNC", kind="stale_position"
-        )
+        self._answered(end - taken)
         return DriveSample(
             time=taken,
             position=self._seen.position,
@@ -151,7 +171,7 @@ class ElmoDrive:
         current = max(-self._peak, min(self._peak, torque / self._per_ampere))
         told = struct.unpack("<f", struct.pack("<f", current))[0]
         self._send(self._command_id, Command(letters="TC", value=told).payload())
-        self._send(canopen.heartbeat_id(_MASTER), b"\x05")
+        self._send(canopen.heartbeat_id(self._master), b"\x05")
         return float(told) * self._per_ampere
 
     def disable(self) -> None:
@@ -219,7 +239,7 @@ class ElmoDrive:
         """The drive stops by itself when our heartbeat stays away."""
         allowed = round(1e3 * self.options.heartbeat)
         for index, subindex, value, size in (
-            (0x1016, 1, _MASTER << 16 | allowed, 4),
+            (0x1016, 1, self._master << 16 | allowed, 4),
             (0x6007, 0, 2, 2),
             (0x1029, 1, 1, 1),
             (0x2F21, 0, 0x188, 4),
@@ -277,6 +297,26 @@ class ElmoDrive:
         while self._receive(max(0.0, end - self._clock.now())):
             pass
 
+    def _answered(self, timeout: float) -> None:
+        told = "no answer to the SYNC"
+        self._wait(lambda: self._seen.complete, timeout, told, kind="stale_position")
+
+    def _settle(self, timeout: float) -> None:
+        """Let the last SYNC be answered before the next goes out: an answer does not say whose it is."""
+        if self._seen.complete:
+            return
+        if self._clock.now() - self._asked > self.options.heartbeat:
+            self._seen.forget()  # so late nothing comes any more, and the drive has stopped by itself
+        else:
+            self._answered(timeout)
+
+    def _read_waiting(self) -> None:
+        """What has come since the last cycle, e.g. while the host stood still, is not this one's answer."""
+        for _ in range(_MOST_WAITING):
+            if not self._receive(0.0):
+                break
+        self._raise_fault()
+
     def _receive(self, timeout: float) -> bool:
         try:
             message = self._bus.recv(timeout)
@@ -288,6 +328,8 @@ class ElmoDrive:
             self._fault = DriveFaultError(
                 "bus", f"an error frame (class 0x{message.arbitration_id:X}): bus-off or bad wiring"
             )
+            return True
+        if message.arbitration_id in self._ours:
             return True
         payload = bytes(message.data)
         self._tapped(message.arbitration_id, payload, sent=False)
