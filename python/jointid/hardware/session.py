@@ -15,8 +15,9 @@ import numpy as np
 
 from jointid import _core
 from jointid.errors import InputError
-from jointid.hardware.drive import Drive, DriveFaultError, DriveSample
+from jointid.hardware.drive import Drive, DriveFaultError, DriveSample, check_drive
 from jointid.hardware.limits import Guard, LimitError, SessionLimits, Stop
+from jointid.hardware.realtime import RealTime, RealTimeOptions
 from jointid.hardware.recorder import Recorder
 from jointid.hardware.velocity_estimator import VelocityEstimator
 from jointid.recording.recording import Recording
@@ -61,6 +62,8 @@ class SessionOptions:
         Of the velocity estimator (6.3.1): counts at least, [s] at most.
     resolution : float
         Output angle of an encoder count [rad].
+    answer_timeout : float, optional
+        For the drive's state in a cycle [s]; beyond, the position is stale. Default: half a period.
     """
 
     period: float = 2e-3
@@ -69,6 +72,7 @@ class SessionOptions:
     velocity_counts: int = 5
     velocity_time: float = 0.01
     resolution: float = 2.0 * math.pi / 808_000
+    answer_timeout: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("period", "approach_velocity", "velocity_time", "resolution"):
@@ -77,6 +81,10 @@ class SessionOptions:
                 raise InputError(f"SessionOptions: {name} is {value!r}; more than 0 is expected")
         if not 0.0 <= self.settle < math.inf:
             raise InputError(f"SessionOptions: settle is {self.settle!r}; at least 0 is expected")
+        if self.answer_timeout is not None and not 0.0 < self.answer_timeout < math.inf:
+            raise InputError(
+                f"SessionOptions: answer_timeout is {self.answer_timeout!r}; more than 0 is expected"
+            )
 
 
 class Session:
@@ -98,6 +106,14 @@ class Session:
     observer : callable, optional
         Called with (phase, time, sample, reference, torque) in each cycle; for a console or a plot. What
         it raises stops the session.
+    real_time : RealTimeOptions, optional
+        What to ask of the operating system while the motor is on; what it does not grant is in the
+        recording's metadata. Default: nothing.
+
+    Raises
+    ------
+    InputError
+        The drive lacks a method.
     """
 
     def __init__(
@@ -110,12 +126,15 @@ class Session:
         options: SessionOptions | None = None,
         output: str | Path | None = None,
         observer: Callable[[str, float, DriveSample, float, float], object] | None = None,
+        real_time: RealTimeOptions | None = None,
     ) -> None:
+        check_drive(drive)
         self._drive, self._controller, self._trajectory = drive, controller, trajectory
         self._limits = limits
         self._options = options if options is not None else SessionOptions()
         self._output = None if output is None else Path(output)
         self._observer = observer
+        self._real_time = RealTime(real_time)
         self._phase, self._began = "check", 0.0
         self._rows: list[tuple[float, ...]] = []
         self._late: list[float] = []
@@ -186,7 +205,7 @@ class Session:
                 recorder = Recorder(self._output, self._metadata(), self._output.stem)
                 if hasattr(self._drive, "tap"):
                     self._drive.tap = recorder.frame
-            with _Interruptions(self._interrupted):
+            with _Interruptions(self._interrupted), self._real_time:
                 stop = self._guarded(recorder)
         finally:
             self._drive.disable()
@@ -255,6 +274,7 @@ class Session:
     ) -> None:
         options, clock = self._options, self._drive.clock
         period = options.period
+        timeout = 0.5 * period if options.answer_timeout is None else options.answer_timeout
         count = round(trajectory.duration / period)
         wanted = trajectory.sample(np.arange(count) * period)
         reference, velocity, acceleration = (each.tolist() for each in wanted)
@@ -268,7 +288,7 @@ class Session:
             clock.sleep_until(begin + k * period)
             if self._interrupt is not None:
                 raise LimitError("user", self._interrupt)
-            sample = self._drive.read(0.5 * period)
+            sample = self._drive.read(timeout)
             speed = self._estimate(sample.time, sample.position)
             target = reference[k] + offset
             error = None if open_loop else sample.position - target
@@ -337,6 +357,7 @@ class Session:
             metadata={
                 **self._metadata(),
                 "session": True,
+                "real_time": list(self._real_time.notes),
                 "stop": None if stop is None else str(stop),
                 "timing": {
                     "cycles": len(late),
