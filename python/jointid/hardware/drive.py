@@ -1,6 +1,6 @@
 """What a session asks of a drive. Anything with these methods will do; nothing is inherited.
 
-`docs/hardware.md` shows a whole drive of sixty lines, and in which order a session calls it.
+`docs/hardware.md` shows a whole drive of sixty lines and in which order a session calls it.
 """
 
 from __future__ import annotations
