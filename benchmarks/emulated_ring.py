@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from jointid import AdaptiveRobust
 from jointid.commissioning import commission
 from jointid.files import write_whole
 from jointid.hardware.bench import Bench
@@ -37,6 +38,7 @@ def _coarse(bench: Bench) -> Bench:
 
 
 def _measured(bench: Bench) -> Bench:
+    assert isinstance(bench.controller, AdaptiveRobust)
     return replace(bench, controller=bench.controller.replace(friction_velocity="measured"))
 
 

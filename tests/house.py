@@ -63,6 +63,12 @@ GROUPS: dict[str, Group] = {
         may_use={"core", "recording", "simulation", "analysis", "study"},
         packages={"numpy", "matplotlib"},
     ),
+    # A program of its own that a session starts, so that drawing takes none of the loop's time.
+    "live window": Group(
+        modules={"hardware.live_window"},
+        may_use={"hardware"},
+        packages={"matplotlib"},
+    ),
     "hardware": Group(
         modules={"hardware."},
         may_use={"core", "recording", "simulation"},

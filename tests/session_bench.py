@@ -53,9 +53,11 @@ def session(bus: can.BusABC, duration: float = 1.0, period: float = PERIOD, **mo
     """A session on a bus."""
     within = more.pop("limits", limits())
     wired = more.pop("drive", None)
-    options = SessionOptions(period=period, settle=0.05)
+    follow = more.pop("law", law())
+    timeout = more.pop("answer_timeout", None)
+    options = SessionOptions(period=period, settle=0.05, answer_timeout=timeout)
     return Session(
-        ElmoDrive(bus, JOINT, wired), law(), motion(duration), within, options=options, **more
+        ElmoDrive(bus, JOINT, wired), follow, motion(duration), within, options=options, **more
     )
 
 

@@ -219,7 +219,10 @@ def bench_drive(bench: Bench, *, emulate: bool, seed: int = 0) -> Iterator[Drive
         return
     from jointid.hardware.bus import open_bus
 
-    with open_bus(bench.bus, bench.drive) as bus:
+    where = bench.bus
+    with open_bus(
+        interface=where.interface, channel=where.channel, bitrate=where.bitrate, drive=bench.drive
+    ) as bus:
         yield ElmoDrive(bus, bench.joint, bench.drive)
 
 

@@ -1,13 +1,14 @@
 """A session on a real joint, or an emulated one: drives over CAN, limits, recording. No analysis here.
 
 >>> bench = jid.hardware.Bench.load("joint.toml")
->>> with jid.hardware.open_bus(bench.bus, bench.drive) as bus:
+>>> with jid.hardware.open_bus(interface="socketcan", channel="can0", drive=bench.drive) as bus:
 ...     drive = jid.hardware.ElmoDrive(bus, bench.joint, bench.drive)
 ...     recording = jid.hardware.Session(drive, bench.controller, bench.trajectory, bench.limits).run()
 """
 
 from jointid.hardware.bench import Bench, BusOptions, Emulation
-from jointid.hardware.drive import Drive, DriveFaultError, DriveSample
+from jointid.hardware.bus import open_bus
+from jointid.hardware.drive import Drive, DriveEnd, DriveFaultError, DriveSample
 from jointid.hardware.elmo_codec import Command, DriveError, Reply
 from jointid.hardware.elmo_drive import ElmoDrive
 from jointid.hardware.elmo_options import ElmoOptions
@@ -15,8 +16,12 @@ from jointid.hardware.emulated_bench import emulated_devices, true_joint
 from jointid.hardware.emulated_bus import EmulatedBus
 from jointid.hardware.emulated_converter import EmulatedConverter
 from jointid.hardware.emulated_elmo import ElmoSettings, EmulatedElmo
+from jointid.hardware.emulator_thread import EmulatorThread
 from jointid.hardware.faults import BusFault
 from jointid.hardware.limits import SessionLimits
+from jointid.hardware.live import ConsoleLine
+from jointid.hardware.live_plot import LivePlot
+from jointid.hardware.realtime import RealTimeOptions
 from jointid.hardware.session import (
     Session,
     SessionOptions,
@@ -32,7 +37,9 @@ __all__ = [
     "BusFault",
     "BusOptions",
     "Command",
+    "ConsoleLine",
     "Drive",
+    "DriveEnd",
     "DriveError",
     "DriveFaultError",
     "DriveSample",
@@ -43,6 +50,9 @@ __all__ = [
     "EmulatedConverter",
     "EmulatedElmo",
     "Emulation",
+    "EmulatorThread",
+    "LivePlot",
+    "RealTimeOptions",
     "Reply",
     "SensorScaling",
     "Session",
@@ -53,5 +63,6 @@ __all__ = [
     "Stop",
     "SyncedConverter",
     "emulated_devices",
+    "open_bus",
     "true_joint",
 ]

@@ -1,22 +1,40 @@
-"""What a session asks of a drive. Anything with these methods will do; nothing is inherited."""
+"""What a session asks of a drive. Anything with these methods will do; nothing is inherited.
+
+`docs/hardware.md` shows a whole drive of sixty lines and in which order a session calls it.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from jointid.errors import InputError
 from jointid.hardware.clock import Clock
+
+FAULT_KINDS = (
+    "stale_position",
+    "drive_fault",
+    "emergency",
+    "heartbeat_lost",
+    "bus",
+    "refused",
+)
 
 
 class DriveFaultError(RuntimeError):
     """The drive, or the way to it, has failed; the session stops.
 
+    The only exception that a drive should raise: its kind becomes the name of the stop. Any other stops
+    the session, too, as "error".
+
     Parameters
     ----------
     kind : str
-        "stale_position", "drive_fault", "heartbeat_lost" (the drive's), "host_heartbeat_lost" (ours, so
-        the drive says), "bus".
+        "stale_position": no state within the time allowed; "drive_fault": the drive has shut down or
+        will not obey; "heartbeat_lost": it is not there any more; "host_heartbeat_lost": it says that we are
+        not; "bus": the way to it is broken.
     message : str
+        One sentence: what happened, with the numbers.
     measured, allowed : float, optional
         The number that was beyond a limit, and the limit.
     """
@@ -40,18 +58,20 @@ class DriveSample:
     Attributes
     ----------
     time : float
-        On the session's clock, when the position was taken [s].
+        When the position was taken [s], on the drive's `clock`. The velocity is estimated from it.
     position : float
-        At the output [rad].
+        At the output [rad]. A value that is no number stops the session.
     reading : float
-        Raw, of the torque sensor; the last one when `fresh` is False.
+        Raw, of the torque sensor, in the unit that the joint's `sensor_gain` refers to; the last one when
+        `fresh` is False. Default 0: there is no sensor.
     fresh : bool
+        The reading is of this cycle. Default True.
     clipped : bool
-        The sensor's converter is at the end of its range.
+        The sensor's converter is at the end of its range. Default False.
     current : float
-        Active, in the motor [A]; not a number when the drive does not tell.
+        Active, in the motor [A]. Default: not a number, the drive does not tell.
     torque : float
-        Of that current, at the output [N·m]; not a number when the drive does not tell.
+        Of that current, at the output [N·m]. Default: not a number.
     """
 
     time: float
@@ -80,47 +100,137 @@ class DriveEnd:
 
 
 class Drive(Protocol):
-    """A drive in torque control, at the output side of the gear.
+    """A drive in torque control, seen from the output side of the gear: output angle, output torque.
 
-    A session calls `connect`, `problems`, `enable`, then in each cycle `read` and `command`, and at the
-    end, whatever happened, `disable` and `close`. All of them raise DriveFaultError.
+    A session calls, from one thread:
+
+    1. `bus_load`, `connect`, `problems`, `read`: the check. A reason, or an error, and the motor is never on.
+    2. `enable`, then `read`.
+    3. in each cycle of `period`, first on the way to the start of the trajectory, then along it: `read`,
+       then `command`, waiting for the next cycle with `clock.sleep_until`.
+    4. whatever happened, also when the check failed: `disable`, possibly several times, then `close`.
+
+    All of them may raise DriveFaultError. Torque and position are positive in the same direction.
+    A drive may have an attribute `tap`, None at first: if so, the session sets it to a callable
+    (time [s], identifier, payload, whether sent) for the time of the run, to be called with each frame,
+    for the frame log.
     """
 
     @property
     def clock(self) -> Clock:
-        """The clock that the drive's samples are stamped by."""
+        """The clock that the samples are stamped by and the session is paced by.
+
+        `MonotonicClock()` for a drive that exists, a clock of its own for one on virtual time. It must be
+        the same object, or at least the same time, throughout.
+        """
 
     def connect(self, period: float) -> None:
-        """Bring the drive up, motor off; `period` [s] is that of the cycles to come."""
+        """Bring the drive up, motor off, in torque control.
+
+        Called once, before all but `bus_load`. May take seconds.
+
+        Parameters
+        ----------
+        period : float
+            Of the cycles to come [s]; a watchdog in the drive must not trip within a few of them.
+        """
 
     def problems(self, torque_limit: float) -> list[str]:
-        """What speaks against enabling the motor, in sentences; nothing when all is well."""
+        """What speaks against enabling the motor, in sentences; an empty list when all is well.
+
+        Parameters
+        ----------
+        torque_limit : float
+            The session's, at the output [N·m]; infinite when there is none. A drive whose own limit is
+            higher should say so here.
+        """
 
     def enable(self) -> None:
-        """Motor on, at zero torque."""
+        """Motor on, at zero torque; it is on when this returns. May take seconds."""
 
     def read(self, timeout: float) -> DriveSample:
-        """Ask for the state and wait for it [s]."""
+        """Ask for the state and wait for it.
+
+        The state must be of now: an answer to an earlier question is never one to this.
+
+        Parameters
+        ----------
+        timeout : float
+            [s]; half a period while the motor moves.
+
+        Raises
+        ------
+        DriveFaultError
+            "stale_position": nothing came in time.
+        """
 
     def command(self, torque: float) -> float:
-        """Send a torque [N·m], to be held until the next; return what the drive was told [N·m]."""
+        """Send a torque, to be held until the next one; not to be waited for.
+
+        This is also the drive's sign that the host lives: without it for some periods the drive should
+        stop by itself, as nothing else stops a motor whose host hangs.
+
+        Parameters
+        ----------
+        torque : float
+            At the output [N·m], finite and within the session's limit.
+
+        Returns
+        -------
+        float
+            What the drive was told [N·m], after its own limit and rounding; the recording holds this.
+        """
 
     def disable(self) -> DriveEnd | None:
         """Zero torque, then motor off, at once and whatever fails on the way; then see that it is off.
 
-        Called again when the motor was not seen off. Returns in bounded time, and raises nothing for a
-        bus that fails. None: the drive cannot be asked.
+        Must do no harm to a motor that is off, or to a drive that was never connected. Called again when
+        the motor was not seen off. Returns in bounded time, and raises nothing for a bus that fails.
+
+        Returns
+        -------
+        DriveEnd or None
+            Whether the motor was seen off; None: the drive cannot be asked.
         """
 
     def close(self) -> None:
-        """Leave the drive and the bus as they were found."""
+        """Leave the drive and the bus as they were found. What was opened outside stays open."""
 
     @property
     def command_latency(self) -> float:
-        """From sending a command until the drive acts on it [s]."""
+        """From sending a command until the drive acts on it [s]; 0 when it is not known.
+
+        The recording's torque is the mean over a cycle; this says when in it the command changed.
+        """
 
     def bus_load(self, period: float) -> float:
-        """Share of the bus that a cycle takes."""
+        """Share of the bus that a cycle of `period` [s] takes, 0 to 1; 0 where there is no bus."""
 
     def identity(self) -> dict[str, Any]:
-        """What the drive is, for the recording."""
+        """What the drive is, for the recording: names and values that JSON knows."""
+
+
+_METHODS = (
+    *("connect", "problems", "enable", "read", "command", "disable", "close"),
+    *("bus_load", "identity"),
+)
+_PROPERTIES = ("clock", "command_latency")
+
+
+def check_drive(drive: object) -> None:
+    """See that a drive has all that a session will call.
+
+    Raises
+    ------
+    InputError
+        Names what is missing.
+    """
+    kind = type(drive)
+    missing = [f"{name}()" for name in _METHODS if not callable(getattr(drive, name, None))]
+    # Looked up in the class first: a property of a drive that is not connected may refuse.
+    missing += [name for name in _PROPERTIES if not (hasattr(kind, name) or hasattr(drive, name))]
+    if missing:
+        raise InputError(
+            f"the drive {kind.__name__} lacks {', '.join(missing)}; `jointid.hardware.drive.Drive` says what "
+            "a session asks of a drive"
+        )

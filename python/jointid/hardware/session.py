@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from jointid import _core
-from jointid.hardware.drive import Drive, DriveEnd, DriveFaultError
+from jointid.hardware.drive import Drive, DriveEnd, DriveFaultError, check_drive
 from jointid.hardware.following import Follower, Observer
 from jointid.hardware.guard import Guard
 from jointid.hardware.interruptions import Interruptions
 from jointid.hardware.limits import SessionLimits
+from jointid.hardware.realtime import RealTime, RealTimeOptions
 from jointid.hardware.recorder import Recorder
 from jointid.hardware.session_options import SessionOptions
 from jointid.hardware.start_checks import problems_at_rest, problems_on_paper
@@ -51,6 +52,14 @@ class Session:
     observer : callable, optional
         Called with (phase, time, sample, reference, torque) in each cycle; for a console or a plot. What
         it raises stops the session.
+    real_time : RealTimeOptions, optional
+        What to ask of the operating system while the motor is on; what it does not grant is in the
+        recording's metadata. Default: nothing.
+
+    Raises
+    ------
+    InputError
+        The drive lacks a method.
     """
 
     def __init__(
@@ -63,12 +72,15 @@ class Session:
         options: SessionOptions | None = None,
         output: str | Path | None = None,
         observer: Observer | None = None,
+        real_time: RealTimeOptions | None = None,
     ) -> None:
+        check_drive(drive)
         self._drive, self._controller, self._trajectory = drive, controller, trajectory
         self._limits = limits
         self._options = options if options is not None else SessionOptions()
         self._output = None if output is None else Path(output)
         self._observer = observer
+        self._real_time = RealTime(real_time)
         self._follower: Follower | None = None
         self._end: DriveEnd | None = None
 
@@ -120,7 +132,8 @@ class Session:
                     recorder = Recorder(self._output, self._metadata(), self._output.stem)
                     if hasattr(self._drive, "tap"):
                         self._drive.tap = recorder.frame
-                cause, moment = self._guarded(recorder, interruptions)
+                with self._real_time:
+                    cause, moment = self._guarded(recorder, interruptions)
             finally:
                 self._leave(recorder)
         if cause is None and interruptions.reason is not None:
@@ -266,6 +279,7 @@ class Session:
                 "session": True,
                 "stop": None if stop is None else str(stop),
                 "stopped": None if stop is None else stop.to_dict(),
+                "real_time": list(self._real_time.notes),
                 "motor_off": None if self._end is None else self._end.motor_off,
                 "timing": {
                     "cycles": len(late),

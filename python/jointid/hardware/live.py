@@ -1,0 +1,142 @@
+"""What a session shows while it runs: a line on the console, and several observers at once."""
+
+from __future__ import annotations
+
+import math
+import queue
+import threading
+import time
+from collections.abc import Callable
+from typing import Self, TextIO
+
+from jointid.hardware.drive import DriveSample
+
+Observer = Callable[[str, float, DriveSample, float, float], object]
+_SHORTEST = 0.1  # [s] between two lines
+
+
+class ConsoleLine:
+    """A line of what a session does, redrawn ten times a second at most; a `Session`'s observer.
+
+    On a terminal the line is drawn over; elsewhere, e.g. into a file, a line is written at the begin of each
+    phase and then once a second. A thread does the writing: a terminal that stands still does not hold the
+    motor's loop. Close it, or use it as a context manager, so that the last line is there.
+
+    Parameters
+    ----------
+    stream : text stream
+        E.g. `sys.stderr`.
+    now : callable
+        Where time comes from [s]; for tests. Default `time.monotonic`.
+    """
+
+    def __init__(self, stream: TextIO, *, now: Callable[[], float] = time.monotonic) -> None:
+        self._stream, self._now = stream, now
+        self._terminal = stream.isatty()
+        self._interval = _SHORTEST if self._terminal else 1.0
+        self._due, self._phase = -math.inf, ""
+        self._last: tuple[str, float, DriveSample, float, float] | None = None
+        self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
+        self._thread = threading.Thread(target=self._write, name="console line", daemon=True)
+        self._thread.start()
+
+    def __call__(
+        self, phase: str, when: float, sample: DriveSample, reference: float, torque: float
+    ) -> None:
+        """Take a cycle's values."""
+        self._last = (phase, when, sample, reference, torque)
+        now = self._now()
+        # A new phase is told at once only where it does not flicker.
+        new_phase = phase != self._phase and not self._terminal
+        if now >= self._due or new_phase:
+            self._due, self._phase, self._last = now + self._interval, phase, None
+            self._lines.put(console_line(phase, when, sample, reference, torque))
+
+    def close(self) -> None:
+        """Write the last line, if it has not been."""
+        if not self._thread.is_alive():
+            return
+        if self._last is not None:
+            self._lines.put(console_line(*self._last))
+        self._lines.put(None)
+        self._thread.join()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _write(self) -> None:
+        drawn = 0
+        try:
+            while (line := self._lines.get()) is not None:
+                while (
+                    self._terminal and not self._lines.empty()
+                ):  # only the newest is worth drawing
+                    following = self._lines.get()
+                    if following is None:
+                        self._lines.put(None)
+                        break
+                    line = following
+                if self._terminal:
+                    self._stream.write("\r" + line.ljust(drawn))
+                    drawn = len(line)
+                else:
+                    self._stream.write(line + "\n")
+                self._stream.flush()
+            if self._terminal and drawn:
+                self._stream.write("\n")
+                self._stream.flush()
+        except (OSError, ValueError):
+            return  # a console that has gone is no reason to stop a motor
+
+
+class Observers:
+    """Several observers as one; closing closes those that can be closed.
+
+    Parameters
+    ----------
+    observers : callable
+    """
+
+    def __init__(self, *observers: Observer) -> None:
+        self._observers = observers
+
+    def __call__(
+        self, phase: str, when: float, sample: DriveSample, reference: float, torque: float
+    ) -> None:
+        """Tell all of them."""
+        for observer in self._observers:
+            observer(phase, when, sample, reference, torque)
+
+    def close(self) -> None:
+        """Close them, each whatever the others raise."""
+        failures: list[Exception] = []
+        for observer in self._observers:
+            close = getattr(observer, "close", None)
+            try:
+                if close is not None:
+                    close()
+            except Exception as error:
+                failures.append(error)
+        if failures:
+            raise failures[0]
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def console_line(
+    phase: str, when: float, sample: DriveSample, reference: float, torque: float
+) -> str:
+    """The line of a cycle: phase, time [s], position and its error [°], torque [N·m], sensor."""
+    error = math.degrees(sample.position - reference)
+    sensor = "clipped" if sample.clipped else f"{sample.reading:7.1f}"
+    return (
+        f"{phase:<6} {when:7.2f} s  position {math.degrees(sample.position):8.3f}°  "
+        f"error {error:+8.4f}°  torque {torque:+8.2f} N·m  sensor {sensor}"
+    )

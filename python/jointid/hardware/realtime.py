@@ -1,0 +1,207 @@
+"""What the operating system can do for a loop that must be in time; asked for, and put back afterwards."""
+
+from __future__ import annotations
+
+import ctypes
+import gc
+import math
+import os
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Self
+
+from jointid.errors import InputError
+
+_LOCK_CURRENT, _LOCK_FUTURE = 1, 2  # MCL_*
+_SET_TIMER_SLACK, _GET_TIMER_SLACK = 29, 30  # PR_*
+_HIGHEST_PRIORITY = 99
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RealTimeOptions:
+    """What to ask of the operating system for the time of a session; by default nothing.
+
+    Attributes
+    ----------
+    priority : int, optional
+        Of SCHED_FIFO, 1 to 99; 70 to 80 is usual. Needs CAP_SYS_NICE or `ulimit -r`.
+    lock_memory : bool
+        Keep all memory out of the swap. Needs CAP_IPC_LOCK or `ulimit -l unlimited`.
+    cpus : tuple of int, optional
+        Processors that the loop may run on.
+    timer_slack : float, optional
+        By which sleeps may be drawn out [s]; Linux takes 50e-6 unless asked.
+    freeze_garbage : bool
+        No search for garbage while the session runs.
+    """
+
+    priority: int | None = None
+    lock_memory: bool = False
+    cpus: tuple[int, ...] | None = None
+    timer_slack: float | None = None
+    freeze_garbage: bool = False
+
+    def __post_init__(self) -> None:
+        if self.priority is not None and not 1 <= self.priority <= _HIGHEST_PRIORITY:
+            raise InputError(
+                f"RealTimeOptions: priority is {self.priority!r}; 1 to {_HIGHEST_PRIORITY} is expected"
+            )
+        if self.cpus is not None and (not self.cpus or min(self.cpus) < 0):
+            raise InputError(
+                f"RealTimeOptions: cpus is {self.cpus!r}; numbers of processors from 0 on are expected"
+            )
+        slack = self.timer_slack
+        if slack is not None and not (math.isfinite(slack) and 1e-9 <= slack <= 1.0):
+            raise InputError(f"RealTimeOptions: timer_slack is {slack!r}; 1e-9 to 1 s is expected")
+
+
+class RealTime:
+    """Asks for what the options say and puts everything back; a context manager for one thread.
+
+    What is not granted is no error: the session runs, and `notes` says in words what is missing. Threads
+    begun meanwhile do not inherit the priority; they do inherit `cpus`, so begin a writer before.
+
+    Parameters
+    ----------
+    options : RealTimeOptions, optional
+        Default: nothing is asked for.
+
+    Attributes
+    ----------
+    notes : list of str
+        What was not granted, and why.
+    """
+
+    def __init__(self, options: RealTimeOptions | None = None) -> None:
+        self.options = options if options is not None else RealTimeOptions()
+        self.notes: list[str] = []
+        self._undo: list[Callable[[], object]] = []
+
+    def __enter__(self) -> Self:
+        self.notes.clear()
+        options = self.options
+        for name, asked, step in (
+            ("priority", options.priority is not None, self._raise_priority),
+            ("lock_memory", options.lock_memory, self._lock_memory),
+            ("cpus", options.cpus is not None, self._bind),
+            ("timer_slack", options.timer_slack is not None, self._sharpen_timer),
+        ):
+            if not asked:
+                continue
+            if not sys.platform.startswith("linux"):
+                self.notes.append(f"{name}: only on Linux, this is {sys.platform}")
+                continue
+            try:
+                step()
+            except OSError as error:
+                self.notes.append(f"{name}: {_hint(name, error)}")
+        if options.freeze_garbage:
+            self._freeze_garbage()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        while self._undo:
+            try:
+                self._undo.pop()()
+            except OSError as error:
+                self.notes.append(f"not put back: {error}")
+
+    def _raise_priority(self) -> None:
+        assert self.options.priority is not None
+        policy, parameter = os.sched_getscheduler(0), os.sched_getparam(0)
+        os.sched_setscheduler(
+            0,
+            os.SCHED_FIFO | os.SCHED_RESET_ON_FORK,
+            os.sched_param(self.options.priority),
+        )
+
+        def put_back() -> None:
+            try:
+                os.sched_setscheduler(0, policy, parameter)
+            except PermissionError:  # who may have the flag set may not have it cleared
+                os.sched_setscheduler(0, policy | os.SCHED_RESET_ON_FORK, parameter)
+
+        self._undo.append(put_back)
+
+    def _lock_memory(self) -> None:
+        import resource  # not on every platform
+
+        # Under a limit, memory asked for later would be refused, and the session with it.
+        allowed = resource.getrlimit(resource.RLIMIT_MEMLOCK)[0]
+        if allowed != resource.RLIM_INFINITY and not _may_lock():
+            raise PermissionError(0, f"the limit is {allowed // 1024} kB")
+        before = _locked_memory()
+        _checked(_libc().mlockall(_LOCK_CURRENT | _LOCK_FUTURE))
+        if not before:
+            self._undo.append(lambda: _checked(_libc().munlockall()))
+
+    def _bind(self) -> None:
+        assert self.options.cpus is not None
+        before = os.sched_getaffinity(0)
+        os.sched_setaffinity(0, self.options.cpus)
+        self._undo.append(lambda: os.sched_setaffinity(0, before))
+
+    def _sharpen_timer(self) -> None:
+        assert self.options.timer_slack is not None
+        before = _control(_GET_TIMER_SLACK, 0)
+        _control(_SET_TIMER_SLACK, round(1e9 * self.options.timer_slack))
+        self._undo.append(lambda: _control(_SET_TIMER_SLACK, before))
+
+    def _freeze_garbage(self) -> None:
+        enabled, frozen = gc.isenabled(), gc.get_freeze_count()
+        gc.collect()
+        gc.freeze()
+        gc.disable()
+        if enabled:
+            self._undo.append(gc.enable)
+        if not frozen:
+            self._undo.append(gc.unfreeze)
+
+
+def _libc() -> Any:
+    return ctypes.CDLL(None, use_errno=True)
+
+
+def _checked(result: int) -> int:
+    if result < 0:
+        code = ctypes.get_errno()
+        raise OSError(code, os.strerror(code))
+    return result
+
+
+def _control(option: int, value: int) -> int:
+    zero = ctypes.c_ulong(0)
+    return _checked(_libc().prctl(option, ctypes.c_ulong(value), zero, zero, zero))
+
+
+def _status(name: str) -> str:
+    for line in Path("/proc/self/status").read_text().splitlines():
+        if line.startswith(name + ":"):
+            return line.split()[1]
+    return "0"
+
+
+def _locked_memory() -> int:
+    """Of this process [kB]."""
+    return int(_status("VmLck"))
+
+
+def _may_lock() -> bool:
+    lock_capability = 14  # CAP_IPC_LOCK
+    return bool(int(_status("CapEff"), 16) >> lock_capability & 1)
+
+
+def _hint(name: str, error: OSError) -> str:
+    ways = {
+        "priority": "a line `@realtime - rtprio 99` in /etc/security/limits.conf permits it",
+        "lock_memory": "a line `@realtime - memlock unlimited` in /etc/security/limits.conf permits it",
+        "cpus": f"this machine has processors {_spans(os.cpu_count() or 1)}",
+        "timer_slack": "the kernel refused",
+    }
+    return f"not granted ({error.strerror or error}); {ways[name]}"
+
+
+def _spans(count: int) -> str:
+    return "0" if count == 1 else f"0 to {count - 1}"

@@ -1,0 +1,168 @@
+"""A bus opened for a session: the frames it needs, and one clear sentence when it cannot be opened."""
+
+import sys
+from pathlib import Path
+
+import can
+import pytest
+
+from jointid.errors import InputError
+from jointid.hardware import bus as bus_module
+from jointid.hardware.bus import needed_identifiers, open_bus
+from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.torque_source import AnalogInput, SyncedConverter
+
+
+def test_a_bus_carries_frames_and_is_shut_down() -> None:
+    with (
+        open_bus(interface="virtual", channel="carries") as bus,
+        can.Bus("carries", interface="virtual") as other,
+    ):
+        other.send(can.Message(arbitration_id=0x4FF, data=b"abcd", is_extended_id=False))
+        message = bus.recv(5.0)
+        assert message is not None
+        assert bytes(message.data) == b"abcd"
+    with pytest.raises(can.CanOperationError):
+        bus.recv(0.0)
+
+
+def test_a_bus_is_shut_down_after_an_error_too() -> None:
+    with (
+        pytest.raises(ZeroDivisionError),
+        open_bus(interface="virtual", channel="errs") as bus,
+    ):
+        raise ZeroDivisionError
+    with pytest.raises(can.CanOperationError):
+        bus.send(can.Message())
+
+
+@pytest.mark.parametrize(
+    ("options", "identifiers"),
+    [
+        (ElmoOptions(), {0x2FF, 0x4FF, 0x0FF, 0x77F, 0x5FF, 0x1C0}),
+        (
+            ElmoOptions(node=5, torque=SyncedConverter(identifier=0x123)),
+            {0x285, 0x485, 0x085, 0x705, 0x585, 0x123},
+        ),
+        (
+            ElmoOptions(node=5, torque=AnalogInput(), cob_reply=0x4FE, cob_position=0x4FD),
+            {0x4FE, 0x4FD, 0x085, 0x705, 0x585},
+        ),
+    ],
+)
+def test_the_frames_a_session_needs(options: ElmoOptions, identifiers: set[int]) -> None:
+    assert set(needed_identifiers(options)) == identifiers
+
+
+def network(folder: Path, flags: str) -> None:
+    (folder / "can0").mkdir()
+    (folder / "can0" / "flags").write_text(flags)
+
+
+def test_socketcan_gets_a_filter_for_each_identifier(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    network(tmp_path, "0x40081\n")
+    monkeypatch.setattr(bus_module, "_NETWORKS", tmp_path)
+    opened: dict[str, object] = {}
+
+    class Opened:
+        def __init__(self, channel: str, **settings: object) -> None:
+            opened.update(settings, channel=channel)
+
+        def shutdown(self) -> None:
+            opened["shut"] = True
+
+    monkeypatch.setattr(can, "Bus", Opened)
+    with open_bus(node=3):
+        assert "shut" not in opened
+    filters = [
+        {"can_id": identifier, "can_mask": 0x7FF, "extended": False}
+        for identifier in sorted({0x283, 0x483, 0x083, 0x703, 0x583, 0x1C0})
+    ]
+    assert opened == {
+        "channel": "can0",
+        "interface": "socketcan",
+        "can_filters": filters,
+        "shut": True,
+    }
+
+
+@pytest.mark.parametrize(
+    ("settings", "told"),
+    [
+        (
+            {"interface": "emulated"},
+            "is not a bus of python-can's: an emulated bench is an EmulatedBus",
+        ),
+        (
+            {"interface": "sockercan"},
+            "interface 'sockercan' is unknown; one of .*socketcan.* is expected",
+        ),
+        ({"interface": "virtual", "channel": ""}, "the channel is missing"),
+        ({"interface": "virtual", "channel": None}, "the channel is missing"),
+        ({"bitrate": 500}, "bitrate is 500; 10 000 to 1 000 000 bit/s is expected"),
+        ({"node": 3, "drive": ElmoOptions()}, "give node or drive, not both"),
+        ({"node": 0}, "node is 0; 1 to 127 is expected"),
+        (
+            {"interface": "ixxat", "channel": "x"},
+            "interface 'ixxat', channel 'x': it cannot be opened",
+        ),
+    ],
+)
+def test_what_cannot_be_opened_is_refused_in_one_sentence(
+    settings: dict[str, object], told: str
+) -> None:
+    with pytest.raises(InputError, match=told) as refused, open_bus(**settings):  # type: ignore[arg-type]
+        pass
+    assert "\n" not in str(refused.value)
+
+
+def test_a_network_that_is_not_there_or_down_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(bus_module, "_NETWORKS", tmp_path)
+    with pytest.raises(InputError, match="'can0': there is no such network"), open_bus():
+        pass
+    network(tmp_path, "0x40080\n")
+    with (
+        pytest.raises(
+            InputError, match=r"down; .*`sudo ip link set can0 up type can bitrate 250000`"
+        ),
+        open_bus(bitrate=250_000),
+    ):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("error", "told"),
+    [
+        (
+            OSError(97, "Address family not supported by protocol"),
+            "this machine's kernel has no CAN",
+        ),
+        (OSError(19, "No such device"), "there is no such channel"),
+        (PermissionError(13, "Permission denied"), "not permitted"),
+        (can.CanInitializationError("no adapter\nfound"), "it cannot be opened: no adapter found"),
+    ],
+)
+def test_the_systems_words_become_a_sentence(
+    error: Exception, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    network(tmp_path, "0x1\n")
+    monkeypatch.setattr(bus_module, "_NETWORKS", tmp_path)
+
+    def refuse(*_: object, **__: object) -> None:
+        raise error
+
+    monkeypatch.setattr(can, "Bus", refuse)
+    with pytest.raises(InputError, match=told) as refused, open_bus():
+        pass
+    assert "\n" not in str(refused.value)
+    assert refused.value.__cause__ is error
+
+
+def test_without_python_can_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "can", None)
+    with pytest.raises(InputError, match="pip install python-can"), open_bus():
+        pass
