@@ -234,7 +234,8 @@ class ElmoLink:
                 self._note("drive_fault", str(error))
             return
         except InputError as error:
-            self._note("drive_fault", f"an unreadable reply: {error}")
+            kind = "sensor" if payload[:2] == b"AN" else "drive_fault"
+            self._note(kind, f"an unreadable reply: {error}")
             return
         if reply.letters == "AN":
             self._seen.take_voltage(float(reply.value))

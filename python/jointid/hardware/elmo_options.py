@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from jointid.errors import InputError
 from jointid.hardware.torque_source import AnalogInput, SyncedConverter
@@ -48,7 +48,7 @@ class ElmoOptions:
     heartbeat: float = 0.05
     drive_heartbeat: float = 0.02
     acknowledge: bool = False
-    torque: SyncedConverter | AnalogInput | None = SyncedConverter()
+    torque: SyncedConverter | AnalogInput | None = field(default_factory=SyncedConverter)
     bitrate: float = 500_000.0
     execution_delay: float = 0.3e-3
 

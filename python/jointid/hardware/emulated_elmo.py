@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import struct
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import can
@@ -58,7 +58,7 @@ class ElmoSettings:
     idle_loop: float = 0.3e-3
     mantissa_bits: int = 24
     position_offset: float = 0.0
-    analog: SensorScaling = SensorScaling()
+    analog: SensorScaling = field(default_factory=SensorScaling)
 
 
 class EmulatedElmo:
@@ -85,6 +85,7 @@ class EmulatedElmo:
         self.problem = 0  # of the power stage, as SR tells it
         # Faults on demand; set them at a time with the bus's `at`.
         self.stuck_encoder: int | None = None
+        self.slipped_counts = 0
         self.fixed_unit_mode: int | None = None
         self.stage_gain = 1.0
         self.stuck_voltage: float | None = None
@@ -148,7 +149,7 @@ class EmulatedElmo:
             return self.stuck_encoder
         angle = self.joint.position - self.settings.position_offset
         per_turn = self.settings.counts_per_turn * self.settings.gear_ratio
-        return math.floor(angle / TWO_PI * per_turn)
+        return math.floor(angle / TWO_PI * per_turn) + self.slipped_counts
 
     def speed(self) -> int:
         """Of the motor [counts/s]."""
