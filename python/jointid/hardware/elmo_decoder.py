@@ -68,6 +68,6 @@ class ElmoDecoder:
         if source is None:
             return
         self.reading = source.scaling.reading(voltage, self.position)
-        self.clipped = isinstance(source, SyncedConverter) and source.clipped(voltage)
+        self.clipped = source.clipped(voltage)
         self.fresh = True
         self.readings += 1

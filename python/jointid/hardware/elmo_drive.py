@@ -70,7 +70,7 @@ class ElmoDrive:
         self._heartbeat_id = canopen.heartbeat_id(self._link.master)
         self._asked = 0.0
         self._cycle = 0
-        self._read = self._unread = 0
+        self._read = self._unread = self._unheard = 0
         self._period = 0.002
         self._found_off = self._seen_off = False
         self._failure = ""
@@ -104,12 +104,13 @@ class ElmoDrive:
         self._period = period
         self._found_off = self._seen_off = link.up = False
         self._failure = ""
-        self._read = self._unread = -1
+        self._read = self._unheard = self._seen.readings
+        self._unread = -1
         link.drain(0.01)
         self._seen.forget()
         self._leave_strangers(_STRANGER)
         link.booted = False
-        link.forget_fault()
+        link.forget_fault(but="bus")
         link.send(canopen.NMT, canopen.network(canopen.RESET_COMMUNICATION, node))
         link.wait(
             lambda: link.booted, _BOOT, "no boot-up message: is the drive on, is its node right?"
@@ -302,8 +303,11 @@ class ElmoDrive:
             )
 
     def _answered(self, timeout: float) -> None:
-        told = "no answer to the SYNC"
-        self._link.wait(lambda: self._seen.complete, timeout, told, kind="stale_position")
+        seen, told = self._seen, "no answer to the SYNC"
+        self._link.wait(lambda: seen.complete, timeout, told, kind="stale_position")
+        if isinstance(self.options.torque, AnalogInput) and seen.readings == self._unheard:
+            told = "no reply to AN"
+            self._link.wait(lambda: seen.readings > self._unheard, timeout, told, kind="sensor")
 
     def _settle(self, timeout: float) -> None:
         """Let the last SYNC be answered before the next goes out: an answer does not say whose it is."""

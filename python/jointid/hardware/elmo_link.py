@@ -182,9 +182,10 @@ class ElmoLink:
                 break
         self.raise_fault()
 
-    def forget_fault(self) -> None:
-        """What was wrong is known, or was before our time."""
-        self._fault = None
+    def forget_fault(self, but: str = "") -> None:
+        """What was wrong is known, or was before our time; one of the kind `but` is kept."""
+        if self._fault is not None and self._fault.kind != but:
+            self._fault = None
 
     def raise_fault(self) -> None:
         """Raise the first fault that was heard of, once."""

@@ -81,7 +81,7 @@ class SyncedConverter:
                 f"a converter's frame of {len(payload)} bytes; at least 4 are expected"
             )
         total = float(struct.unpack_from("<i", payload)[0])
-        share = (total + 0.5) / self.conversions / 2**self.bits
+        share = (total + 0.5) / self.conversions / float(2**self.bits)
         return self.lowest + share * (self.highest - self.lowest)
 
     def clipped(self, voltage: float) -> bool:
@@ -100,11 +100,15 @@ class AnalogInput:
         1 or 2: AN[number].
     every : int
         Control cycles between two questions; each cycle would load bus and drive too much.
+    lowest, highest : float
+        Of the input [V].
     scaling : SensorScaling
     """
 
     number: int = 1
     every: int = 4
+    lowest: float = -10.0
+    highest: float = 10.0
     scaling: SensorScaling = SensorScaling()
 
     def __post_init__(self) -> None:
@@ -112,3 +116,12 @@ class AnalogInput:
             raise InputError(f"AnalogInput: number is {self.number!r}; 1 or 2 is expected")
         if not 1 <= self.every <= 1000:
             raise InputError(f"AnalogInput: every is {self.every!r}; 1 to 1000 is expected")
+        if not self.lowest < self.highest:
+            raise InputError(
+                f"AnalogInput: lowest is {self.lowest!r} V; less than highest, {self.highest!r} V, is expected"
+            )
+
+    def clipped(self, voltage: float) -> bool:
+        """Whether it is at the end of its range."""
+        margin = 1e-3 * (self.highest - self.lowest)
+        return not self.lowest + margin < voltage < self.highest - margin
