@@ -362,7 +362,7 @@ CASES = (
          faults=_bus("drop", COMMAND, stop=BEGIN + 1.9 * PERIOD), says="late"),
     Case(name="error frame, off the bus for 3 ms", stop="bus", says="error frame",
          faults=_bus("bus_off", None, stop=BEGIN + 1.5 * PERIOD)),
-    Case(name="bus off", stop="bus", faults=_bus("bus_off", None), says="bus-off",
+    Case(name="bus off", stop="bus", faults=_bus("bus_off", None), says="bus-off:",
          reachable=False, heard=False),
     Case(name="interface down", stop="bus", faults=_bus("down", None), says="down",
          reachable=False, heard=False),

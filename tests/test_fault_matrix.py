@@ -124,3 +124,27 @@ def test_cases_are_the_same_to_the_bit_each_time() -> None:
     assert once.stop == again.stop
     assert once.bench.bus.tried == again.bench.bus.tried
     assert np.array_equal(once.recording.position, again.recording.position)
+
+
+def test_drive_stops_by_itself_when_the_host_is_killed() -> None:
+    bench = EmulatedSession()
+
+    class Killed(BaseException):
+        pass
+
+    def watch(*_: object) -> None:
+        if bench.bus.now() >= BEGIN:
+            raise Killed
+
+    bench.observer = watch
+    bench.drive.disable = lambda: None  # type: ignore[method-assign,assignment,return-value]
+    bench.drive.close = lambda: None  # type: ignore[method-assign]
+    with pytest.raises(Killed):
+        bench.session().run()
+    killed = bench.bus.now()
+    assert bench.elmo.motor_on
+    bench.bus.sleep_until(killed + WATCHDOG - 2 * PERIOD)
+    assert bench.elmo.motor_on
+    bench.bus.sleep_until(killed + WATCHDOG + LOOK + PERIOD)  # the last heartbeat was on its way
+    assert not bench.elmo.motor_on
+    assert bench.elmo.failure == 0x800

@@ -1,12 +1,14 @@
 """Each limit of a session at its edge: what is allowed, what is one step too much, and by how much."""
 
 import math
+import re
 from dataclasses import fields, replace
 from typing import Any
 
 import pytest
 
 import jointid as jid
+from jointid.hardware.bus_errors import error_frame_meaning
 from jointid.hardware.drive import DriveSample
 from jointid.hardware.elmo_options import ElmoOptions
 from jointid.hardware.faults import BusFault, drive_failure
@@ -155,16 +157,26 @@ def test_measured_torque_beyond_the_limit() -> None:
 def test_measured_torque_that_stays_away_from_the_command() -> None:
     watched = guard()
     watched.told(60.0)
-    for _ in range(3):
-        for _ in range(9):
-            watched.measured(sample(torque=34.9), 0.0, 0.0)
+    for _ in range(100):
         watched.measured(sample(torque=35.0), 0.0, 0.0)  # a quarter of 100 N·m off is allowed
-    for _ in range(9):
-        watched.measured(sample(torque=34.9), 0.0, 0.0)
-    error = stopped(lambda: watched.measured(sample(torque=34.9), 0.0, 0.0))
+    for torque in (60.0, 10.0) * 50:
+        watched.measured(sample(torque=torque), 0.0, 0.0)  # in the mean it is no more
+    for torque in (60.0,) * 10 + (35.0,) * 10:
+        watched.measured(sample(torque=torque), 0.0, 0.0)
+    error = stopped(lambda: watched.measured(sample(torque=34.0), 0.0, 0.0))
     assert error.limit == "torque_difference"
     assert error.measured == pytest.approx(25.1)
     assert error.allowed == 25.0
+
+
+def test_drive_that_is_a_cycle_behind_is_no_fault() -> None:
+    watched = guard()
+    felt = 0.0
+    for cycle in range(200):
+        torque = 90.0 * (-1.0) ** cycle  # chatter
+        watched.measured(sample(torque=felt), 0.0, 0.0)
+        felt = -torque
+        watched.told(torque)
 
 
 def test_drive_that_tells_no_current_is_not_held_to_one() -> None:
@@ -172,6 +184,20 @@ def test_drive_that_tells_no_current_is_not_held_to_one() -> None:
     watched.told(100.0)
     for _ in range(50):
         watched.measured(sample(), 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("classes", "meaning"),
+    [
+        (0x40, "bus-off"),
+        (0x20, "nobody acknowledges"),
+        (0x44, "controller in trouble.*bus-off"),
+        (0x2000, "unknown class 0x2000"),
+        (0x02, "^$"),
+    ],
+)
+def test_error_frames_in_words(classes: int, meaning: str) -> None:
+    assert re.search(meaning, error_frame_meaning(classes))
 
 
 @pytest.mark.parametrize("name", [f.name for f in fields(SessionLimits) if f.name != "position"])

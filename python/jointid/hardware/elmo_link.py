@@ -9,6 +9,7 @@ import can
 
 from jointid.errors import InputError
 from jointid.hardware import canopen_frames as canopen
+from jointid.hardware.bus_errors import error_frame_meaning
 from jointid.hardware.clock import Clock, MonotonicClock
 from jointid.hardware.drive import DriveFaultError
 from jointid.hardware.elmo_codec import Command, DriveError, Reply
@@ -202,8 +203,9 @@ class ElmoLink:
         if message is None:
             return False
         if message.is_error_frame:
-            kind = message.arbitration_id
-            self._note("bus", f"an error frame (class 0x{kind:X}): bus-off or bad wiring")
+            meaning = error_frame_meaning(message.arbitration_id)
+            if meaning:
+                self._note("bus", f"an error frame of the CAN controller: {meaning}")
             return True
         if message.arbitration_id in self._ours:
             return True
