@@ -59,7 +59,7 @@ def test_fault_stops_the_session_and_the_motor(case: Case, tmp_path: Path) -> No
     assert stop.limit in row(case.name, found)
 
 
-def test_every_limit_has_a_case() -> None:
+def test_every_limit_has_a_case_and_a_line_in_the_documentation(repo: Path) -> None:
     stops = {case.stop for case in CASES}
     limits = set(SessionLimits.__slots__)
     assert limits <= stops
@@ -67,6 +67,9 @@ def test_every_limit_has_a_case() -> None:
         *("stale_position", "drive_fault", "heartbeat_lost", "host_heartbeat_lost"),
         *("bus", "sensor", "user"),
     }
+    lines = (repo / "docs" / "hardware_limits.md").read_text(encoding="utf-8").splitlines()
+    told = {line.split("`")[1] for line in lines if line.startswith("| `")}
+    assert told - {"stop.limit"} == stops | {"error"}
 
 
 @pytest.mark.parametrize("kind", sorted(set(DRIVE_FAILURES) - {"host heartbeat lost"}))
