@@ -81,12 +81,12 @@ class SyncedConverter:
                 f"a converter's frame of {len(payload)} bytes; at least 4 are expected"
             )
         total = float(struct.unpack_from("<i", payload)[0])
-        share = (total + 0.5) / self.conversions / float(2**self.bits)
+        share = (total + 0.5) / self.conversions / (1 << self.bits)
         return self.lowest + share * (self.highest - self.lowest)
 
     def clipped(self, voltage: float) -> bool:
         """Whether it is at the end of its range."""
-        step = (self.highest - self.lowest) / 2**self.bits
+        step = (self.highest - self.lowest) / (1 << self.bits)
         return not self.lowest + 2.0 * step < voltage < self.highest - 2.0 * step
 
 
@@ -98,17 +98,17 @@ class AnalogInput:
     ----------
     number : int
         1 or 2: AN[number].
-    every : int
-        Control cycles between two questions; each cycle would load bus and drive too much.
     lowest, highest : float
         Of the input [V].
+    every : int
+        Control cycles between two questions; each cycle would load bus and drive too much.
     scaling : SensorScaling
     """
 
     number: int = 1
-    every: int = 4
     lowest: float = -10.0
     highest: float = 10.0
+    every: int = 4
     scaling: SensorScaling = SensorScaling()
 
     def __post_init__(self) -> None:
