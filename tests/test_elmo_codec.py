@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 import jointid as jid
@@ -110,6 +110,7 @@ def _decoded(decode: Any, payload: bytes) -> tuple[Any, DriveError | None, Excep
     | st.integers(-(2**31), 2**31 - 1)
     | st.floats(width=32, allow_nan=False, allow_infinity=False),
 )
+@example(letters="TC", index=0, value=3.4028234663852886e38)
 def test_every_command_comes_back(letters: str, index: int, value: int | float | None) -> None:
     command = Command(letters=letters, index=index, value=value)
     assert Command.of(command.payload()) == command

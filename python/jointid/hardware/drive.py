@@ -32,7 +32,7 @@ class DriveFaultError(RuntimeError):
     kind : str
         "stale_position": no state within the time allowed; "drive_fault": the drive has shut down or
         will not obey; "heartbeat_lost": it is not there any more; "host_heartbeat_lost": it says that we are
-        not; "bus": the way to it is broken.
+        not; "bus": the way to it is broken; "sensor": what is read of it is no number.
     message : str
         One sentence: what happened, with the numbers.
     measured, allowed : float, optional

@@ -16,6 +16,7 @@ from jointid.hardware.elmo_errors import error_meaning
 
 _QUERY_OR_ERROR, _FLOAT = 0x40, 0x80
 _LARGEST_INDEX = 0x3FFF
+_LARGEST_FLOAT = float(struct.unpack("<f", b"\xff\xff\x7f\x7f")[0])
 _LETTERS = re.compile(r"[A-Z]{2}")
 # Commands that act instead of assigning: sent without a value.
 EXECUTED = frozenset({"BG", "ST", "BT", "HX", "KL", "LD", "RS", "SV", "XC", "XQ"})
@@ -191,7 +192,7 @@ def _check_value(named: str, value: object) -> None:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise InputError(f"{named}: the value is {value!r}; an int or a float is expected")
     if isinstance(value, float):
-        if not math.isfinite(value) or abs(value) > 3.4028234e38:
+        if not math.isfinite(value) or abs(value) > _LARGEST_FLOAT:
             raise InputError(f"{named}: the value is {value!r}; a finite 32-bit float is expected")
     elif not -(2**31) <= value < 2**31:
         raise InputError(f"{named}: the value is {value}; a 32-bit integer is expected")

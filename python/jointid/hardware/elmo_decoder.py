@@ -26,6 +26,7 @@ class ElmoDecoder:
         self.position = 0.0
         self.reading = 0.0
         self.fresh = self.clipped = False
+        self.readings = 0  # that have come
         self._positions_due = self._readings_due = 0
 
     def begin(self) -> None:
@@ -67,5 +68,6 @@ class ElmoDecoder:
         if source is None:
             return
         self.reading = source.scaling.reading(voltage, self.position)
-        self.clipped = isinstance(source, SyncedConverter) and source.clipped(voltage)
+        self.clipped = source.clipped(voltage)
         self.fresh = True
+        self.readings += 1

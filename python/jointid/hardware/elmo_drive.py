@@ -24,6 +24,8 @@ from jointid.joint.joint import Joint
 _BOOT, _ENABLE = 2.0, 3.0  # [s] to wait for each
 _STRANGER = 0.02  # [s] for an answer before the drive is reset: only one that is in use gives one
 _SEEN_OFF = 0.2  # [s] that switching off is tried for, at most
+_SOON = 3  # times that switching off is repeated in the next cycle
+_UNREAD = 3  # questions for the sensor without an answer
 _ZERO, _OFF = Command(letters="TC", value=0.0), Command(letters="MO", value=0)
 _IN_USE = "the motor is on already; something else commands the drive, switch it off there"
 
@@ -68,6 +70,7 @@ class ElmoDrive:
         self._heartbeat_id = canopen.heartbeat_id(self._link.master)
         self._asked = 0.0
         self._cycle = 0
+        self._read = self._unread = self._unheard = 0
         self._period = 0.002
         self._found_off = self._seen_off = False
         self._failure = ""
@@ -101,11 +104,13 @@ class ElmoDrive:
         self._period = period
         self._found_off = self._seen_off = link.up = False
         self._failure = ""
+        self._read = self._unheard = self._seen.readings
+        self._unread = -1
         link.drain(0.01)
         self._seen.forget()
         self._leave_strangers(_STRANGER)
         link.booted = False
-        link.forget_fault()
+        link.forget_fault(but="bus")
         link.send(canopen.NMT, canopen.network(canopen.RESET_COMMUNICATION, node))
         link.wait(
             lambda: link.booted, _BOOT, "no boot-up message: is the drive on, is its node right?"
@@ -172,7 +177,7 @@ class ElmoDrive:
         link.send(canopen.SYNC, b"")
         source = self.options.torque
         if isinstance(source, AnalogInput) and self._cycle % source.every == 0:
-            link.command(Command(letters="AN", index=source.number))
+            self._ask_analog(source)
         self._cycle += 1
         self._answered(end - taken)
         self._look_alive()
@@ -205,13 +210,17 @@ class ElmoDrive:
             return DriveEnd()  # its motor is another's
         link, register = self._link, None
         end = link.clock.now() + _SEEN_OFF
-        pause = self._period
+        tries, pause = 0, self._period
         while not self._seen_off and link.clock.now() < end:
-            for command in (_ZERO, _OFF):
-                self._try(command)
+            self._try(self._command_id, _ZERO.payload())
+            self._try(self._command_id, _OFF.payload())
             register = link.number("SR", pause)
             self._seen_off = register is not None and not DriveStatus.of(register).motor_on
-            pause = min(1.5 * pause, 0.02)  # a drive that is slow, not deaf, is not to be flooded
+            if register is None:  # it may have started anew, and is deaf to commands then
+                self._try(canopen.NMT, canopen.network(canopen.START, self.options.node))
+            tries += 1
+            if tries > _SOON:  # a drive that is slow, not deaf, is not to be flooded
+                pause = min(2.0 * pause, 0.02)
         if not self._seen_off:
             return DriveEnd(motor_off=False)
         if register is not None and DriveStatus.of(register).failure:
@@ -263,11 +272,25 @@ class ElmoDrive:
     def _status(self) -> DriveStatus:
         return DriveStatus.of(int(self._link.ask(Command(letters="SR")).value))
 
-    def _try(self, command: Command) -> None:
+    def _try(self, identifier: int, payload: bytes) -> None:
         try:
-            self._link.command(command)
+            self._link.send(identifier, payload)
         except DriveFaultError:
             return  # once more in the next round; in the end the drive's own watchdog remains
+
+    def _ask_analog(self, source: AnalogInput) -> None:
+        """Ask for the torque sensor; the answer may take some cycles, but not for ever."""
+        self._unread = self._unread + 1 if self._seen.readings == self._read else 0
+        self._read = self._seen.readings
+        if self._unread > _UNREAD:
+            raise DriveFaultError(
+                "sensor",
+                f"the drive's analog input {source.number} was asked for {self._unread} times in a row "
+                "without an answer",
+                measured=self._unread,
+                allowed=_UNREAD,
+            )
+        self._link.command(Command(letters="AN", index=source.number))
 
     def _look_alive(self) -> None:
         """After the answer to a SYNC: heartbeats that came before it have been read."""
@@ -282,8 +305,11 @@ class ElmoDrive:
             )
 
     def _answered(self, timeout: float) -> None:
-        told = "no answer to the SYNC"
-        self._link.wait(lambda: self._seen.complete, timeout, told, kind="stale_position")
+        seen, told = self._seen, "no answer to the SYNC"
+        self._link.wait(lambda: seen.complete, timeout, told, kind="stale_position")
+        if isinstance(self.options.torque, AnalogInput) and seen.readings == self._unheard:
+            told = "no reply to AN"
+            self._link.wait(lambda: seen.readings > self._unheard, timeout, told, kind="sensor")
 
     def _settle(self, timeout: float) -> None:
         """Let the last SYNC be answered before the next goes out: an answer does not say whose it is."""

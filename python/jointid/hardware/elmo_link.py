@@ -9,6 +9,7 @@ import can
 
 from jointid.errors import InputError
 from jointid.hardware import canopen_frames as canopen
+from jointid.hardware.bus_errors import error_frame_meaning
 from jointid.hardware.clock import Clock, MonotonicClock
 from jointid.hardware.drive import DriveFaultError
 from jointid.hardware.elmo_codec import Command, DriveError, Reply
@@ -182,9 +183,10 @@ class ElmoLink:
                 break
         self.raise_fault()
 
-    def forget_fault(self) -> None:
-        """What was wrong is known, or was before our time."""
-        self._fault = None
+    def forget_fault(self, but: str = "") -> None:
+        """What was wrong is known, or was before our time; one of the kind `but` is kept."""
+        if self._fault is not None and self._fault.kind != but:
+            self._fault = None
 
     def raise_fault(self) -> None:
         """Raise the first fault that was heard of, once."""
@@ -201,8 +203,9 @@ class ElmoLink:
         if message is None:
             return False
         if message.is_error_frame:
-            kind = message.arbitration_id
-            self._note("bus", f"an error frame (class 0x{kind:X}): bus-off or bad wiring")
+            meaning = error_frame_meaning(message.arbitration_id)
+            if meaning:
+                self._note("bus", f"an error frame of the CAN controller: {meaning}")
             return True
         if message.arbitration_id in self._ours:
             return True
@@ -234,7 +237,8 @@ class ElmoLink:
                 self._note("drive_fault", str(error))
             return
         except InputError as error:
-            self._note("drive_fault", f"an unreadable reply: {error}")
+            kind = "sensor" if payload[:2] == b"AN" else "drive_fault"
+            self._note(kind, f"an unreadable reply: {error}")
             return
         if reply.letters == "AN":
             self._seen.take_voltage(float(reply.value))

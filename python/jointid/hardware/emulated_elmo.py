@@ -85,6 +85,7 @@ class EmulatedElmo:
         self.problem = 0  # of the power stage, as SR tells it
         # Faults on demand; set them at a time with the bus's `at`.
         self.stuck_encoder: int | None = None
+        self.slipped_counts = 0
         self.fixed_unit_mode: int | None = None
         self.stage_gain = 1.0
         self.stuck_voltage: float | None = None
@@ -148,7 +149,7 @@ class EmulatedElmo:
             return self.stuck_encoder
         angle = self.joint.position - self.settings.position_offset
         per_turn = self.settings.counts_per_turn * self.settings.gear_ratio
-        return math.floor(angle / TWO_PI * per_turn)
+        return math.floor(angle / TWO_PI * per_turn) + self.slipped_counts
 
     def speed(self) -> int:
         """Of the motor [counts/s]."""

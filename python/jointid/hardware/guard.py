@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 
 from jointid.hardware.drive import DriveSample
 from jointid.hardware.limits import SessionLimits
 from jointid.hardware.stop import LimitError
 
-_DIFFERING = 10  # samples in a row; a drive follows a command within one or two
+# Samples that the difference is the mean of: a drive is one or two cycles behind its command.
+_COMPARED = 10
 # Counts in a cycle: from such a speed no friction brings a joint to a stand within the next.
 _MOVING = 20
 
@@ -32,7 +34,9 @@ class Guard:
         self._moving = _MOVING * resolution / period
         self._last: float | None = None  # commanded by the controller
         self._told = 0.0  # what the drive was told
-        self._missed = self._clipped = self._differing = self._repeated = 0
+        self._differences: deque[float] = deque((0.0,) * _COMPARED, maxlen=_COMPARED)
+        self._difference = 0.0  # their sum
+        self._missed = self._clipped = self._repeated = 0
         self._place = math.nan
         self._speed_there = self._told_there = 0.0
 
@@ -159,13 +163,15 @@ class Guard:
         if abs(torque) > self._largest_measured:
             _hold("measured_torque", torque, self._largest_measured, "N·m")
         difference = torque - self._told
-        self._differing = self._differing + 1 if abs(difference) > self._largest_difference else 0
-        if self._differing >= _DIFFERING:
+        self._difference += difference - self._differences[0]
+        self._differences.append(difference)
+        mean = abs(self._difference) / _COMPARED
+        if mean > self._largest_difference:
             raise LimitError(
                 "torque_difference",
-                f"the drive gives {torque:.1f} N·m where {self._told:.1f} N·m is commanded, for "
-                f"{self._differing} samples; {self._largest_difference:g} N·m is allowed",
-                measured=abs(difference),
+                f"the drive gives {torque:.1f} N·m where {self._told:.1f} N·m is commanded; in the mean over "
+                f"{_COMPARED} samples it is {mean:.1f} N·m off, more than {self._largest_difference:g} N·m",
+                measured=mean,
                 allowed=self._largest_difference,
             )
 

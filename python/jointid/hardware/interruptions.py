@@ -34,7 +34,8 @@ class Interruptions:
         trace: TracebackType | None,
     ) -> None:
         for number, before in self._before.items():
-            signal.signal(number, before)
+            # None: it was installed by something that is not Python, and cannot be put back.
+            signal.signal(number, signal.SIG_DFL if before is None else before)
 
     def _caught(self, number: int, frame: FrameType | None) -> None:
         del frame

@@ -30,7 +30,8 @@ class SessionLimits:
     measured_torque : float, optional
         Of the active current, where the drive tells it [N·m]. Default: 1.2 times `torque`.
     torque_difference : float, optional
-        Between commanded and measured torque, in each of ten samples in a row [N·m]. Default: a quarter of `torque`.
+        Between commanded and measured torque, in the mean over ten samples [N·m]. Default: a quarter
+        of `torque`.
     saturated_samples : int
         Cycles in which the torque limit cut the command, in all; the thesis stops beyond 20.
     missed_deadlines : int

@@ -98,12 +98,16 @@ class AnalogInput:
     ----------
     number : int
         1 or 2: AN[number].
+    lowest, highest : float
+        Of the input [V].
     every : int
         Control cycles between two questions; each cycle would load bus and drive too much.
     scaling : SensorScaling
     """
 
     number: int = 1
+    lowest: float = -10.0
+    highest: float = 10.0
     every: int = 4
     scaling: SensorScaling = field(default_factory=SensorScaling)
 
@@ -112,3 +116,12 @@ class AnalogInput:
             raise InputError(f"AnalogInput: number is {self.number!r}; 1 or 2 is expected")
         if not 1 <= self.every <= 1000:
             raise InputError(f"AnalogInput: every is {self.every!r}; 1 to 1000 is expected")
+        if not self.lowest < self.highest:
+            raise InputError(
+                f"AnalogInput: lowest is {self.lowest!r} V; less than highest, {self.highest!r} V, is expected"
+            )
+
+    def clipped(self, voltage: float) -> bool:
+        """Whether it is at the end of its range."""
+        margin = 1e-3 * (self.highest - self.lowest)
+        return not self.lowest + margin < voltage < self.highest - margin

@@ -1,0 +1,369 @@
+"""What can go wrong in a session, one by one on an emulated bus, and what must come of it.
+
+The table is shared by `fault_matrix.py`, which prints what happens, and by the tests, which hold it to this.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import can
+
+import jointid as jid
+from jointid.hardware.drive import DriveSample
+from jointid.hardware.elmo_drive import ElmoDrive
+from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.emulated_bus import EmulatedBus
+from jointid.hardware.emulated_converter import EmulatedConverter
+from jointid.hardware.emulated_elmo import ElmoSettings, EmulatedElmo
+from jointid.hardware.faults import BusFault
+from jointid.hardware.limits import SessionLimits
+from jointid.hardware.session import Session, SessionOptions, SessionStoppedError, Stop
+from jointid.hardware.torque_source import AnalogInput
+from jointid.simulation.stepped import stepped_joint
+
+PERIOD = 2e-3  # [s]
+BEGIN = 1.2  # [s] on the bus's clock: the joint is in the middle of its motion then
+COMMAND, REPLY, POSITION, EMERGENCY, OURS, SENSOR = 0x37F, 0x2FF, 0x4FF, 0x0FF, 0x701, 0x1C0
+TRUTH = {
+    "coulomb": 25.0,
+    "static": 20.0,
+    "stribeck": 100.0,
+    "viscous": 20.0,
+    "sensor_gain": 2.4,
+    "sensor_offset": 15.0,
+}
+ZERO = bytes.fromhex("54 43 00 80 00 00 00 00")  # TC = 0
+OFF = bytes.fromhex("4D 4F 00 00 00 00 00 00")  # MO = 0
+
+
+def joint() -> jid.Joint:
+    """The thesis's joint, its link about the vertical, with its true parameters."""
+    plain = jid.thesis_joint()
+    assert plain.link is not None
+    return plain.replace(link=replace(plain.link, angle=-math.pi / 2.0)).with_parameters(TRUTH)
+
+
+class WatchedBus(EmulatedBus):
+    """An emulated bus that keeps what the host tried to send, and when."""
+
+    def __init__(self, *devices: Any, faults: tuple[BusFault, ...] = ()) -> None:
+        self.tried: list[tuple[float, int, bytes]] = []
+        super().__init__(*devices, faults=faults)
+
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:
+        """Send a frame, and keep it."""
+        self.tried.append((self.now(), msg.arbitration_id, bytes(msg.data)))
+        super().send(msg, timeout)
+
+    def assignments(self) -> list[tuple[float, bytes]]:
+        """Commands that change something in the drive."""
+        return [
+            (when, data) for when, sent, data in self.tried if sent == COMMAND and len(data) == 8
+        ]
+
+
+class EmulatedSession:
+    """A session on an emulated bench that something can be done to.
+
+    Parameters
+    ----------
+    faults : sequence of BusFault
+    limits : mapping
+        Other limits than the joint's own.
+    drive : ElmoOptions
+    output : path, optional
+    """
+
+    def __init__(
+        self,
+        faults: tuple[BusFault, ...] = (),
+        *,
+        limits: Mapping[str, Any] | None = None,
+        drive: ElmoOptions | None = None,
+        output: Path | None = None,
+    ) -> None:
+        true = joint()
+        self.elmo = EmulatedElmo(stepped_joint(true, period=PERIOD))
+        self.converter = EmulatedConverter(self.elmo)
+        self.bus = WatchedBus(self.elmo, self.converter, faults=faults)
+        self.law: Any = jid.AdaptiveRobust(**jid.control_estimates(true))
+        self.law = self.law.replace(friction_velocity="reference")
+        self.trajectory = jid.Trajectory.thesis(math.radians(30.0), cycle=2.0, duration=2.0)
+        self.limits = SessionLimits.of(true, **(limits or {}))
+        self.drive = ElmoDrive(self.bus, true, drive)
+        self.observer: Callable[[str, float, DriveSample, float, float], object] | None = None
+        self.output = output
+
+    def session(self) -> Session:
+        """The session, with what has been set until now."""
+        options = SessionOptions(period=PERIOD, settle=0.1)
+        return Session(
+            *(self.drive, self.law, self.trajectory, self.limits),
+            options=options,
+            output=self.output,
+            observer=self.observer,
+        )
+
+    def at(self, when: float, event: Callable[[], object]) -> None:
+        """Do something at a time on the bus's clock [s]."""
+
+        def run() -> None:
+            event()
+
+        self.bus.at(when, run)
+
+
+Script = Callable[[EmulatedSession], object]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """One thing that goes wrong.
+
+    Attributes
+    ----------
+    name : str
+    stop : str
+        The `Stop.limit` that must come of it.
+    says : str
+        What its message must hold.
+    script : callable, optional
+        Prepares the fault.
+    faults : callable, optional
+        Gives the bus's faults.
+    limits : mapping
+    drive : ElmoOptions, optional
+    detected : float
+        At the latest, after the fault [s].
+    reachable : bool
+        The drive hears the host; otherwise its own watchdog has to switch it off.
+    heard : bool
+        And the host hears the drive: it can see that the motor is off.
+    """
+
+    name: str
+    stop: str
+    says: str = ""
+    script: Script | None = None
+    faults: Callable[[], tuple[BusFault, ...]] = tuple
+    limits: Mapping[str, Any] = field(default_factory=dict)
+    drive: ElmoOptions | None = None
+    detected: float = 3.0 * PERIOD
+    reachable: bool = True
+    heard: bool = True
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """What came of a case."""
+
+    stop: Stop
+    recording: jid.Recording
+    bench: EmulatedSession
+
+    @property
+    def detected(self) -> float:
+        """From the fault until the session's stop [s]."""
+        return self.stop.moment - BEGIN
+
+    @property
+    def told(self) -> float:
+        """From the stop until TC = 0 and MO = 0 were sent [s]."""
+        sent = self.bench.bus.assignments()
+        last = [when for when, data in sent if data == OFF and when >= self.stop.moment]
+        return last[0] - self.stop.moment if last else math.inf
+
+    @property
+    def motor_off(self) -> float:
+        """From the stop until the motor was off [s]; negative: the drive was faster."""
+        when, on = self.bench.elmo.switchings[-1]
+        return math.inf if on else when - self.stop.moment
+
+
+def outcome(case: Case, output: Path | None = None) -> Outcome:
+    """Run a session into a fault."""
+    bench = EmulatedSession(
+        case.faults(),
+        limits=case.limits,
+        drive=case.drive,
+        output=output,
+    )
+    if case.script is not None:
+        case.script(bench)
+    stopped: SessionStoppedError | None = None
+    try:
+        bench.session().run()
+    except SessionStoppedError as error:
+        stopped = error
+    finally:
+        bench.bus.shutdown()
+    assert stopped is not None, f"{case.name}: the session was not stopped"
+    assert stopped.recording is not None, f"{case.name}: too little was recorded: {stopped}"
+    return Outcome(stop=stopped.stop, recording=stopped.recording, bench=bench)
+
+
+# What is done, at BEGIN.
+
+
+def _set(what: str, value: Any) -> Script:
+    """An attribute of the emulated drive takes a value."""
+    return lambda bench: bench.at(BEGIN, lambda: setattr(bench.elmo, what, value))
+
+
+def _fails(kind: str) -> Script:
+    return lambda bench: bench.at(BEGIN, lambda: bench.elmo.fail(kind))
+
+
+def _slips(angle: float) -> Script:
+    """The encoder's zero moves by an output angle [rad]."""
+    return _set("slipped_counts", round(angle / (2.0 * math.pi) * 808_000))
+
+
+def _sticks(bench: EmulatedSession) -> None:
+    bench.at(BEGIN, lambda: setattr(bench.elmo, "stuck_encoder", bench.elmo.counts()))
+
+
+def _sensor_rails(bench: EmulatedSession) -> None:
+    highest = (4095 * 128).to_bytes(4, "little")
+    bench.at(BEGIN, lambda: setattr(bench.converter, "stuck", highest))
+
+
+def _host_works(duration: float, times: int | None = None) -> Script:
+    """Each frame costs the host so much [s], for so many frames."""
+
+    def script(bench: EmulatedSession) -> None:
+        bench.at(BEGIN, lambda: setattr(bench.bus, "host_work", duration))
+        if times is not None:
+            bench.at(
+                BEGIN + 0.5 * PERIOD + (times - 0.5) * duration,
+                lambda: setattr(bench.bus, "host_work", 0.0),
+            )
+
+    return script
+
+
+class Tampered:
+    """A controller of the user's own: as another one, until something happens in it."""
+
+    def __init__(self, law: Any, bench: EmulatedSession, act: Callable[[float], float]) -> None:
+        self._law, self._bench, self._act = law, bench, act
+        self.saturations = 0
+
+    def start(self, **given: Any) -> Tampered:
+        """Begin to control."""
+        self._law = self._law.start(**given)
+        return self
+
+    def step(self, **measured: float) -> float:
+        """The torque [N·m]."""
+        torque = float(self._law.step(**measured))
+        return torque if self._bench.bus.now() < BEGIN else self._act(torque)
+
+
+def _controller(act: Callable[[float], float]) -> Script:
+    return lambda bench: setattr(bench, "law", Tampered(bench.law, bench, act))
+
+
+def _divides_by_zero(torque: float) -> float:
+    return torque / 0.0
+
+
+def _observer(error: BaseException) -> Script:
+    def script(bench: EmulatedSession) -> None:
+        def watch(*_: object) -> None:
+            if bench.bus.now() >= BEGIN:
+                raise error
+
+        bench.observer = watch
+
+    return script
+
+
+def _bus(kind: str, *identifiers: int | None, **more: float) -> Callable[[], tuple[BusFault, ...]]:
+    given: dict[str, Any] = {"start": BEGIN, **more}
+    return lambda: tuple(
+        BusFault(kind=kind, identifier=identifier, **given) for identifier in identifiers
+    )
+
+
+_WIDE = {"tracking_error": 10.0, "velocity": 1e4}
+_SENSOR_AT_DRIVE = ElmoOptions(torque=AnalogInput())
+
+CASES = (
+    # The session's own limits.
+    Case(name="joint leaves its window", stop="position", script=_slips(2.0), says="rad, outside",
+         limits={"position": (-1.0, 1.0), **_WIDE}),
+    Case(name="position jumps", stop="velocity", script=_slips(0.1), says="rad/s, more than 10 rad/s"),
+    Case(name="joint is off its reference", stop="tracking_error", script=_slips(0.015),
+         limits={"tracking_error": 0.01}, says="more than 0.01 rad"),
+    Case(name="controller asks for too much", stop="torque", script=_controller(lambda t: t + 500.0),
+         says="more than 160"),
+    Case(name="controller asks for no number", stop="torque", script=_controller(lambda _: math.nan),
+         says="no number"),
+    Case(name="command jumps", stop="torque_rate", script=_controller(lambda t: t + 150.0),
+         limits={"torque_rate": 6e4}, says="N·m/s"),
+    Case(name="command is cut for long", stop="saturated_samples", script=_slips(0.2), limits=_WIDE,
+         says="21 times", detected=30 * PERIOD),
+    Case(name="current beyond the command", stop="measured_torque", script=_set("stage_gain", 4.0),
+         limits={"torque_difference": 1e3, **_WIDE}, says="more than", detected=50 * PERIOD),
+    Case(name="no current", stop="torque_difference", script=_set("stage_gain", 0.0), limits=_WIDE,
+         says="is commanded", detected=50 * PERIOD),
+    Case(name="encoder hangs", stop="repeated_positions", script=_sticks, limits=_WIDE,
+         says="the encoder hangs", detected=15 * PERIOD),
+    Case(name="sensor at its end", stop="clipped_samples", script=_sensor_rails, says="6 samples",
+         detected=8 * PERIOD),
+    Case(name="sensor's reading is no number", stop="sensor", script=_set("stuck_voltage", math.nan),
+         drive=_SENSOR_AT_DRIVE, says="no number", detected=6 * PERIOD),
+    Case(name="sensor is not answered", stop="sensor", faults=_bus("drop", REPLY), detected=25 * PERIOD,
+         drive=_SENSOR_AT_DRIVE, says="without an answer", heard=False),
+    Case(name="host is late", stop="missed_deadlines", script=_host_works(0.8e-3), says="6 cycles",
+         detected=10 * PERIOD),
+    # The drive.
+    Case(name="over-temperature", stop="drive_fault", script=_fails("over-temperature"),
+         says="the drive says: over-temperature"),
+    Case(name="short circuit", stop="drive_fault", script=_fails("short circuit"), says="short circuit"),
+    Case(name="encoder loss", stop="drive_fault", script=_fails("encoder loss"), says="feedback lost"),
+    Case(name="under-voltage", stop="drive_fault", script=_fails("under-voltage"), says="under-voltage"),
+    Case(name="drive's speed limit", stop="drive_fault", says="speed limit exceeded",
+         script=_set("settings", ElmoSettings(speed_limit=1000.0))),
+    Case(name="emergency is lost", stop="drive_fault", script=_fails("over-temperature"),
+         faults=_bus("drop", EMERGENCY), says="the motor must be on (EC 58); the drive says: over-temp"),
+    Case(name="drive starts anew", stop="drive_fault", script=lambda b: b.at(BEGIN, b.elmo.restart),
+         says="started anew"),
+    Case(name="drive's heartbeat stays away", stop="heartbeat_lost", says="for",
+         script=_set("silent_heartbeat", True), detected=0.06),
+    # The host.
+    Case(name="our heartbeat is lost", stop="host_heartbeat_lost", faults=_bus("drop", OURS),
+         says="0x8130); the drive says: heartbeat lost", detected=0.06),
+    Case(name="host stands still", stop="host_heartbeat_lost", script=_host_works(0.08, 1),
+         says="heartbeat lost", detected=0.09),
+    Case(name="observer raises", stop="user", script=_observer(ValueError("no display")),
+         says="the observer raised ValueError: no display"),
+    Case(name="controller raises", stop="user", script=_controller(_divides_by_zero),
+         says="the controller raised ZeroDivisionError"),
+    Case(name="Ctrl-C in user code", stop="user", script=_observer(KeyboardInterrupt()), says="keyboard"),
+    # The bus.
+    Case(name="position is lost", stop="stale_position", faults=_bus("drop", POSITION), says="SYNC"),
+    Case(name="SYNC is lost", stop="stale_position", faults=_bus("drop", 0x080), says="SYNC"),
+    Case(name="sensor's frame is lost", stop="stale_position", faults=_bus("drop", SENSOR), says="SYNC"),
+    Case(name="position is late", stop="stale_position", faults=_bus("delay", POSITION, delay=1.5e-3)),
+    Case(name="position is garbled", stop="position", faults=_bus("corrupt", POSITION)),
+    Case(name="replies are garbled", stop="drive_fault", faults=_bus("corrupt", REPLY), heard=False,
+         says="unreadable"),
+    Case(name="commands are lost, then switching off too", stop="torque_difference",
+         faults=_bus("drop", COMMAND), limits={"torque_difference": 5.0}, reachable=False, heard=False,
+         detected=0.5, says="is commanded"),
+    Case(name="first two switchings-off are lost", stop="user", script=_observer(ValueError("late")),
+         faults=_bus("drop", COMMAND, stop=BEGIN + 1.9 * PERIOD), says="late"),
+    Case(name="error frame, off the bus for 3 ms", stop="bus", says="error frame",
+         faults=_bus("bus_off", None, stop=BEGIN + 1.5 * PERIOD)),
+    Case(name="bus off", stop="bus", faults=_bus("bus_off", None), says="bus-off:",
+         reachable=False, heard=False),
+    Case(name="interface down", stop="bus", faults=_bus("down", None), says="down",
+         reachable=False, heard=False),
+)  # fmt: skip

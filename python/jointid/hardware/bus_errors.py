@@ -1,0 +1,29 @@
+"""What a CAN controller means by an error frame (Linux's classes, which python-can hands on)."""
+
+from __future__ import annotations
+
+_LOST_ARBITRATION = 0x02  # a frame of higher priority went first: no error on a shared bus
+_CLASSES = {
+    0x01: "transmission timed out",
+    0x04: "controller in trouble (too many errors, or overflow)",
+    0x08: "protocol violated: bit rate or wiring",
+    0x10: "transceiver fault: wiring",
+    0x20: "nobody acknowledges: is the drive on, and the bus terminated?",
+    0x40: "bus-off: too many errors, the controller has left the bus",
+    0x80: "bus error",
+    0x100: "the controller was restarted after a bus-off",
+}
+
+
+def error_frame_meaning(classes: int) -> str:
+    """An error frame's classes in words; empty when it is no reason to stop.
+
+    Parameters
+    ----------
+    classes : int
+        The identifier of the error frame.
+    """
+    if classes & 0x1FF == _LOST_ARBITRATION:
+        return ""
+    told = [text for bit, text in _CLASSES.items() if classes & bit]
+    return ", ".join(told) or f"of an unknown class 0x{classes:X}"
