@@ -15,7 +15,7 @@ class DriveFaultError(RuntimeError):
     ----------
     kind : str
         "stale_position", "drive_fault", "heartbeat_lost" (the drive's), "host_heartbeat_lost" (ours, so
-        the drive says), "bus".
+        the drive says), "bus", "sensor".
     message : str
     measured, allowed : float, optional
         The number that was beyond a limit, and the limit.
