@@ -79,7 +79,10 @@ def test_refusals_of_the_manual_both_ways(
     assert (told.value.letters, told.value.index, told.value.code) == (letters, index, code)
 
 
-@given(st.binary(max_size=8))
+@given(
+    st.binary(max_size=8)
+    | st.builds(bytes.__add__, st.sampled_from((b"TC", b"AA", b"PX")), st.binary(max_size=6))
+)
 def test_any_bytes_are_a_value_or_a_named_error(payload: bytes) -> None:
     for decode in (Command.of, Reply.of):
         found, refused, unusable = _decoded(decode, payload)
@@ -90,7 +93,7 @@ def test_any_bytes_are_a_value_or_a_named_error(payload: bytes) -> None:
             assert str(unusable)
         else:
             assert len(payload) in (4, 8)
-            assert decode is Command.of or not payload[3] & 0x40
+            assert decode == Command.of or not payload[3] & 0x40
             assert found.value is None or math.isfinite(found.value)
 
 

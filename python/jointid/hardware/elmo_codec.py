@@ -104,10 +104,10 @@ class Command:
             The bytes are no command.
         """
         letters, index, flags = _head(payload)
+        if len(payload) not in (4, 8):
+            raise InputError(f"a command of {len(payload)} bytes; 4 or 8 are expected")
         if len(payload) == 4 or flags & _QUERY_OR_ERROR:
             return cls(letters=letters, index=index)
-        if len(payload) != 8:
-            raise InputError(f"a command of {len(payload)} bytes; 4 or 8 are expected")
         return cls(letters=letters, index=index, value=_value(payload, flags))
 
 
