@@ -34,7 +34,8 @@ def _analog(bench: Bench) -> Bench:
 
 def _coarse(bench: Bench) -> Bench:
     assert bench.emulation is not None
-    return replace(bench, emulation=replace(bench.emulation, mantissa_bits=4))
+    drive = replace(bench.drive, mantissa_bits=4)
+    return replace(bench, drive=drive, emulation=replace(bench.emulation, mantissa_bits=4))
 
 
 def _measured(bench: Bench) -> Bench:

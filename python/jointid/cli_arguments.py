@@ -33,12 +33,13 @@ def parser() -> argparse.ArgumentParser:
     )
     main_parser.add_argument("--version", action="store_true", help="print the version and exit")
     commands = main_parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=_Parser)
-    from jointid.cli_session import add_run
+    from jointid.cli_session import add_emulate, add_run
     from jointid.cli_simulation import add_simulate
     from jointid.cli_study import add_sweep
 
     for add in (_add_demo, _add_identify, _add_compare, add_simulate, add_sweep, add_run):
         add(commands)
+    add_emulate(commands)
     _add_report(commands)
     _add_info(commands)
     return main_parser

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.cli_arguments import check_folder, check_outputs, fixed_values, load_all
-from jointid.cli_session import run
+from jointid.cli_session import emulate, run
 from jointid.cli_simulation import simulate
 from jointid.cli_study import sweep
 
-__all__ = ["compare", "demo", "identify", "info", "report", "run", "simulate", "sweep"]
+__all__ = ["compare", "demo", "emulate", "identify", "info", "report", "run", "simulate", "sweep"]
 
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate

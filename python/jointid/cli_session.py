@@ -13,6 +13,7 @@ from jointid.cli_arguments import TEXT, whole_seed
 if TYPE_CHECKING:
     from jointid.commissioning import Commissioning
     from jointid.hardware.bench import Bench
+    from jointid.hardware.live import Observers
 
 STOPPED = 3
 """Exit code when a limit, a fault or the user stopped a session, or it was refused."""
@@ -50,8 +51,59 @@ def add_run(commands: Any) -> None:
         "--output", type=Path, help="folder for recordings, frame logs, estimates and a picture"
     )
     run.add_argument("--save", type=Path, help="write the last estimate to a joint file (.toml)")
+    run.add_argument("--plot", action="store_true", help="a window that shows what the joint does")
     run.add_argument("--json", action="store_true", help="print the outcome as JSON")
     run.add_argument("--quiet", action="store_true", help="no line on what the joint does")
+
+
+def add_emulate(commands: Any) -> None:
+    """Add the command's grammar."""
+    emulate = commands.add_parser(
+        "emulate",
+        help="an emulated drive and joint on a CAN bus, for other programs to move",
+        epilog=(
+            "examples:\n"
+            "  jointid emulate joint.toml --interface socketcan --channel vcan0\n"
+            "  jointid emulate joint.toml --interface udp_multicast --channel 239.74.163.2 --duration 60\n"
+            "the joint file has a table [session.emulated]; it lives by the machine's clock until Ctrl-C"
+        ),
+        formatter_class=TEXT,
+    )
+    emulate.add_argument("joint", type=Path, help="joint file (.toml) with [session.emulated]")
+    emulate.add_argument("--interface", help="as python-can names it; default: the joint file's")
+    emulate.add_argument("--channel", help="default: the joint file's")
+    emulate.add_argument("--duration", type=float, help="[s]; default: until Ctrl-C")
+    emulate.add_argument("--seed", type=whole_seed, default=0, help="of the sensor's noise (0)")
+
+
+def emulate(arguments: argparse.Namespace) -> int:
+    """Put an emulated bench on a bus."""
+    import math
+    import time
+
+    from jointid.errors import InputError
+    from jointid.hardware.bench import Bench
+    from jointid.hardware.bus import open_whole_bus
+    from jointid.hardware.emulated_bench import emulated_devices
+    from jointid.hardware.emulator_thread import EmulatorThread
+
+    bench = Bench.load(arguments.joint)
+    duration = math.inf if arguments.duration is None else arguments.duration
+    if not duration > 0.0:
+        raise InputError(f"--duration is {duration}; more than 0 s is expected")
+    interface = arguments.interface or bench.bus.interface
+    channel = arguments.channel or bench.bus.channel
+    devices = emulated_devices(bench, arguments.seed)
+    with (
+        open_whole_bus(interface=interface, channel=channel, bitrate=bench.bus.bitrate) as bus,
+        EmulatorThread(bus, *devices) as emulator,
+    ):
+        node = bench.drive.node
+        print(f"emulated drive, node {node}, on {interface} {channel}; Ctrl-C ends it", flush=True)
+        end = time.monotonic() + duration
+        while emulator.running and time.monotonic() < end:
+            time.sleep(min(0.05, max(0.0, end - time.monotonic())))
+    return 0
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -75,15 +127,17 @@ def run(arguments: argparse.Namespace) -> int:
         if not (arguments.emulate or arguments.yes or _agreed(bench)):
             print("jointid run: not started", file=sys.stderr)
             return STOPPED
-        result = commission(
-            bench,
-            cycles=arguments.cycles,
-            emulate=arguments.emulate,
-            seed=arguments.seed,
-            threads=arguments.threads,
-            output=arguments.output,
-            callback=None if arguments.quiet else _say,
-        )
+        with _observers(arguments) as observers:
+            result = commission(
+                bench,
+                cycles=arguments.cycles,
+                emulate=arguments.emulate,
+                seed=arguments.seed,
+                threads=arguments.threads,
+                output=arguments.output,
+                observer=observers,
+                callback=None if arguments.quiet else _say,
+            )
     except (SessionRefusedError, SessionStoppedError) as error:
         print(f"jointid run: {error}", file=sys.stderr)
         return STOPPED
@@ -124,6 +178,19 @@ def _check(arguments: argparse.Namespace) -> None:
                 f"--output {output}: the folder is not empty, and a session overwrites nothing"
             )
         check_folder("--output", output)
+
+
+def _observers(arguments: argparse.Namespace) -> Observers:
+    """A line on the console, a window; on virtual time both would only flicker."""
+    from jointid.hardware.live import ConsoleLine, Observers
+    from jointid.hardware.live_plot import LivePlot
+
+    shown: list[Any] = []
+    if not arguments.quiet and not arguments.emulate:
+        shown.append(ConsoleLine(sys.stderr))
+    if arguments.plot:
+        shown.append(LivePlot())
+    return Observers(*shown)
 
 
 def _say(step: str) -> None:

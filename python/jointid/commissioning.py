@@ -173,6 +173,7 @@ def commission(
                 options=bench.options,
                 output=place,
                 observer=observer,
+                real_time=None if emulate else bench.real_time,
             ).run()
             assert recording is not None, "only a dry run has none"
             return _assessed(name, recording, law)

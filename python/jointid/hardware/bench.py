@@ -11,7 +11,8 @@ from jointid import _core
 from jointid.errors import InputError
 from jointid.hardware.elmo_options import ElmoOptions
 from jointid.hardware.limits import SessionLimits
-from jointid.hardware.session import SessionOptions
+from jointid.hardware.realtime import RealTimeOptions
+from jointid.hardware.session_options import SessionOptions
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller
 from jointid.simulation.trajectory import Trajectory
@@ -95,6 +96,7 @@ class Bench:
     limits : SessionLimits
     options : SessionOptions
     bus : BusOptions
+    real_time : RealTimeOptions
     emulation : Emulation or None
         What an emulated drive moves.
     """
@@ -106,6 +108,7 @@ class Bench:
     limits: SessionLimits
     options: SessionOptions
     bus: BusOptions = field(default_factory=BusOptions)
+    real_time: RealTimeOptions = field(default_factory=RealTimeOptions)
     emulation: Emulation | None = None
 
     @classmethod

@@ -14,7 +14,8 @@ from jointid.errors import InputError
 from jointid.hardware.bench import Bench, BusOptions, Emulation
 from jointid.hardware.elmo_options import ElmoOptions
 from jointid.hardware.limits import SessionLimits
-from jointid.hardware.session import SessionOptions
+from jointid.hardware.realtime import RealTimeOptions
+from jointid.hardware.session_options import SessionOptions
 from jointid.hardware.torque_source import AnalogInput, SensorScaling, SyncedConverter
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_from_document, read_document
@@ -23,7 +24,7 @@ from jointid.simulation.arguments import Controller
 from jointid.simulation.scenario import believing
 from jointid.simulation.trajectory import Trajectory
 
-_TABLES = ("bus", "drive", "torque", "trajectory", "controller", "limits", "emulated")
+_TABLES = ("bus", "drive", "torque", "trajectory", "controller", "limits", "real_time", "emulated")
 _TRAJECTORIES = ("thesis", "sine", "multisine", "sigmoid", "step", "trapezoid")
 _LAWS = {
     "adaptive_robust": _core.AdaptiveRobust,
@@ -44,6 +45,8 @@ _KINDS: dict[str, tuple[tuple[type, ...], str]] = {
     "float": ((int, float), "a number"),
     "int": ((int,), "a whole number"),
     "str": ((str,), "a text"),
+    "bool": ((bool,), "true or false"),
+    "tuple[int, ...]": ((list,), "a list of whole numbers"),
     "tuple[float, float]": ((list,), "a list of two numbers"),
 }
 Made = TypeVar("Made")
@@ -77,6 +80,7 @@ def load_bench(path: str | Path) -> Bench:
         ),
         options=options,
         bus=bus,
+        real_time=inner["real_time"].make(RealTimeOptions),
         emulation=_emulation(inner["emulated"], joint) if "emulated" in session.entries else None,
     )
 
@@ -125,7 +129,10 @@ class _Table:
 
     def check(self, name: str, value: object, type_: str) -> None:
         wanted = _KINDS.get(type_.removesuffix(" | None"))
-        if wanted is not None and (isinstance(value, bool) or not isinstance(value, wanted[0])):
+        right = wanted is None or isinstance(value, wanted[0])
+        if wanted is not None and (
+            not right or (isinstance(value, bool) and bool not in wanted[0])
+        ):
             self.refuse(f"{name} is {value!r}; {wanted[1]} is expected")
 
     def without(self, *names: str) -> _Table:

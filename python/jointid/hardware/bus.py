@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import errno
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -77,14 +77,38 @@ def open_bus(
             )
         drive = ElmoOptions(node=node)
     options = drive if drive is not None else ElmoOptions()
-    bus = _opened(interface, channel, bitrate, options)
+    bus = _opened(interface, channel, bitrate, needed_identifiers(options))
     try:
         yield bus
     finally:
         bus.shutdown()
 
 
-def _opened(interface: str, channel: str | None, bitrate: int, options: ElmoOptions) -> can.BusABC:
+@contextmanager
+def open_whole_bus(
+    *, interface: str = "socketcan", channel: str | None = "can0", bitrate: int = 500_000
+) -> Iterator[can.BusABC]:
+    """Open a bus for those that want all its frames, e.g. emulated devices; arguments as in `open_bus`.
+
+    Yields
+    ------
+    can.BusABC
+
+    Raises
+    ------
+    InputError
+        As in `open_bus`.
+    """
+    bus = _opened(interface, channel, bitrate, None)
+    try:
+        yield bus
+    finally:
+        bus.shutdown()
+
+
+def _opened(
+    interface: str, channel: str | None, bitrate: int, identifiers: Iterable[int] | None
+) -> can.BusABC:
     if interface == "emulated":
         raise InputError(
             "interface 'emulated' is not a bus of python-can's: an emulated bench is an EmulatedBus of "
@@ -109,10 +133,11 @@ def _opened(interface: str, channel: str | None, bitrate: int, options: ElmoOpti
     settings: dict[str, Any] = {}
     if interface == "socketcan":
         _check_network(channel, bitrate)
-        settings["can_filters"] = [
-            {"can_id": identifier, "can_mask": 0x7FF, "extended": False}
-            for identifier in needed_identifiers(options)
-        ]
+        if identifiers is not None:
+            settings["can_filters"] = [
+                {"can_id": identifier, "can_mask": 0x7FF, "extended": False}
+                for identifier in identifiers
+            ]
     elif interface not in ("virtual", "udp_multicast", "socketcand"):
         settings["bitrate"] = bitrate
     try:

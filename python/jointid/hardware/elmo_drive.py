@@ -196,10 +196,18 @@ class ElmoDrive:
     def command(self, torque: float) -> float:
         """Send a torque, and the heartbeat that tells the drive that we are there."""
         current = max(-self._peak, min(self._peak, torque / self._per_ampere))
-        told = struct.unpack("<f", struct.pack("<f", current))[0]
+        told = self._kept(current)
         self._link.send(self._command_id, Command(letters="TC", value=told).payload())
         self._link.send(self._heartbeat_id, b"\x05")
-        return float(told) * self._per_ampere
+        return told * self._per_ampere
+
+    def _kept(self, current: float) -> float:
+        """The nearest current that the drive keeps of a command [A]."""
+        if self.options.mantissa_bits < 24:
+            mantissa, exponent = math.frexp(current)
+            steps = round(math.ldexp(mantissa, self.options.mantissa_bits))
+            return math.ldexp(steps, exponent - self.options.mantissa_bits)
+        return float(struct.unpack("<f", struct.pack("<f", current))[0])
 
     def disable(self) -> DriveEnd:
         """TC = 0, then MO = 0, again in each cycle until the drive says that its motor is off.

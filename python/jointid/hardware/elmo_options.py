@@ -37,6 +37,9 @@ class ElmoOptions:
         Of the bus [bit/s], to reckon its load.
     execution_delay : float
         From a command's arrival until the drive acts on it: it waits for the drive's idle loop [s].
+    mantissa_bits : int
+        Of a current command that the drive keeps: 24 of a float, 4 over the thesis's link. Commands are
+        rounded to it, so that what is recorded is what the drive does.
     """
 
     node: int = 127
@@ -51,8 +54,13 @@ class ElmoOptions:
     torque: SyncedConverter | AnalogInput | None = field(default_factory=SyncedConverter)
     bitrate: float = 500_000.0
     execution_delay: float = 0.3e-3
+    mantissa_bits: int = 24
 
     def __post_init__(self) -> None:
+        if not 1 <= self.mantissa_bits <= 24:
+            raise InputError(
+                f"ElmoOptions: mantissa_bits is {self.mantissa_bits!r}; 1 to 24 is expected"
+            )
         if not 1 <= self.node <= 127:
             raise InputError(f"ElmoOptions: node is {self.node}; 1 to 127 is expected")
         if self.counts_per_turn < 1:
