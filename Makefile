@@ -88,7 +88,7 @@ bench: $(INSTALLED) .venv/.bench-tools  ## speed against other libraries (20 min
 	@$(BIN)/python benchmarks/speed.py $(BENCH)
 	@$(BIN)/python benchmarks/simulation_speed.py --output docs/simulation_speed.md
 
-soak: $(INSTALLED)  ## hours of identification; by hand
+soak: $(INSTALLED)  ## minutes of identification, 30 emulated minutes of sessions; by hand
 	@$(BIN)/python benchmarks/soak.py
 
 clean:  ## remove everything made here, .venv too

@@ -1,27 +1,17 @@
-"""`make soak`: identify again and again; memory, threads and open files must not grow, results must not change."""
+"""`make soak`: identify, and run sessions, again and again; nothing must grow, change or be lost."""
 
 import argparse
 import sys
 import time
-from pathlib import Path
+
+from session_soak import count, resident, soak_sessions
 
 import jointid as jid
 from jointid.demo import data_folder
 
 
-def resident() -> int:
-    """Resident memory [bytes]."""
-    pages = int(Path("/proc/self/statm").read_text().split()[1])
-    return pages * 4096
-
-
-def count(what: str) -> int:
-    """Open entries of this process: threads ("task") or files ("fd")."""
-    return len(list(Path(f"/proc/self/{what}").iterdir()))
-
-
-def main(minutes: float) -> int:
-    """Run; returns 1 when something leaks or a result changes."""
+def soak_identification(minutes: float) -> bool:
+    """Identify the same recording for so long; whether nothing leaks and no result changes."""
     recording = jid.load(data_folder() / "well_excited.csv.gz")
     options = jid.GaOptions(generations=20)
     first = jid.identify(recording, jid.thesis_joint(), ga=options).penalty
@@ -39,10 +29,26 @@ def main(minutes: float) -> int:
         f"{rounds} identifications: memory {grown / 1e6:+.1f} MB, threads {before[1]} -> {after[1]}, "
         f"files {before[2]} -> {after[2]}, changed results {changed}"
     )
-    return int(grown > 20e6 or after[1:] != before[1:] or changed > 0)
+    return grown <= 20e6 and after[1:] == before[1:] and changed == 0
+
+
+def main() -> int:
+    """Run both; returns 1 when something is not sound."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--minutes", type=float, default=5.0, help="of identification")
+    parser.add_argument("--emulated-minutes", type=float, default=30.0, help="of sessions")
+    arguments = parser.parse_args()
+    sound = True
+    if arguments.minutes > 0.0:
+        sound = soak_identification(arguments.minutes)
+    if arguments.emulated_minutes > 0.0:
+        begin = time.monotonic()
+        soaked = soak_sessions(arguments.emulated_minutes)
+        took = time.monotonic() - begin
+        print(f"{soaked}; {arguments.emulated_minutes:g} emulated minutes in {took:.0f} s")
+        sound = sound and soaked.sound
+    return int(not sound)
 
 
 if __name__ == "__main__":
-    arguments = argparse.ArgumentParser(description=__doc__)
-    arguments.add_argument("--minutes", type=float, default=5.0)
-    sys.exit(main(arguments.parse_args().minutes))
+    sys.exit(main())

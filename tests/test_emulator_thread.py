@@ -1,5 +1,7 @@
 """Emulated devices in a thread on a bus of python-can's: a whole session, and an orderly end."""
 
+import contextlib
+import random
 import threading
 import uuid
 from collections.abc import Iterator
@@ -61,6 +63,29 @@ def test_a_whole_session_over_a_virtual_bus(
     assert np.ptp(recording.position) > np.radians(15.0)
     assert np.median(np.abs(recording.position - recording.reference)) < np.radians(3.0)
     assert recording.metadata["timing"]["cycles"] >= 100
+
+
+def test_a_session_over_a_bus_that_gives_a_sender_its_own_frames_back() -> None:
+    port = random.SystemRandom().randrange(20_000, 60_000)
+    with contextlib.ExitStack() as opened:
+        try:
+            host, there = (
+                opened.enter_context(can.Bus("239.74.163.2", interface="udp_multicast", port=port))
+                for _ in range(2)
+            )
+            host.send(frame())
+        except (can.CanError, OSError, ImportError) as error:
+            pytest.skip(f"no multicast here: {error}")
+        if host.recv(1.0) is None or there.recv(1.0) is None:
+            pytest.skip("multicast goes nowhere here")
+        drive, converter = devices(period=SLOW)
+        with EmulatorThread(there, drive, converter):
+            recording = session(host, 1.0, **PATIENT).run()
+    assert recording is not None
+    assert recording.time.size == 100
+    assert recording.reference is not None
+    assert np.median(np.abs(recording.position - recording.reference)) < np.radians(3.0)
+    assert not drive.motor_on
 
 
 class Broken:
