@@ -172,14 +172,15 @@ class ElmoDrive:
         end = link.clock.now() + timeout
         link.read_waiting()
         self._settle(timeout)
-        taken = self._asked = link.clock.now()
+        asked = self._asked = link.clock.now()
         seen.begin()
         link.send(canopen.SYNC, b"")
+        taken = link.clock.now()  # behind the sending, which may have had to wait for the processor
         source = self.options.torque
         if isinstance(source, AnalogInput) and self._cycle % source.every == 0:
             self._ask_analog(source)
         self._cycle += 1
-        self._answered(end - taken)
+        self._answered(end - asked)
         self._look_alive()
         # Drive and converter sample when the SYNC has arrived.
         taken += canopen.bits_on_wire(0) / self.options.bitrate

@@ -91,6 +91,7 @@ class Follower:
         reference, velocity, acceleration = (each.tolist() for each in wanted)
         running = self.phase == "run"
         begin = clock.now() + period
+        first: float | None = None  # how long after a cycle's begin the first sample was taken
         before = 0.0
         for k in range(count):
             if settled is not None and self.phase == "move" and k * period > settled:
@@ -100,10 +101,16 @@ class Follower:
                 raise LimitError("user", self._interruptions.reason)
             sample = self._drive.read(timeout)
             speed = self._estimate(sample.time, sample.position)
-            target = reference[k] + offset
+            late = sample.time - begin - k * period
+            first = late if first is None else first
+            jitter = round(late - first, 9)  # rounding errors would turn the sign of a velocity of 0
+            # The reference of the instant at which the sample was taken, not at which it was due.
+            pace = velocity[k] + jitter * acceleration[k]
+            target = reference[k] + offset + jitter * 0.5 * (velocity[k] + pace)
+            elapsed = k * period + jitter
             error = sample.position - target if self._feedback else None
             guard.measured(sample, speed, error)
-            torque = self._asked(k * period, sample, speed, (target, velocity[k], acceleration[k]))
+            torque = self._asked(elapsed, sample, speed, (target, pace, acceleration[k]))
             guard.commanded(torque, self._law.saturations)
             told = self._drive.command(torque)
             guard.told(told)
@@ -112,7 +119,7 @@ class Follower:
                 # Until the drive acts, the last command holds: the mean over the cycle is kept.
                 share = min(1.0, (now - sample.time + self._drive.command_latency) / period)
                 held = share * before + (1.0 - share) * told
-                row = (k * period, sample.position, held, sample.reading, target, sample.current)
+                row = (elapsed, sample.position, held, sample.reading, target, sample.current)
                 self.rows.append(row)
                 if recorder is not None:
                     recorder.sample(row)
@@ -120,10 +127,10 @@ class Follower:
                         raise recorder.failure
             before = told
             if self._observer is not None:
-                self._shown(k * period, sample, target, told)
-            late = clock.now() - (begin + (k + 1) * period)
-            self.late.append(late)
-            guard.timed(late)
+                self._shown(elapsed, sample, target, told)
+            missed = clock.now() - (begin + (k + 1) * period)
+            self.late.append(missed)
+            guard.timed(missed)
 
     def _asked(
         self, time: float, sample: DriveSample, speed: float, wanted: tuple[float, float, float]
