@@ -97,6 +97,20 @@ def test_drive_that_raises_while_switching_off_is_closed_all_the_same() -> None:
     assert not bench.elmo.motor_on
 
 
+def test_drive_that_raises_while_it_is_closed_hides_no_stop() -> None:
+    bench = EmulatedSession()
+
+    def fail() -> None:
+        raise DriveFaultError("bus", "it went away")
+
+    bench.drive.close = fail  # type: ignore[method-assign]
+    bench.bus.at(BEGIN, lambda: bench.elmo.fail("encoder loss"))
+    with pytest.raises(SessionStoppedError, match=r"feedback lost.*it went away") as found:
+        bench.session().run()
+    assert found.value.stop.limit == "drive_fault"
+    assert found.value.stop.motor_off is True
+
+
 def test_stop_on_the_way_to_the_start_has_no_recording() -> None:
     bench = EmulatedSession()
     bench.trajectory = jid.Trajectory.sine(0.3, 0.5, offset=0.5, duration=1.0)
@@ -119,3 +133,19 @@ def test_host_that_is_late_now_and_then_is_borne() -> None:
     assert timing["missed"] >= 10
     assert timing["slack_least"] < 0.0
     assert math.isclose(timing["slack_median"], 1.43e-3, rel_tol=0.1)
+
+
+def test_recording_that_cannot_be_written_stops_the_session(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("jointid.hardware.recorder.os.fsync", full)
+    bench = EmulatedSession(output=tmp_path / "run.csv")
+    with pytest.raises(SessionStoppedError, match=r"written: .*No space left") as found:
+        bench.session().run()
+    assert found.value.stop.limit == "recording"
+    assert found.value.stop.motor_off is True
+    assert found.value.recording is not None
+    assert not bench.elmo.motor_on

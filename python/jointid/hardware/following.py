@@ -124,7 +124,8 @@ class Follower:
                 if recorder is not None:
                     recorder.sample(row)
                     if recorder.failure is not None:
-                        raise recorder.failure
+                        reason = f"the recording cannot be written: {recorder.failure}"
+                        raise LimitError("recording", reason) from recorder.failure
             before = told
             if self._observer is not None:
                 self._shown(elapsed, sample, target, told)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -135,7 +136,9 @@ class Session:
                 with self._real_time:
                     cause, moment = self._guarded(recorder, interruptions)
             finally:
-                self._leave(recorder)
+                unwritten = self._leave(recorder)
+        if cause is None and unwritten is not None:
+            cause = LimitError("recording", f"the recording could not be written: {unwritten}")
         if cause is None and interruptions.reason is not None:
             cause = LimitError("user", interruptions.reason)  # it came with the end of the run
         stop = None if cause is None else self._stop(cause, moment)
@@ -208,16 +211,25 @@ class Session:
         except (Exception, KeyboardInterrupt) as error:
             self._end = DriveEnd(motor_off=False, failure=f"{type(error).__name__}: {error}")
 
-    def _leave(self, recorder: Recorder | None) -> None:
+    def _leave(self, recorder: Recorder | None) -> OSError | None:
+        """Motor off, drive left, files closed; what kept the files from being written."""
+        if self._end is None or not self._end.motor_off:
+            self._switch_off()
         try:
-            if self._end is None or not self._end.motor_off:
-                self._switch_off()
             self._drive.close()
-        finally:
-            if hasattr(self._drive, "tap"):
-                self._drive.tap = None
+        except Exception as error:  # why the session ended is not to be hidden by this
+            end = self._end if self._end is not None else DriveEnd()
+            self._end = replace(
+                end, failure=f"{end.failure} {type(error).__name__}: {error}".strip()
+            )
+        if hasattr(self._drive, "tap"):
+            self._drive.tap = None
+        try:
             if recorder is not None:
                 recorder.close()
+        except OSError as error:
+            return error
+        return None
 
     def _stop(self, cause: Exception | KeyboardInterrupt, moment: float) -> Stop:
         follower = self._follower

@@ -15,8 +15,9 @@ class Stop:
     Attributes
     ----------
     limit : str
-        Its name: a field of `SessionLimits`, or "stale_position", "drive_fault", "heartbeat_lost" (the drive's),
-        "host_heartbeat_lost" (ours, so the drive says), "bus", "sensor" (a reading that is no number), "user", "error".
+        Its name: a field of `SessionLimits`, or "stale_position", "drive_fault", "heartbeat_lost" (the
+        drive's), "host_heartbeat_lost" (ours, so the drive says), "bus", "recording" (it cannot be written),
+        "sensor" (a reading that is no number), "user", "error".
     phase : str
         "check", "enable", "move", "settle" or "run".
     time : float
