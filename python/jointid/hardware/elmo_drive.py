@@ -182,8 +182,12 @@ class ElmoDrive:
         self._cycle += 1
         self._answered(end - asked)
         self._look_alive()
-        # Drive and converter sample when the SYNC has arrived.
-        taken += canopen.bits_on_wire(0) / self.options.bitrate
+        # Drive and converter sample when the SYNC has arrived, which other frames may have held up.
+        bits = canopen.bits_on_wire
+        if link.stamped:
+            taken = link.position_came - bits(elmo_setup.POSITION_LENGTH) / self.options.bitrate
+        else:
+            taken += bits(0) / self.options.bitrate
         return DriveSample(
             time=taken,
             position=seen.position,
