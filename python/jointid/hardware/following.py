@@ -117,7 +117,7 @@ class Follower:
                 if recorder is not None:
                     recorder.sample(row)
                     if recorder.failure is not None:
-                        raise recorder.failure
+                        raise unwritten(recorder.failure)
             before = told
             if self._observer is not None:
                 self._shown(k * period, sample, target, told)
@@ -153,3 +153,9 @@ class Follower:
 
 def _told(error: Exception) -> str:
     return f"{type(error).__name__}: {error}"
+
+
+def unwritten(failure: Exception) -> LimitError:
+    """A stop, because the recording cannot be written."""
+    reason = getattr(failure, "strerror", None) or str(failure)
+    return LimitError("recording", f"the recording cannot be written: {reason}")

@@ -13,6 +13,7 @@ from typing import Any, BinaryIO
 
 from jointid.errors import InputError
 from jointid.recording.saving import CSV_MARK, SCHEMA
+from jointid.recording.torn import CLOSING
 
 COLUMNS = (
     "time_s",
@@ -58,6 +59,7 @@ class Recorder:
                 raise InputError(f"output {each} exists; a session overwrites nothing")
         attributes = {
             "schema": SCHEMA,
+            "grown": True,
             "name": name,
             "kind": "revolute",
             "torque_hold": "zoh",
@@ -70,6 +72,7 @@ class Recorder:
         self._rows.write(f"{CSV_MARK}{json.dumps(attributes)}\n{','.join(COLUMNS)}\n".encode())
         self._queue: queue.SimpleQueue[Sequence[float] | Frame | None] = queue.SimpleQueue()
         self._failure: Exception | None = None
+        self._ending: Mapping[str, Any] | None = None
         self._thread = threading.Thread(target=self._write, name="recorder", daemon=True)
         self._thread.start()
 
@@ -81,8 +84,14 @@ class Recorder:
         """Keep a frame."""
         self._queue.put((when, identifier, payload, sent))
 
-    def close(self) -> None:
+    def close(self, ending: Mapping[str, Any] | None = None) -> None:
         """Write what is left; everything is on disk then.
+
+        Parameters
+        ----------
+        ending : mapping, optional
+            How the session ended; JSON. It is the last line of the same file, a comment: nothing that was
+            written is touched, and there is no second file to lose. Without it the file counts as torn.
 
         Raises
         ------
@@ -90,6 +99,7 @@ class Recorder:
             It could not be written.
         """
         if self._thread.is_alive():
+            self._ending = ending
             self._queue.put(None)
             self._thread.join()
         if self._failure is not None:
@@ -106,6 +116,8 @@ class Recorder:
             running = True
             while running:
                 running = self._write_waiting()
+                if not running and self._ending is not None:
+                    self._rows.write(f"{CLOSING}{json.dumps(self._ending)}\n".encode())
                 self._rows.flush()
                 self._frames.flush()
                 if time.monotonic() - synced > _SYNC or not running:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from jointid import _core
 from jointid.hardware.drive import Drive, DriveEnd, DriveFaultError, check_drive
-from jointid.hardware.following import Follower, Observer
+from jointid.hardware.following import Follower, Observer, unwritten
 from jointid.hardware.guard import Guard
 from jointid.hardware.interruptions import Interruptions
 from jointid.hardware.limits import SessionLimits
@@ -123,22 +124,34 @@ class Session:
         recorder: Recorder | None = None
         cause: Exception | KeyboardInterrupt | None = None
         self._follower, self._end = None, None
-        with Interruptions() as interruptions:
-            try:
-                self._refuse_or_go_on()
-                if dry_run:
-                    return None
-                if self._output is not None:
-                    recorder = Recorder(self._output, self._metadata(), self._output.stem)
-                    if hasattr(self._drive, "tap"):
-                        self._drive.tap = recorder.frame
-                with self._real_time:
-                    cause, moment = self._guarded(recorder, interruptions)
-            finally:
-                self._leave(recorder)
-        if cause is None and interruptions.reason is not None:
-            cause = LimitError("user", interruptions.reason)  # it came with the end of the run
-        stop = None if cause is None else self._stop(cause, moment)
+        try:
+            with Interruptions() as interruptions:
+                try:
+                    self._refuse_or_go_on()
+                    if dry_run:
+                        return None
+                    if self._output is not None:
+                        recorder = Recorder(self._output, self._metadata(), self._output.stem)
+                        if hasattr(self._drive, "tap"):
+                            self._drive.tap = recorder.frame
+                    with self._real_time:
+                        cause, moment = self._guarded(recorder, interruptions)
+                finally:
+                    self._leave()
+            if cause is None and interruptions.reason is not None:
+                cause = LimitError("user", interruptions.reason)  # it came with the end of the run
+            stop = None if cause is None else self._stop(cause, moment)
+            if recorder is not None:
+                try:
+                    recorder.close(self._ending(stop))
+                except OSError as error:
+                    if cause is None:
+                        cause = unwritten(error)
+                        stop = self._stop(cause, moment)
+        finally:
+            if recorder is not None:
+                with suppress(OSError):
+                    recorder.close()
         recording = self._recording(stop)
         if stop is not None:
             raise SessionStoppedError(stop, recording) from cause
@@ -208,7 +221,7 @@ class Session:
         except (Exception, KeyboardInterrupt) as error:
             self._end = DriveEnd(motor_off=False, failure=f"{type(error).__name__}: {error}")
 
-    def _leave(self, recorder: Recorder | None) -> None:
+    def _leave(self) -> None:
         try:
             if self._end is None or not self._end.motor_off:
                 self._switch_off()
@@ -216,8 +229,6 @@ class Session:
         finally:
             if hasattr(self._drive, "tap"):
                 self._drive.tap = None
-            if recorder is not None:
-                recorder.close()
 
     def _stop(self, cause: Exception | KeyboardInterrupt, moment: float) -> Stop:
         follower = self._follower
@@ -257,6 +268,24 @@ class Session:
             "version": _core.__version__,
         }
 
+    def _ending(self, stop: Stop | None) -> dict[str, Any]:
+        late = np.array(() if self._follower is None else self._follower.late)
+        timing = None
+        if len(late):
+            timing = {
+                "cycles": len(late),
+                "missed": int((late > 0.0).sum()),
+                "slack_least": float(-late.max()),
+                "slack_median": float(-np.median(late)),
+            }
+        return {
+            "stop": None if stop is None else str(stop),
+            "stopped": None if stop is None else stop.to_dict(),
+            "real_time": list(self._real_time.notes),
+            "motor_off": None if self._end is None else self._end.motor_off,
+            "timing": timing,
+        }
+
     def _recording(self, stop: Stop | None) -> Recording | None:
         follower = self._follower
         if follower is None or len(follower.rows) < 8:
@@ -264,7 +293,6 @@ class Session:
         time, position, torque, sensor, reference, current = map(
             np.array, zip(*follower.rows, strict=True)
         )
-        late = np.array(follower.late)
         return Recording(
             time=time,
             position=position,
@@ -277,16 +305,7 @@ class Session:
             metadata={
                 **self._metadata(),
                 "session": True,
-                "stop": None if stop is None else str(stop),
-                "stopped": None if stop is None else stop.to_dict(),
-                "real_time": list(self._real_time.notes),
-                "motor_off": None if self._end is None else self._end.motor_off,
-                "timing": {
-                    "cycles": len(late),
-                    "missed": int((late > 0.0).sum()),
-                    "slack_least": float(-late.max()),
-                    "slack_median": float(-np.median(late)),
-                },
+                **self._ending(stop),
             },
         )
 
