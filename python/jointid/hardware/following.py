@@ -103,7 +103,9 @@ class Follower:
             speed = self._estimate(sample.time, sample.position)
             late = sample.time - begin - k * period
             first = late if first is None else first
-            jitter = round(late - first, 9)  # rounding errors would turn the sign of a velocity of 0
+            jitter = round(
+                late - first, 9
+            )  # rounding errors would turn the sign of a velocity of 0
             # The reference of the instant at which the sample was taken, not at which it was due.
             pace = velocity[k] + jitter * acceleration[k]
             target = reference[k] + offset + jitter * 0.5 * (velocity[k] + pace)
@@ -124,8 +126,7 @@ class Follower:
                 if recorder is not None:
                     recorder.sample(row)
                     if recorder.failure is not None:
-                        reason = f"the recording cannot be written: {recorder.failure}"
-                        raise LimitError("recording", reason) from recorder.failure
+                        raise unwritten(recorder.failure)
             before = told
             if self._observer is not None:
                 self._shown(elapsed, sample, target, told)
@@ -161,3 +162,9 @@ class Follower:
 
 def _told(error: Exception) -> str:
     return f"{type(error).__name__}: {error}"
+
+
+def unwritten(failure: Exception) -> LimitError:
+    """A stop, because the recording cannot be written."""
+    reason = getattr(failure, "strerror", None) or str(failure)
+    return LimitError("recording", f"the recording cannot be written: {reason}")
