@@ -1,6 +1,6 @@
 """Where the search looks: bounds from the joint file and the call, the rest from the data."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.errors import InputError
+from jointid.identification.gain_domain import GainGuess, around, guess_gain
 from jointid.identification.inner_products import size
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter, merge
@@ -19,6 +20,9 @@ _SLOWEST_STRIBECK = 0.02
 _FASTEST_STRIBECK = 0.5
 # Exponents of the Stribeck decay that have been seen in the literature (Armstrong-Helouvry 1991).
 _EXPONENTS = (0.5, 4.0)
+# Shapes at which a gain is looked for, in logarithms between their bounds; fewer on long recordings.
+_SHARES = (0.25, 0.5, 0.75, 1.0)
+_LONG = 500_000
 
 Array = NDArray[np.float64]
 
@@ -46,6 +50,17 @@ class SearchDomain:
         return bool(self.lower[index] == self.upper[index])
 
 
+def _shape_range(parameter: Parameter, peak_speed: float) -> tuple[float, float]:
+    """Where a shape lies, as far as it is known."""
+    if not parameter.vary and parameter.value is not None:
+        return parameter.value, parameter.value
+    low, high = _shape_bounds(parameter.name, peak_speed)
+    return (
+        low if parameter.min is None else parameter.min,
+        high if parameter.max is None else parameter.max,
+    )
+
+
 def _shape_bounds(name: str, peak_speed: float) -> tuple[float, float]:
     if name == "stribeck":
         return (_FASTEST_STRIBECK * peak_speed) ** -2, (_SLOWEST_STRIBECK * peak_speed) ** -2
@@ -54,68 +69,66 @@ def _shape_bounds(name: str, peak_speed: float) -> tuple[float, float]:
     return _EXPONENTS
 
 
-def _coefficient_bounds(
-    penalty: _core.Penalty, index: int, peak_speed: float
-) -> tuple[float, float]:
-    term, name = penalty.terms[index], penalty.names[index]
-    shapes = [
-        _shape_bounds(shape, peak_speed)[0] for shape in penalty.names[penalty.coefficients :]
-    ]
-    columns = penalty.columns(np.array(shapes))
-    column = columns[:, index]
-    extent = size(column)
-    if extent == 0.0:
-        raise InputError(
-            f"the recording does not excite '{name}' at all: fix it with parameters={{'{name}': value}}"
-        )
-    level = size(penalty.target)
-    if level == 0.0:
-        raise InputError("the torque is zero throughout: there is nothing to identify")
-    if term.name == "sensor_gain":
-        return _gain_bounds(penalty, columns, index)
-    scale = level / extent
-    if term.name == "sensor_offset":
-        return _offset_bounds(penalty, columns, scale)
-    return (0.0 if term.non_negative else -_GENEROUS * scale), _GENEROUS * scale
+class _Recorded:
+    """The penalty's terms on the recording, each computed once."""
 
+    def __init__(self, penalty: _core.Penalty, shapes: list[tuple[float, float]]) -> None:
+        self.penalty, self._shapes = penalty, shapes
+        self._columns: Array | None = None
+        self._gain: GainGuess | None = None
 
-def _reading(penalty: _core.Penalty, columns: Array) -> tuple[Array, float]:
-    """Mean sensor reading of each window, and over all."""
-    gain = penalty.names.index("sensor_gain")
-    reading = columns[:, gain] / penalty.usable_duration
-    mean = float(columns[:, gain].sum() / penalty.usable_duration.sum())
-    return reading, mean
+    @property
+    def columns(self) -> Array:
+        """At the shapes' lower bounds."""
+        if self._columns is None:
+            self._columns = self.penalty.columns(np.array([low for low, _ in self._shapes]))
+        return self._columns
 
+    def gain(self, fixed: Mapping[str, float]) -> GainGuess:
+        """Of the sensor, by least squares over shapes between the bounds."""
+        if self._gain is None:
+            self._gain = guess_gain(self.penalty, self._shaped(), fixed)
+        return self._gain
 
-def _gain_bounds(penalty: _core.Penalty, columns: Array, index: int) -> tuple[float, float]:
-    """Gain by its size in the torque's balance, its sign by regressing the torque on all terms.
+    def _shaped(self) -> Iterator[Array]:
+        yield self.columns
+        shares = _SHARES if self.penalty.total_samples < _LONG else _SHARES[1:2]
+        for share in shares if self._shapes else ():
+            ends = [(max(low, 1e-300), high) for low, high in self._shapes]
+            yield self.penalty.columns(
+                np.array([low * (high / low) ** share for low, high in ends])
+            )
 
-    A sensor's zero and polarity are arbitrary, so neither the raw product of reading and torque nor
-    the size of the reading says anything.
-    """
-    reading, mean = _reading(penalty, columns)
-    spread = float(np.std(reading))
-    if spread <= 1e-9 * max(abs(mean), 1e-300):
-        raise InputError(
-            "the sensor's reading does not vary: its gain cannot be identified; check the column, or drop the sensor"
-        )
-    sizes = np.linalg.norm(columns, axis=0)
-    solution, *_ = np.linalg.lstsq(columns / np.where(sizes > 0.0, sizes, 1.0), penalty.target)
-    sign = 1.0 if solution[index] >= 0.0 else -1.0
-    torque = penalty.target / penalty.usable_duration
-    reach = float(np.std(torque)) / spread
-    low, high = sorted((sign * reach / 100.0, sign * reach * _GENEROUS))
-    return low, high
+    def coefficient_bounds(self, index: int, fixed: Mapping[str, float]) -> tuple[float, float]:
+        """Room for a coefficient that is not bounded."""
+        penalty = self.penalty
+        term, name = penalty.terms[index], penalty.names[index]
+        extent = size(self.columns[:, index])
+        if extent == 0.0:
+            raise InputError(
+                f"the recording does not excite '{name}' at all: fix it with parameters={{'{name}': value}}"
+            )
+        level = size(penalty.target)
+        if level == 0.0:
+            raise InputError("the torque is zero throughout: there is nothing to identify")
+        if term.name == "sensor_gain":
+            return self.gain(fixed).bounds
+        scale = level / extent
+        if term.name == "sensor_offset":
+            return self._offset_bounds(scale, fixed)
+        return (0.0 if term.non_negative else -_GENEROUS * scale), _GENEROUS * scale
 
-
-def _offset_bounds(penalty: _core.Penalty, columns: Array, scale: float) -> tuple[float, float]:
-    """Room for the torque's level and for the reading's mean times any gain."""
-    reading, mean = _reading(penalty, columns)
-    spread = float(np.std(reading))
-    torque = penalty.target / penalty.usable_duration
-    gain = _GENEROUS * float(np.std(torque)) / spread if spread > 0.0 else 0.0
-    reach = _GENEROUS * scale + abs(mean) * gain
-    return -reach, reach
+    def _offset_bounds(self, scale: float, fixed: Mapping[str, float]) -> tuple[float, float]:
+        """Room for the torque's level and for the reading's mean times any likely gain."""
+        penalty = self.penalty
+        reading = self.columns[:, penalty.names.index("sensor_gain")]
+        mean = float(reading.sum() / penalty.usable_duration.sum())
+        gain = fixed.get("sensor_gain")
+        if gain is None:
+            guess = self.gain(fixed)
+            gain = _GENEROUS * max(guess.swing, abs(guess.value))
+        reach = _GENEROUS * scale + abs(mean) * abs(gain)
+        return -reach, reach
 
 
 def _known_values(joint: Joint | None) -> dict[str, Parameter]:
@@ -160,8 +173,17 @@ def domain_for(
     lower = np.empty(len(names))
     upper = np.empty(len(names))
     from_data = []
-    for index, name in enumerate(names):
-        parameter = table.get(name) or table.get(name.split("[")[0]) or Parameter(name=name)
+    known = [
+        table.get(name) or table.get(name.split("[")[0]) or Parameter(name=name) for name in names
+    ]
+    fixed = {
+        name: each.value
+        for name, each in zip(names, known, strict=True)
+        if not each.vary and each.value is not None
+    }
+    shapes = [_shape_range(each, peak_speed) for each in known[penalty.coefficients :]]
+    recorded = _Recorded(penalty, shapes)
+    for index, (name, parameter) in enumerate(zip(names, known, strict=True)):
         if not parameter.vary:
             assert parameter.value is not None  # Parameter refuses a fixed one without
             lower[index] = upper[index] = parameter.value
@@ -171,8 +193,10 @@ def domain_for(
             from_data.append(name)
             if index >= penalty.coefficients:
                 bounds = _shape_bounds(name, peak_speed)
+            elif name == "sensor_gain" and parameter.value:
+                bounds = around(parameter.value)
             else:
-                bounds = _coefficient_bounds(penalty, index, peak_speed)
+                bounds = recorded.coefficient_bounds(index, fixed)
             low = bounds[0] if low is None else low
             high = bounds[1] if high is None else high
         if not low < high:

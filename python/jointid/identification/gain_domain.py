@@ -1,0 +1,133 @@
+"""Where to look for a sensor's gain that nobody bounds: its sign and size, by least squares with either sign."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.errors import InputError
+
+# A gain lies within this factor of what least squares finds: in a motion that is mostly friction, with
+# none of its shapes quite right, that may be far off ...
+_ROOM = 100.0
+# ... or between these shares of the gain at which the sensor would make up all of the torque's swing.
+_LEAST, _MOST = 0.001, 10.0
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GainGuess:
+    """A gain by least squares.
+
+    Attributes
+    ----------
+    value : float
+        With its sign; 0 when no gain of either sign explains anything.
+    swing : float
+        The gain at which the sensor's swing would be the torque's.
+    """
+
+    value: float
+    swing: float
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Lower and upper bound; of one sign."""
+        size = abs(self.value) if self.value != 0.0 else self.swing
+        low = min(size / _ROOM, _LEAST * self.swing)
+        high = max(size * _ROOM, _MOST * self.swing)
+        return (low, high) if self.value >= 0.0 else (-high, -low)
+
+
+def around(value: float) -> tuple[float, float]:
+    """Bounds about a gain that the joint file states without any."""
+    ends = sorted((value / _ROOM, value * _ROOM))
+    return ends[0], ends[1]
+
+
+def guess_gain(
+    penalty: _core.Penalty, columns: Iterable[Array], fixed: Mapping[str, float]
+) -> GainGuess:
+    """The gain that fits best, of either sign, with all that rubs rubbing.
+
+    A sensor's zero and polarity are arbitrary, so neither the raw product of reading and torque nor the
+    size of the reading says anything; and a small motion hides a gain of the right sign behind friction
+    of the wrong one, unless friction is kept from being negative.
+
+    Parameters
+    ----------
+    penalty : Penalty
+        With a sensor.
+    columns : iterable of ndarray, shape (windows, coefficients)
+        The terms' integrals, for some shapes of the Stribeck term.
+    fixed : mapping of str to float
+        Coefficients that are known.
+
+    Raises
+    ------
+    InputError
+        The reading does not vary.
+    """
+    best, value, swing = np.inf, 0.0, 0.0
+    for each in columns:
+        swing = swing or _swing(penalty, each)
+        for sign in (1.0, -1.0):
+            misfit, gain = _fitted(penalty, each, fixed, sign)
+            if misfit < best * (1.0 - 1e-9):
+                best, value = misfit, gain
+    return GainGuess(value=value, swing=swing)
+
+
+def _swing(penalty: _core.Penalty, columns: Array) -> float:
+    column = columns[:, penalty.names.index("sensor_gain")]
+    reading = column / penalty.usable_duration
+    mean = float(column.sum() / penalty.usable_duration.sum())
+    spread = float(np.std(reading))
+    if spread <= 1e-9 * max(abs(mean), 1e-300):
+        raise InputError(
+            "the sensor's reading does not vary: its gain cannot be identified; check the column, or drop the sensor"
+        )
+    return float(np.std(penalty.target / penalty.usable_duration)) / spread
+
+
+def _fitted(
+    penalty: _core.Penalty, columns: Array, fixed: Mapping[str, float], sign: float
+) -> tuple[float, float]:
+    """Misfit and gain, friction not negative, the gain of this sign (0: of none)."""
+    from scipy.optimize import nnls
+
+    names = penalty.names[: penalty.coefficients]
+    of_gain = names.index("sensor_gain")
+    torque = np.array(penalty.target)
+    signed: list[int] = []
+    free: list[int] = []
+    for index, (name, term) in enumerate(zip(names, penalty.terms, strict=False)):
+        if index == of_gain:
+            continue
+        if name in fixed:
+            torque -= fixed[name] * columns[:, index]
+        else:
+            (signed if term.non_negative else free).append(index)
+    reading = columns[:, of_gain]
+    reversed_roles = penalty.residual == _core.Residual.sensor
+    if reversed_roles:
+        # reading = (torque - the other terms) / gain: linear in 1 / gain, and in the rest over it.
+        sides, target = [sign * torque, *(-sign * columns[:, i] for i in signed)], reading
+    else:
+        sides, target = [sign * reading, *(columns[:, i] for i in signed)], torque
+    matrix = np.column_stack(sides)
+    whole = np.column_stack([*(columns[:, i] for i in free), matrix, target])
+    sizes = np.linalg.norm(whole, axis=0)
+    sizes[sizes == 0.0] = 1.0
+    triangle: Array = np.asarray(np.linalg.qr(whole / sizes, mode="r"))
+    rest = triangle[len(free) :, len(free) :]  # what the terms of any sign leave
+    solution, misfit = nnls(rest[:, :-1], rest[:, -1])
+    lead = float(sign * solution[0] * sizes[-1] / sizes[len(free)])
+    if lead == 0.0:
+        return float(misfit), 0.0
+    return float(misfit), 1.0 / lead if reversed_roles else lead
