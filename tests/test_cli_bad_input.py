@@ -226,3 +226,36 @@ def test_bad_usage_ends_in_one_line(
         main(arguments)
     assert ended.value.code == 2
     assert len(capsys.readouterr().err.strip().splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["identify", "RUN", "--report", "RUN"],
+        ["identify", "RUN", "--checkpoint", "RUN"],
+        ["identify", "RUN", "--joint", "JOINT", "--report", "JOINT"],
+        ["compare", "RUN", "--report", "RUN"],
+        ["report", "ESTIMATE", "--output", "ESTIMATE"],
+        ["simulate", "JOINT", "--trajectory", "RUN", "--output", "RUN"],
+        ["sweep", "RUN", "--table", "RUN", "--grid", "windows=50"],
+        ["sweep", "RUN", "--joint", "JOINT", "--output", "JOINT", "--grid", "windows=50"],
+    ],
+)
+def test_no_output_is_written_over_an_input(
+    words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    files = {"RUN": "run.csv", "JOINT": "joint.toml", "ESTIMATE": "estimate.html"}
+    for name in files.values():
+        (tmp_path / name).write_text(f"{name}: to be kept", encoding="utf-8")
+    asked = [str(tmp_path / files[word]) if word in files else word for word in words]
+    assert main(asked) == 2
+    told = capsys.readouterr().err
+    assert "written over" in told
+    assert told.count("\n") == 1
+    for name in files.values():
+        assert (tmp_path / name).read_text(encoding="utf-8") == f"{name}: to be kept"
+
+
+def test_a_report_is_a_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["identify", "run.csv", "--report", str(tmp_path / "report.pdf")]) == 2
+    assert "report.pdf: a report is a page, .html" in capsys.readouterr().err

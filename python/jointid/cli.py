@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from jointid.cli_arguments import BAD_USAGE, parser
+from jointid.cli_arguments import BAD_USAGE, check_distinct, parser
 
 DONE, BAD_INPUT, INTERRUPTED = 0, BAD_USAGE, 130
 
@@ -25,6 +25,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     from jointid import cli_commands
 
     try:
+        check_distinct(arguments)
         code = getattr(cli_commands, arguments.command)(arguments)
     except KeyboardInterrupt:
         print("jointid: interrupted", file=sys.stderr)

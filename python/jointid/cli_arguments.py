@@ -303,7 +303,53 @@ def check_outputs(arguments: argparse.Namespace) -> None:
     if save is not None and save.suffix not in (".toml", ".json"):
         raise InputError(f"--save {save}: an estimate is saved as .toml (joint file) or .json")
     check_folder("--save", save)
-    check_folder("--report", arguments.report)
+    check_page("--report", arguments.report)
+
+
+_READ = ("recordings", "recording", "joint", "estimate", "believe", "trajectory", "resume")
+_WRITTEN = ("output", "report", "table", "plot", "checkpoint", "save")
+# Going on where a file ends, and a joint file that keeps its words, are meant.
+_MEANT = {("resume", "checkpoint"), ("joint", "save")}
+
+
+def check_distinct(arguments: argparse.Namespace) -> None:
+    """Refuse to write over what is read.
+
+    Raises
+    ------
+    InputError
+        An output is one of the inputs.
+    """
+    from jointid.errors import InputError
+
+    for written in _WRITTEN:
+        output = getattr(arguments, written, None)
+        if not isinstance(output, Path):
+            continue
+        for read in _READ:
+            given = getattr(arguments, read, None)
+            for path in given if isinstance(given, list) else [given]:
+                if not isinstance(path, str | Path) or (read, written) in _MEANT:
+                    continue
+                if Path(path).is_file() and output.exists() and output.samefile(path):
+                    raise InputError(
+                        f"--{written} {output}: this is read as well, and would be written over; give another name"
+                    )
+
+
+def check_page(option: str, path: Path | None) -> None:
+    """Refuse a page that is no .html, or in a folder that does not exist.
+
+    Raises
+    ------
+    InputError
+        Another extension, or no such folder.
+    """
+    from jointid.errors import InputError
+
+    if path is not None and path.suffix.lower() not in (".html", ".htm"):
+        raise InputError(f"{option} {path}: a report is a page, .html")
+    check_folder(option, path)
 
 
 def check_folder(option: str, path: Path | None) -> None:

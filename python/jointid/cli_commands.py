@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointid.cli_arguments import check_folder, check_outputs, fixed_values, load_all
+from jointid.cli_arguments import check_outputs, check_page, fixed_values, load_all
 from jointid.cli_session import emulate, run
 from jointid.cli_simulation import simulate
 from jointid.cli_study import sweep
@@ -122,7 +122,7 @@ def report(arguments: argparse.Namespace) -> None:
     from jointid.reporting import save_report
 
     path = arguments.estimate
-    check_folder("--output", arguments.output)
+    check_page("--output", arguments.output)
     try:
         estimate = Estimate.from_json(path.read_text(encoding="utf-8"))
         page = save_report(estimate, arguments.output)
