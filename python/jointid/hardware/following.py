@@ -103,7 +103,9 @@ class Follower:
             speed = self._estimate(sample.time, sample.position)
             late = sample.time - begin - k * period
             first = late if first is None else first
-            jitter = round(late - first, 9)  # rounding errors would turn the sign of a velocity of 0
+            jitter = round(
+                late - first, 9
+            )  # rounding errors would turn the sign of a velocity of 0
             # The reference of the instant at which the sample was taken, not at which it was due.
             pace = velocity[k] + jitter * acceleration[k]
             target = reference[k] + offset + jitter * 0.5 * (velocity[k] + pace)
