@@ -177,13 +177,19 @@ class ElmoDrive:
         link.send(canopen.SYNC, b"")
         taken = link.clock.now()  # behind the sending, which may have had to wait for the processor
         source = self.options.torque
+        bits = canopen.bits_on_wire
+        behind = bits(elmo_setup.POSITION_LENGTH)  # the SYNC, until the position is here
         if isinstance(source, AnalogInput) and self._cycle % source.every == 0:
             self._ask_analog(source)
+            behind += bits(4)  # the question goes before the answer
         self._cycle += 1
         self._answered(end - asked)
         self._look_alive()
-        # Drive and converter sample when the SYNC has arrived.
-        taken += canopen.bits_on_wire(0) / self.options.bitrate
+        # Drive and converter sample when the SYNC has arrived, which other frames may have held up.
+        if link.stamped:
+            taken = link.position_came - behind / self.options.bitrate
+        else:
+            taken += bits(0) / self.options.bitrate
         return DriveSample(
             time=taken,
             position=seen.position,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -51,6 +52,10 @@ class ElmoLink:
         self.booted = False
         self.up = False  # from then on a boot-up message or another state is a fault
         self.heard = 0.0  # [s], when the drive's heartbeat came last
+        self.position_came = 0.0  # [s], when the position's frame came last
+        # SocketCAN's frames bear the time at which the kernel got them.
+        self._virtual = clock is None and own is bus
+        self.stamped = self._virtual or "socketcan" in type(bus).__module__.split(".")
         node = options.node
         self._command_id, self._reply_id = options.command_id, options.reply_id
         self.master = next(each for each in _MASTERS if each != node)
@@ -209,11 +214,22 @@ class ElmoLink:
             return True
         if message.arbitration_id in self._ours:
             return True
-        payload = bytes(message.data)
+        payload, when = bytes(message.data), self._arrival(message)
         if self.tap is not None:
-            self.tap(self.clock.now(), message.arbitration_id, payload, False)
+            self.tap(when, message.arbitration_id, payload, False)
+        if message.arbitration_id == self._options.position_id:
+            self.position_came = when
         self._sort(message.arbitration_id, payload)
         return True
+
+    def _arrival(self, message: can.Message) -> float:
+        """When a frame came [s], on our clock: by the bus's own stamp where it tells the same time."""
+        if self._virtual:
+            return message.timestamp
+        now = self.clock.now()
+        if self.stamped:  # the kernel's, of its wall clock; the frame may have waited for us since
+            return now - min(1.0, max(0.0, time.time() - message.timestamp))
+        return now
 
     def _sort(self, identifier: int, payload: bytes) -> None:
         node = self._options.node

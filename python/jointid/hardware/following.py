@@ -126,8 +126,7 @@ class Follower:
                 if recorder is not None:
                     recorder.sample(row)
                     if recorder.failure is not None:
-                        reason = f"the recording cannot be written: {recorder.failure}"
-                        raise LimitError("recording", reason) from recorder.failure
+                        raise unwritten(recorder.failure)
             before = told
             if self._observer is not None:
                 self._shown(elapsed, sample, target, told)
@@ -163,3 +162,9 @@ class Follower:
 
 def _told(error: Exception) -> str:
     return f"{type(error).__name__}: {error}"
+
+
+def unwritten(failure: Exception) -> LimitError:
+    """A stop, because the recording cannot be written."""
+    reason = getattr(failure, "strerror", None) or str(failure)
+    return LimitError("recording", f"the recording cannot be written: {reason}")

@@ -13,6 +13,7 @@ from typing import Any, BinaryIO
 
 from jointid.errors import InputError
 from jointid.recording.saving import CSV_MARK, SCHEMA
+from jointid.recording.torn import CLOSING
 
 COLUMNS = (
     "time_s",
@@ -26,6 +27,23 @@ _FLUSH = 0.02  # [s]: more is not lost when the process is killed
 _SYNC = 0.5  # [s]: more is not lost with the power
 
 Frame = tuple[float, int, bytes, bool]
+
+
+def check_output(path: Path) -> None:
+    """See that a session's files can be made.
+
+    Raises
+    ------
+    InputError
+        They exist, or the folder does not, or it is no .csv.
+    """
+    if path.suffix != ".csv":
+        raise InputError(f"output {path}: a session writes .csv")
+    if not path.parent.is_dir():
+        raise InputError(f"output {path}: the folder {path.parent} does not exist")
+    for each in (path, path.with_suffix(".log")):
+        if each.exists():
+            raise InputError(f"output {each} exists; a session overwrites nothing")
 
 
 class Recorder:
@@ -48,16 +66,11 @@ class Recorder:
     """
 
     def __init__(self, path: Path, metadata: Mapping[str, Any], name: str = "") -> None:
-        if path.suffix != ".csv":
-            raise InputError(f"output {path}: a session writes .csv")
-        if not path.parent.is_dir():
-            raise InputError(f"output {path}: the folder {path.parent} does not exist")
+        check_output(path)
         self.path, self.log = path, path.with_suffix(".log")
-        for each in (self.path, self.log):
-            if each.exists():
-                raise InputError(f"output {each} exists; a session overwrites nothing")
         attributes = {
             "schema": SCHEMA,
+            "grown": True,
             "name": name,
             "kind": "revolute",
             "torque_hold": "zoh",
@@ -70,6 +83,7 @@ class Recorder:
         self._rows.write(f"{CSV_MARK}{json.dumps(attributes)}\n{','.join(COLUMNS)}\n".encode())
         self._queue: queue.SimpleQueue[Sequence[float] | Frame | None] = queue.SimpleQueue()
         self._failure: Exception | None = None
+        self._ending: Mapping[str, Any] | None = None
         self._thread = threading.Thread(target=self._write, name="recorder", daemon=True)
         self._thread.start()
 
@@ -81,8 +95,14 @@ class Recorder:
         """Keep a frame."""
         self._queue.put((when, identifier, payload, sent))
 
-    def close(self) -> None:
+    def close(self, ending: Mapping[str, Any] | None = None) -> None:
         """Write what is left; everything is on disk then.
+
+        Parameters
+        ----------
+        ending : mapping, optional
+            How the session ended; JSON. It is the last line of the same file, a comment: nothing that was
+            written is touched, and there is no second file to lose. Without it the file counts as torn.
 
         Raises
         ------
@@ -90,6 +110,7 @@ class Recorder:
             It could not be written.
         """
         if self._thread.is_alive():
+            self._ending = ending
             self._queue.put(None)
             self._thread.join()
         if self._failure is not None:
@@ -106,6 +127,8 @@ class Recorder:
             running = True
             while running:
                 running = self._write_waiting()
+                if not running and self._ending is not None:
+                    self._rows.write(f"{CLOSING}{json.dumps(self._ending)}\n".encode())
                 self._rows.flush()
                 self._frames.flush()
                 if time.monotonic() - synced > _SYNC or not running:

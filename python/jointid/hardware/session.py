@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,12 +13,12 @@ import numpy as np
 
 from jointid import _core
 from jointid.hardware.drive import Drive, DriveEnd, DriveFaultError, check_drive
-from jointid.hardware.following import Follower, Observer
+from jointid.hardware.following import Follower, Observer, unwritten
 from jointid.hardware.guard import Guard
 from jointid.hardware.interruptions import Interruptions
 from jointid.hardware.limits import SessionLimits
 from jointid.hardware.realtime import RealTime, RealTimeOptions
-from jointid.hardware.recorder import Recorder
+from jointid.hardware.recorder import Frame, Recorder, check_output
 from jointid.hardware.session_options import SessionOptions
 from jointid.hardware.start_checks import problems_at_rest, problems_on_paper
 from jointid.hardware.stop import LimitError, SessionRefusedError, SessionStoppedError, Stop
@@ -124,24 +126,39 @@ class Session:
         recorder: Recorder | None = None
         cause: Exception | KeyboardInterrupt | None = None
         self._follower, self._end = None, None
-        with Interruptions() as interruptions:
-            try:
-                self._refuse_or_go_on()
-                if dry_run:
-                    return None
-                if self._output is not None:
-                    recorder = Recorder(self._output, self._metadata(), self._output.stem)
-                    if hasattr(self._drive, "tap"):
-                        self._drive.tap = recorder.frame
-                with self._real_time:
-                    cause, moment = self._guarded(recorder, interruptions)
-            finally:
-                unwritten = self._leave(recorder)
-        if cause is None and unwritten is not None:
-            cause = LimitError("recording", f"the recording could not be written: {unwritten}")
-        if cause is None and interruptions.reason is not None:
-            cause = LimitError("user", interruptions.reason)  # it came with the end of the run
-        stop = None if cause is None else self._stop(cause, moment)
+        early: list[Frame] = []  # frames of bringing the drive up, before there is a recorder
+        if self._output is not None and not dry_run:
+            check_output(self._output)
+            self._tap(lambda *frame: early.append(frame))
+        try:
+            with Interruptions() as interruptions:
+                try:
+                    self._refuse_or_go_on()
+                    if dry_run:
+                        return None
+                    if self._output is not None:
+                        recorder = Recorder(self._output, self._metadata(), self._output.stem)
+                        for frame in early:
+                            recorder.frame(*frame)
+                        self._tap(recorder.frame)
+                    with self._real_time:
+                        cause, moment = self._guarded(recorder, interruptions)
+                finally:
+                    self._leave()
+            if cause is None and interruptions.reason is not None:
+                cause = LimitError("user", interruptions.reason)  # it came with the end of the run
+            stop = None if cause is None else self._stop(cause, moment)
+            if recorder is not None:
+                try:
+                    recorder.close(self._ending(stop))
+                except OSError as error:
+                    if cause is None:
+                        cause = unwritten(error)
+                        stop = self._stop(cause, moment)
+        finally:
+            if recorder is not None:
+                with suppress(OSError):
+                    recorder.close()
         recording = self._recording(stop)
         if stop is not None:
             raise SessionStoppedError(stop, recording) from cause
@@ -211,8 +228,8 @@ class Session:
         except (Exception, KeyboardInterrupt) as error:
             self._end = DriveEnd(motor_off=False, failure=f"{type(error).__name__}: {error}")
 
-    def _leave(self, recorder: Recorder | None) -> OSError | None:
-        """Motor off, drive left, files closed; what kept the files from being written."""
+    def _leave(self) -> None:
+        """Motor off, drive left."""
         if self._end is None or not self._end.motor_off:
             self._switch_off()
         try:
@@ -222,14 +239,11 @@ class Session:
             self._end = replace(
                 end, failure=f"{end.failure} {type(error).__name__}: {error}".strip()
             )
+        self._tap(None)
+
+    def _tap(self, tap: Callable[..., object] | None) -> None:
         if hasattr(self._drive, "tap"):
-            self._drive.tap = None
-        try:
-            if recorder is not None:
-                recorder.close()
-        except OSError as error:
-            return error
-        return None
+            self._drive.tap = tap
 
     def _stop(self, cause: Exception | KeyboardInterrupt, moment: float) -> Stop:
         follower = self._follower
@@ -269,6 +283,24 @@ class Session:
             "version": _core.__version__,
         }
 
+    def _ending(self, stop: Stop | None) -> dict[str, Any]:
+        late = np.array(() if self._follower is None else self._follower.late)
+        timing = None
+        if len(late):
+            timing = {
+                "cycles": len(late),
+                "missed": int((late > 0.0).sum()),
+                "slack_least": float(-late.max()),
+                "slack_median": float(-np.median(late)),
+            }
+        return {
+            "stop": None if stop is None else str(stop),
+            "stopped": None if stop is None else stop.to_dict(),
+            "real_time": list(self._real_time.notes),
+            "motor_off": None if self._end is None else self._end.motor_off,
+            "timing": timing,
+        }
+
     def _recording(self, stop: Stop | None) -> Recording | None:
         follower = self._follower
         if follower is None or len(follower.rows) < 8:
@@ -276,7 +308,6 @@ class Session:
         time, position, torque, sensor, reference, current = map(
             np.array, zip(*follower.rows, strict=True)
         )
-        late = np.array(follower.late)
         return Recording(
             time=time,
             position=position,
@@ -289,16 +320,7 @@ class Session:
             metadata={
                 **self._metadata(),
                 "session": True,
-                "stop": None if stop is None else str(stop),
-                "stopped": None if stop is None else stop.to_dict(),
-                "real_time": list(self._real_time.notes),
-                "motor_off": None if self._end is None else self._end.motor_off,
-                "timing": {
-                    "cycles": len(late),
-                    "missed": int((late > 0.0).sum()),
-                    "slack_least": float(-late.max()),
-                    "slack_median": float(-np.median(late)),
-                },
+                **self._ending(stop),
             },
         )
 

@@ -4,6 +4,7 @@ import csv
 import re
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from io import StringIO
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -21,6 +22,7 @@ from jointid.recording.csv_dialect import (
 from jointid.recording.csv_text import text_of
 from jointid.recording.saving import CSV_MARK, saved_attributes
 from jointid.recording.signals import FloatArray
+from jointid.recording.torn import session_text, with_notes
 
 _LONG = 1 << 20  # characters: beyond, a file is read as a stream if it is plain
 _INNER = "\x1f"  # separates cells where they are put together anew: no file's text holds it
@@ -48,12 +50,17 @@ class CsvTable:
     def __init__(self, path: Path) -> None:
         self.source = str(path)
         self._content = text_of(path)
+        notes = None
+        if self._content.startswith(CSV_MARK):
+            self._content, notes = session_text(self._content)
         self._table: FloatArray | None = None
         long = len(self._content) > _LONG
         lines = _lines(self._content[:_LONG])[:-1] if long else _lines(self._content)
         self.saved: Mapping[str, Any] | None = None
         if lines[0].startswith(CSV_MARK):
             self.saved = saved_attributes(lines[0][len(CSV_MARK) :], f"{self.source}, line 1")
+            if notes is not None:
+                self.saved = with_notes(self.saved, notes)
         told = (k for k, line in enumerate(lines) if line.strip() and line[0] != "#")
         first = next(told, None)
         named = None if first is None else separator_named(lines[first])
@@ -66,7 +73,12 @@ class CsvTable:
         )
         self._below = self._read_header(lines, first)
         if long and '"' not in self._content:
-            self._table = _plain_numbers(path, self._below, self._separator, len(self.headers))
+            self._table = _plain_numbers(
+                path if notes is None else StringIO(self._content),
+                self._below,
+                self._separator,
+                len(self.headers),
+            )
         if self._table is None:
             if not self._rows:
                 raise InputError(f"{self.header_place}: a header, but no rows below it")
@@ -187,7 +199,9 @@ def _lines(text: str) -> list[str]:
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
-def _plain_numbers(path: Path, below: int, separator: str, count: int) -> FloatArray | None:
+def _plain_numbers(
+    path: Path | StringIO, below: int, separator: str, count: int
+) -> FloatArray | None:
     """Return all cells below the header of a file that holds nothing but numbers, else None.
 
     The same parser as for any other file, but from the file's stream: a million rows as texts of their
