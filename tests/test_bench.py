@@ -8,6 +8,7 @@ import pytest
 import jointid as jid
 from jointid.hardware.bench import Bench
 from jointid.hardware.elmo_drive import ElmoDrive
+from jointid.hardware.emulated_bench import true_joint
 from jointid.hardware.emulated_bus import EmulatedBus
 from jointid.hardware.torque_source import AnalogInput, SyncedConverter
 
@@ -127,3 +128,13 @@ def test_a_joint_without_a_session_is_no_bench(tmp_path: Path) -> None:
     jid.thesis_joint().save(path)
     with pytest.raises(jid.InputError, match=r"no table \[session\]"):
         Bench.load(path)
+
+
+def test_the_emulated_gear_ripples_when_the_truth_says_so(tmp_path: Path) -> None:
+    plain = true_joint(Bench.load(EXAMPLE))
+    assert plain.ripple == ()
+    truth = "sensor_offset = 15.0\nripple_sin_2 = 2.6\nripple_cos_2 = 0.5"
+    rippled = true_joint(Bench.load(written(tmp_path, "sensor_offset = 15.0", truth)))
+    assert rippled.ripple == (2,)
+    assert rippled.parameters["ripple_sin_2"].value == 2.6
+    assert rippled.parameters["ripple_cos_2"].value == 0.5

@@ -51,3 +51,11 @@ def test_simulation_example_closes_the_ring(capsys: pytest.CaptureFixture[str]) 
     }
     assert error["identified"] < error["first guess"] / 10.0
     assert error["identified"] == pytest.approx(error["true"], rel=0.05)
+
+
+def test_bench_example_closes_the_ring(capsys: pytest.CaptureFixture[str]) -> None:
+    _module(EXAMPLES[4]).main()
+    told = capsys.readouterr().out
+    assert "nothing speaks against a start" in told
+    factor = told.split("fell by a factor of ")[1].split(";")[0]
+    assert float(factor) > 10.0

@@ -48,7 +48,8 @@ class Emulation:
     Attributes
     ----------
     truth : mapping of str to float
-        Values of the joint's parameters, by name [SI].
+        Values of the joint's parameters, by name [SI]. With "ripple_sin_2" and "ripple_cos_2" the gear
+        itself ripples, if the joint's model has this order; without, it does not.
     sensors : Sensors
         Noise, ripple and the rest of the torque sensor. Encoder and converter are the drive's.
     idle_loop : float
@@ -123,3 +124,15 @@ class Bench:
         from jointid.hardware.bench_file import load_bench
 
         return load_bench(path)
+
+
+def joint_with_truth(joint: Joint, truth: Mapping[str, float]) -> Joint:
+    """A joint with true parameters, and ripple only where the truth has it.
+
+    Raises
+    ------
+    InputError
+        A parameter that the joint's model does not have.
+    """
+    orders = tuple(order for order in joint.ripple if f"ripple_sin_{order:g}" in truth)
+    return joint.replace(ripple=orders, parameters=dict(truth))

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from jointid import _core
 from jointid.errors import InputError
-from jointid.hardware.bench import Bench, BusOptions, Emulation
+from jointid.hardware.bench import Bench, BusOptions, Emulation, joint_with_truth
 from jointid.hardware.elmo_options import ElmoOptions
 from jointid.hardware.limits import SessionLimits
 from jointid.hardware.realtime import RealTimeOptions
@@ -208,7 +208,7 @@ def _emulation(table: _Table, joint: Joint) -> Emulation:
         if isinstance(value, bool) or not isinstance(value, int | float):
             truth.refuse(f"{name} is {value!r}; a number is expected")
     try:
-        joint.replace(ripple=(), parameters=truth.entries)
+        joint_with_truth(joint, truth.entries)
     except InputError as error:
         raise InputError(f"{table.source}: [{truth.place}] {error}") from error
     return table.without("truth", "sensors").make(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from jointid.errors import InputError
-from jointid.hardware.bench import Bench
+from jointid.hardware.bench import Bench, joint_with_truth
 from jointid.hardware.emulated_converter import EmulatedConverter
 from jointid.hardware.emulated_elmo import ElmoSettings, EmulatedElmo
 from jointid.hardware.torque_source import AnalogInput, SensorScaling, SyncedConverter
@@ -24,7 +24,7 @@ def true_joint(bench: Bench) -> Joint:
         raise InputError(
             "there is no [session.emulated] in the joint file, which says what an emulated joint truly is"
         )
-    return bench.joint.replace(ripple=(), parameters=dict(bench.emulation.truth))
+    return joint_with_truth(bench.joint, bench.emulation.truth)
 
 
 def emulated_devices(
