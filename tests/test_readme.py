@@ -6,9 +6,15 @@ from pathlib import Path
 import pytest
 
 import jointid as jid
+from jointid.demo import data_folder
 
 README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+
+
+@pytest.fixture(scope="module")
+def well_excited() -> jid.Recording:
+    return jid.load(data_folder() / "well_excited.csv.gz")
 
 
 def test_the_first_table_is_what_identify_reports(well_excited: jid.Recording) -> None:
