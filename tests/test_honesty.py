@@ -1,9 +1,12 @@
 """Warnings: each defect is named, good recordings stay silent, undetermined values and ripple are told."""
 
+import math
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from closed_loop import thesis_joint
 from defects import DEFECTS, changed, degrees, late_velocity
 from simulated_joint import TRUTH, simulate
 
@@ -150,6 +153,32 @@ def test_poor_excitation_is_named_whatever_the_noise(seed: int) -> None:
     (run,) = simulate(1, duration=6.0, seed=seed, degrees=(4.0, 4.0))
     told = warned(separable(run), "undetermined")
     assert {"sensor_gain", "sensor_offset"} <= set(told.parameters)
+
+
+@pytest.mark.parametrize(("amplitude", "seed"), [(3.0, 0), (3.0, 1), (5.0, 0), (5.0, 1)])
+def test_the_errors_that_a_warning_states_are_those_of_the_table(
+    amplitude: float, seed: int
+) -> None:
+    joint = thesis_joint()
+    run = jid.simulate(
+        joint.with_parameters(TRUTH),
+        jid.Pd(stiffness=3000.0, damping=200.0),
+        jid.Trajectory.thesis(math.radians(amplitude), cycle=3.0, duration=12.0),
+        sensors=jid.Sensors(torque_noise=2.0),
+        seed=seed,
+    )
+    estimate = separable(run, joint)
+    told = warned(estimate, "undetermined").message
+    printed = {line.split()[0]: line for line in estimate.report().splitlines() if line}
+    stated = re.findall(r"(\w+) has a standard error of ([\d.]+ %)", told)
+    assert len(stated) >= 2
+    for name, share in stated:
+        assert f"({share})" in printed[name]
+    for name in estimate.free:
+        p = estimate.parameters[name]
+        assert p.stderr is not None
+        if "offset" not in name and p.stderr > 0.05 * abs(p.value):
+            assert name in dict(stated)
 
 
 @pytest.mark.parametrize("name", ["ak80_swing_up", "ak80_energy_shaping"])

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from jointid import _core
 from jointid.estimate.findings import ParameterEstimate, Warned
-from jointid.estimate.wording import percent
+from jointid.estimate.wording import percent, two_digits
 from jointid.identification.facts import Facts
 from jointid.identification.inner_products import inner
 
@@ -143,21 +143,27 @@ def _why_undetermined(p: ParameterEstimate, facts: Facts) -> str | None:
     if p.stderr is None:
         return None
     scale = _scale(p, facts)
-    error = facts.chance[p.name]  # a shift is part of p.stderr, and would hide itself
     reasons = []
-    if error > _LARGE_ERROR * scale:
+    if p.stderr > _LARGE_ERROR * scale:
+        told = percent(p.stderr / scale) if scale == abs(p.value) else _with_unit(p)
         reasons.append(
-            f"{p.name} has a standard error of {percent(error / scale)}"
-            if error < 10.0 * scale
+            f"{p.name} has a standard error of {told}"
+            if p.stderr < 10.0 * scale
             else f"{p.name} is not excited"
         )
+    chance = facts.chance[p.name]  # a shift is part of p.stderr, and would hide itself
     shift = max(abs(p.shift_halved or 0.0), abs(p.shift_doubled or 0.0))
-    if shift > _LARGE_SHIFT * error and shift > _NOTICEABLE_SHIFT * scale:
+    if shift > _LARGE_SHIFT * chance and shift > _NOTICEABLE_SHIFT * scale:
         reasons.append(
-            f"{p.name} moves by {percent(shift / scale)} ({shift / error:.1f} standard errors) when the "
+            f"{p.name} moves by {percent(shift / scale)} ({shift / chance:.1f} times its error by chance) when the "
             "windows are halved or doubled"
         )
     return ", and ".join(reasons) or None
+
+
+def _with_unit(p: ParameterEstimate) -> str:
+    """The standard error as the table has it."""
+    return f"{two_digits(p.stderr or 0.0)} {p.unit}".rstrip()
 
 
 def _between_the_regressions(facts: Facts) -> Iterator[tuple[str, str]]:
