@@ -17,10 +17,10 @@ import jointid as jid
 from jointid.hardware.drive import DriveSample
 from jointid.hardware.elmo_drive import ElmoDrive
 from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.emulated_bus import EmulatedBus
-from jointid.hardware.emulated_converter import EmulatedConverter
-from jointid.hardware.emulated_elmo import ElmoSettings, EmulatedElmo
-from jointid.hardware.faults import BusFault
+from jointid.hardware.emulated.bus import EmulatedBus
+from jointid.hardware.emulated.converter import EmulatedConverter
+from jointid.hardware.emulated.elmo import ElmoSettings, EmulatedElmo
+from jointid.hardware.emulated.faults import BusFault
 from jointid.hardware.limits import SessionLimits
 from jointid.hardware.session import Session, SessionOptions, SessionStoppedError, Stop
 from jointid.hardware.torque_source import AnalogInput

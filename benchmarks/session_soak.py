@@ -11,7 +11,7 @@ import numpy as np
 from session_rig import PERIOD, devices, run
 
 import jointid as jid
-from jointid.hardware.emulated_bus import EmulatedBus
+from jointid.hardware.emulated.bus import EmulatedBus
 
 _MOST_GROWN = 20e6  # [bytes]
 

@@ -16,7 +16,7 @@ from typing import Any
 import can
 from session_rig import devices, run
 
-from jointid.hardware.emulated_bus import EmulatedBus
+from jointid.hardware.emulated.bus import EmulatedBus
 
 
 class TimedBus(EmulatedBus):

@@ -8,8 +8,8 @@ import pytest
 import jointid as jid
 from jointid.hardware.bench import Bench
 from jointid.hardware.elmo_drive import ElmoDrive
-from jointid.hardware.emulated_bench import true_joint
-from jointid.hardware.emulated_bus import EmulatedBus
+from jointid.hardware.emulated.bench import true_joint
+from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.torque_source import AnalogInput, SyncedConverter
 
 EXAMPLE = Path(__file__).parent.parent / "examples" / "hardware" / "joint.toml"

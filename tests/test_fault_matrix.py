@@ -24,7 +24,7 @@ from fault_cases import (
 )
 from fault_matrix import row
 
-from jointid.hardware.faults import DRIVE_FAILURES, BusFault
+from jointid.hardware.emulated.faults import DRIVE_FAILURES, BusFault
 from jointid.hardware.limits import SessionLimits
 
 WATCHDOG = 0.05  # [s], of the drive, and the step it is looked at in

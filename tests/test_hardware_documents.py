@@ -9,7 +9,7 @@ import pytest
 from jointid.hardware.bench import Bench, BusOptions, Emulation
 from jointid.hardware.elmo_drive import ElmoDrive
 from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.emulated_bus import EmulatedBus
+from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.limits import SessionLimits
 from jointid.hardware.realtime import RealTimeOptions
 from jointid.hardware.session_options import SessionOptions

@@ -11,7 +11,7 @@ import jointid as jid
 from jointid.hardware.bus_errors import error_frame_meaning
 from jointid.hardware.drive import DriveSample
 from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.faults import BusFault, drive_failure
+from jointid.hardware.emulated.faults import BusFault, drive_failure
 from jointid.hardware.guard import Guard
 from jointid.hardware.limits import SessionLimits
 from jointid.hardware.session_options import SessionOptions

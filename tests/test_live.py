@@ -15,7 +15,7 @@ from session_bench import devices, session
 
 from jointid.errors import InputError
 from jointid.hardware.drive import DriveSample
-from jointid.hardware.emulated_bus import EmulatedBus
+from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.live import ConsoleLine, Observers, console_line
 from jointid.hardware.live_plot import LivePlot
 

@@ -13,7 +13,7 @@ from session_bench import devices, session
 from jointid.errors import InputError
 from jointid.hardware import realtime
 from jointid.hardware.clock import MonotonicClock
-from jointid.hardware.emulated_bus import EmulatedBus
+from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.realtime import RealTime, RealTimeOptions
 
 linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only on Linux")

@@ -13,7 +13,7 @@ import pytest
 import jointid as jid
 from jointid.hardware import canopen_frames as canopen
 from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.faults import BusFault
+from jointid.hardware.emulated.faults import BusFault
 from jointid.hardware.limits import SessionLimits
 from jointid.hardware.session import Session, SessionOptions
 from jointid.hardware.stop import SessionRefusedError

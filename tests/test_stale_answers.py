@@ -10,10 +10,10 @@ from jointid.hardware import canopen_frames as canopen
 from jointid.hardware.drive import DriveFaultError
 from jointid.hardware.elmo_drive import ElmoDrive
 from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.emulated_bus import EmulatedBus
-from jointid.hardware.emulated_converter import EmulatedConverter
-from jointid.hardware.emulated_elmo import ElmoSettings, EmulatedElmo
-from jointid.hardware.faults import BusFault
+from jointid.hardware.emulated.bus import EmulatedBus
+from jointid.hardware.emulated.converter import EmulatedConverter
+from jointid.hardware.emulated.elmo import ElmoSettings, EmulatedElmo
+from jointid.hardware.emulated.faults import BusFault
 
 POSITION, SENSOR = 0x4FF, 0x1C0
 

@@ -84,8 +84,8 @@ def emulate(arguments: argparse.Namespace) -> int:
     from jointid.errors import InputError
     from jointid.hardware.bench import Bench
     from jointid.hardware.bus import open_whole_bus
-    from jointid.hardware.emulated_bench import emulated_devices
-    from jointid.hardware.emulator_thread import EmulatorThread
+    from jointid.hardware.emulated.bench import emulated_devices
+    from jointid.hardware.emulated.thread import EmulatorThread
 
     bench = Bench.load(arguments.joint)
     duration = math.inf if arguments.duration is None else arguments.duration

@@ -15,8 +15,8 @@ from jointid.estimate.estimate import Estimate
 from jointid.hardware.bench import Bench
 from jointid.hardware.drive import Drive
 from jointid.hardware.elmo_drive import ElmoDrive
-from jointid.hardware.emulated_bench import emulated_devices, true_joint
-from jointid.hardware.emulated_bus import EmulatedBus
+from jointid.hardware.emulated.bench import emulated_devices, true_joint
+from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.session import Session
 from jointid.identification.identification import identify
 from jointid.recording.recording import Recording

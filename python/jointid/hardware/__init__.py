@@ -12,12 +12,12 @@ from jointid.hardware.drive import Drive, DriveEnd, DriveFaultError, DriveSample
 from jointid.hardware.elmo_codec import Command, DriveError, Reply
 from jointid.hardware.elmo_drive import ElmoDrive
 from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.emulated_bench import emulated_devices, true_joint
-from jointid.hardware.emulated_bus import EmulatedBus
-from jointid.hardware.emulated_converter import EmulatedConverter
-from jointid.hardware.emulated_elmo import ElmoSettings, EmulatedElmo
-from jointid.hardware.emulator_thread import EmulatorThread
-from jointid.hardware.faults import BusFault
+from jointid.hardware.emulated.bench import emulated_devices, true_joint
+from jointid.hardware.emulated.bus import EmulatedBus
+from jointid.hardware.emulated.converter import EmulatedConverter
+from jointid.hardware.emulated.elmo import ElmoSettings, EmulatedElmo
+from jointid.hardware.emulated.faults import BusFault
+from jointid.hardware.emulated.thread import EmulatorThread
 from jointid.hardware.limits import SessionLimits
 from jointid.hardware.live import ConsoleLine
 from jointid.hardware.live_plot import LivePlot

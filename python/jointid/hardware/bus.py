@@ -112,7 +112,7 @@ def _opened(
     if interface == "emulated":
         raise InputError(
             "interface 'emulated' is not a bus of python-can's: an emulated bench is an EmulatedBus of "
-            "jointid.hardware.emulated_bus, or an EmulatorThread on interface 'virtual'"
+            "jointid.hardware.emulated.bus, or an EmulatorThread on interface 'virtual'"
         )
     try:
         import can

@@ -10,7 +10,7 @@ from typing import Protocol
 import can
 
 from jointid.hardware.canopen_frames import bits_on_wire
-from jointid.hardware.faults import BusFault, mangled
+from jointid.hardware.emulated.faults import BusFault, mangled
 
 Event = Callable[[], None]
 

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 import can
 
 from jointid.hardware import canopen_frames as canopen
-from jointid.hardware.emulated_interpreter import Interpreter
-from jointid.hardware.emulated_objects import ObjectDictionary
-from jointid.hardware.faults import drive_failure
+from jointid.hardware.emulated.faults import drive_failure
+from jointid.hardware.emulated.interpreter import Interpreter
+from jointid.hardware.emulated.objects import ObjectDictionary
 from jointid.hardware.torque_source import SensorScaling
 
 if TYPE_CHECKING:
     from jointid._core import SteppedJoint
-    from jointid.hardware.device import DeviceBus
+    from jointid.hardware.emulated.device import DeviceBus
 
 TWO_PI = 2.0 * math.pi
 _PERIOD_OF_GUARDS = 0.5e-3  # [s] between looks at speed and heartbeat

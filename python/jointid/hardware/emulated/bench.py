@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from jointid.errors import InputError
 from jointid.hardware.bench import Bench, joint_with_truth
-from jointid.hardware.emulated_converter import EmulatedConverter
-from jointid.hardware.emulated_elmo import ElmoSettings, EmulatedElmo
+from jointid.hardware.emulated.converter import EmulatedConverter
+from jointid.hardware.emulated.elmo import ElmoSettings, EmulatedElmo
 from jointid.hardware.torque_source import AnalogInput, SensorScaling, SyncedConverter
 from jointid.joint.joint import Joint
 from jointid.simulation.plant import torque_limit

@@ -12,8 +12,8 @@ from jointid.hardware.canopen_frames import SYNC
 from jointid.hardware.torque_source import SensorScaling
 
 if TYPE_CHECKING:
-    from jointid.hardware.device import DeviceBus
-    from jointid.hardware.emulated_elmo import EmulatedElmo
+    from jointid.hardware.emulated.device import DeviceBus
+    from jointid.hardware.emulated.elmo import EmulatedElmo
 
 
 class EmulatedConverter:

@@ -9,7 +9,7 @@ from typing import Self
 
 import can
 
-from jointid.hardware.device import Agenda, Device, Event, Wire
+from jointid.hardware.emulated.device import Agenda, Device, Event, Wire
 
 _LONGEST_WAIT = 0.02  # [s]: so soon the thread sees that it is to end
 
@@ -32,7 +32,7 @@ class EmulatorThread:
     Examples
     --------
     >>> import can
-    >>> from jointid.hardware.emulator_thread import EmulatorThread
+    >>> from jointid.hardware.emulated.thread import EmulatorThread
     >>> with can.Bus("bench", interface="virtual") as there, EmulatorThread(there):
     ...     pass  # a session on another can.Bus("bench", interface="virtual")
     """

@@ -8,8 +8,8 @@ from typing import Any
 
 import can
 
-from jointid.hardware.device import Agenda, Device, Event, Wire
-from jointid.hardware.faults import BusFault
+from jointid.hardware.emulated.device import Agenda, Device, Event, Wire
+from jointid.hardware.emulated.faults import BusFault
 
 
 class EmulatedBus(can.BusABC):
