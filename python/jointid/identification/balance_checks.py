@@ -9,13 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.estimate.findings import Warned
-from jointid.identification.facts import Facts
+from jointid.identification.covariance import parameter_covariance
+from jointid.identification.facts import Facts, Regressor
 
 Array = NDArray[np.float64]
 
 _AGAINST = -0.1  # correlation of torque and velocity: friction makes it positive
 _SCALE = 0.05
 _SURE = 10.0  # standard errors
+_HIDDEN = 0.5  # of the gain: noise leaves no more of it, and the link's inertia goes to the joint
+_GROSS = 1.5  # factor of an inertia that is wrong even then
 _EXPLAINED = 0.03  # what may be left of the torque when every term is free
 _DEGREE = np.pi / 180.0
 _STRIBECK_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)  # Stribeck velocities, of the peak speed
@@ -23,15 +26,44 @@ _STRIBECK_SHARES = (0.02, 0.05, 0.1, 0.2, 0.4)  # Stribeck velocities, of the pe
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Free:
-    """Coefficients with every term free and no bounds, at the shapes found."""
+    """Coefficients with every term free and no bounds, at the shapes found or others."""
 
+    facts: Facts
+    regressor: Regressor
+    best: Array | None
     values: dict[str, float]
-    errors: dict[str, float]
     relative: float
 
     def sure(self, name: str, wanted: float) -> bool:
-        """Whether the data contradict a value beyond doubt."""
-        return abs(self.values[name] - wanted) > _SURE * self.errors[name]
+        """Whether the data contradict a value beyond doubt, slow drifts of the residual allowed for."""
+        names, penalty = list(self.values), self.facts.penalty
+        best = self.facts.best if self.best is None else self.best
+        columns = penalty.columns(best[penalty.coefficients :])
+        columns = columns[:, [self.regressor.names.index(each) for each in names]]
+        missed = columns @ np.array(list(self.values.values())) - np.asarray(penalty.target)
+        spread = parameter_covariance(columns, missed, None, threads=self.facts.problem.threads)
+        return bool(abs(self.values[name] - wanted) > _SURE * spread.stderr[names.index(name)])
+
+    def with_noisy_sensor(self) -> dict[str, float] | None:
+        """The coefficients that explain the sensor by all else; None without one, or when nothing does.
+
+        Noise of the sensor makes the gain too small in `values`, and leaves part of the link's inertia to
+        the joint's; noise of the torque does the opposite here. The truth lies between.
+        """
+        if "sensor_gain" not in self.values:
+            return None
+        names = self.regressor.names
+        others = [names.index(name) for name in self.values if name != "sensor_gain"]
+        torque = len(names)
+        found, _ = self.regressor.triangle.solve(
+            [*others, torque], names.index("sensor_gain"), rcond=1e-10
+        )
+        if found[-1] == 0.0:
+            return None
+        by_torque = {
+            names[i]: -float(x) / float(found[-1]) for i, x in zip(others, found, strict=False)
+        }
+        return by_torque | {"sensor_gain": 1.0 / float(found[-1])}
 
 
 def _unbounded(facts: Facts) -> _Free | None:
@@ -57,14 +89,11 @@ def _unbounded_at(facts: Facts, best: Array | None) -> _Free | None:
         return None
     kept = [regressor.names.index(name) for name in names]
     found, missed = regressor.triangle.solve(kept, len(regressor.names), rcond=1e-10)
-    rows = regressor.triangle.matrix[:, kept]
-    scale = np.linalg.norm(rows, axis=0)
-    gram = (rows / scale).T @ (rows / scale)
-    variance = missed**2 / (windows - len(names))
-    errors = np.sqrt(variance * np.abs(np.diag(np.linalg.pinv(gram, hermitian=True))))
     return _Free(
+        facts=facts,
+        regressor=regressor,
+        best=best,
         values=dict(zip(names, found.tolist(), strict=True)),
-        errors=dict(zip(names, (errors / scale).tolist(), strict=True)),
         relative=missed / regressor.target,
     )
 
@@ -97,6 +126,21 @@ def balance(facts: Facts) -> Iterator[Warned]:
     yield from _sensor_reversed(facts, free)
 
 
+def _inertia_ratio(free: _Free, given: float) -> float | None:
+    """How many times the given inertia the recording shows, wherever the noise is; None if that fits."""
+    ratios = [free.values["inertia"] / given]
+    reverse = free.with_noisy_sensor()
+    if reverse is not None:
+        ratios.append(reverse["inertia"] / given)
+        hidden = 1.0 - free.values["sensor_gain"] / reverse["sensor_gain"] > _HIDDEN
+        if hidden and 1.0 / _GROSS < ratios[0] < _GROSS:
+            return None
+    if min(ratios) < 1.0 < max(ratios):
+        return None
+    nearest = min(ratios, key=lambda ratio: abs(ratio - 1.0))
+    return nearest if abs(nearest - 1.0) >= _SCALE else None
+
+
 def _inertia_contradicts(facts: Facts, free: _Free) -> Iterator[Warned]:
     """A known inertia is a scale: the recording must agree with it."""
     given = facts.parameters.get("inertia")
@@ -104,11 +148,11 @@ def _inertia_contradicts(facts: Facts, free: _Free) -> Iterator[Warned]:
         return
     if free.relative > _EXPLAINED:
         return  # something else is wrong, and the inertia takes the blame
-    ratio = free.values["inertia"] / given.value
-    if abs(ratio - 1.0) < _SCALE or not free.sure("inertia", given.value):
+    ratio = _inertia_ratio(free, given.value)
+    if ratio is None or not free.sure("inertia", given.value):
         return
     told = (
-        f"by itself the recording says inertia {free.values['inertia']:.4g} {given.unit}, {ratio:.3g} times the "
+        f"by itself the recording says inertia {ratio * given.value:.4g} {given.unit}, {ratio:.3g} times the "
         f"{given.value:.4g} given"
     )
     for factor, which in ((_DEGREE, "position or velocity"), (1.0 / _DEGREE, "torque")):
