@@ -396,6 +396,15 @@ def test_the_table_is_the_same_in_every_form(study: jid.Study, tmp_path: Path) -
         study.column("colomb")
 
 
+def test_a_data_frame_without_pandas_says_what_to_install(
+    study: jid.Study, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    for table in (study, study.summary()):
+        with pytest.raises(jid.InputError, match=r"pip install 'jointid\[pandas\]'"):
+            table.to_pandas()
+
+
 def test_the_summary_counts_right(study: jid.Study) -> None:
     summary = study.summary(within=0.02)
     for number, cell in enumerate(summary.cells):

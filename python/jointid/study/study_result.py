@@ -101,10 +101,14 @@ class Study:
         return summarise(self, within)
 
     def to_pandas(self) -> pd.DataFrame:
-        """The table as a data frame, a row a trial."""
-        import pandas as pd
+        """The table as a data frame, a row a trial.
 
-        return pd.DataFrame({name: list(v) for name, v in tables.columns(self).items()})
+        Raises
+        ------
+        InputError
+            pandas is not installed: it comes with the extra `jointid[pandas]`.
+        """
+        return tables.data_frame(tables.columns(self))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the table to .csv or .parquet, or the study itself to .jsonl, whole or not at all.

@@ -12,6 +12,7 @@ import numpy as np
 
 from jointid.errors import InputError
 from jointid.study.row import REFUSED, Row
+from jointid.study.tables import data_frame
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -79,10 +80,14 @@ class Summary:
         return {"within": self.within, "cells": cells}
 
     def to_pandas(self) -> pd.DataFrame:
-        """One line a cell; a column `NAME_mean`, `NAME_spread`, `NAME_bias`, `NAME_scatter` a parameter."""
-        import pandas as pd
+        """One line a cell; a column `NAME_mean`, `NAME_spread`, `NAME_bias`, `NAME_scatter` a parameter.
 
-        return pd.DataFrame([_record(cell) for cell in self.cells])
+        Raises
+        ------
+        InputError
+            pandas is not installed: it comes with the extra `jointid[pandas]`.
+        """
+        return data_frame([_record(cell) for cell in self.cells])
 
     def __str__(self) -> str:
         header, body = _texts(self)
