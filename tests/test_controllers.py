@@ -128,6 +128,24 @@ def test_each_switch_takes_its_term_away() -> None:
     assert difference == pytest.approx(10.0 * 0.2 + level)
 
 
+@pytest.mark.parametrize("controller", CONTROLLERS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("time", "position", "velocity", "sensor"),
+        *("reference", "reference_velocity", "reference_acceleration"),
+    ],
+)
+def test_what_is_no_number_is_refused_and_leaves_no_trace(controller: Any, name: str) -> None:
+    moment = {"time": 0.0, "position": 0.1, "velocity": 0.2, "sensor": 3.0, "reference": 0.11}
+    work, other = (controller.start(1e-3, torque_limit=50.0) for _ in range(2))
+    for wrong in (math.nan, math.inf, -math.inf):
+        with pytest.raises(ValueError, match=rf"step\.{name} must be finite"):
+            work.step(**{**moment, name: wrong})
+    assert work.saturations == 0
+    assert work.step(**moment) == other.step(**moment)
+
+
 def test_gains_of_the_motor_side_are_reflected() -> None:
     law = jid.AdaptiveRobust.from_motor_side(gear_ratio=-101.0, adaptation_gain=5e-4)
     assert law.bandwidth == 80.0

@@ -55,12 +55,12 @@ void bind_controllers(py::module_& m) {
           "step",
           [](ControlRun& run, double time, double position, double velocity, double sensor,
              double reference, double reference_velocity, double reference_acceleration) {
-            return run.step({time,
-                             position,
-                             velocity,
-                             sensor,
-                             {reference, reference_velocity, reference_acceleration},
-                             run.period()});
+            return run.checked_step({time,
+                                     position,
+                                     velocity,
+                                     sensor,
+                                     {reference, reference_velocity, reference_acceleration},
+                                     run.period()});
           },
           py::kw_only(), py::arg("time"), py::arg("position"), py::arg("velocity"),
           py::arg("sensor") = 0.0, py::arg("reference") = 0.0, py::arg("reference_velocity") = 0.0,
@@ -74,7 +74,12 @@ time, position, velocity : float
 sensor : float
     Raw reading of the torque sensor. Default 0.
 reference, reference_velocity, reference_acceleration : float
-    Desired motion [rad], [rad/s], [rad/s²]. Default 0.)")
+    Desired motion [rad], [rad/s], [rad/s²]. Default 0.
+
+Raises
+------
+ValueError
+    One of them is not finite.)")
       .def_property_readonly("period", &ControlRun::period)
       .def_property_readonly("torque_limit", &ControlRun::torque_limit)
       .def_property_readonly("saturations", &ControlRun::saturations,

@@ -36,6 +36,19 @@ class ControlRun {
     return std::clamp(asked, -torque_limit_, torque_limit_);
   }
 
+  /// The same for input from outside, which may be no number: no joint is to be told of such.
+  double checked_step(const ControlInput& input) {
+    const base::Requirement require("step");
+    require.finite("time", input.time);
+    require.finite("position", input.position);
+    require.finite("velocity", input.velocity);
+    require.finite("sensor", input.reading);
+    require.finite("reference", input.wanted.position);
+    require.finite("reference_velocity", input.wanted.velocity);
+    require.finite("reference_acceleration", input.wanted.acceleration);
+    return step(input);
+  }
+
   [[nodiscard]] double period() const { return period_; }
   [[nodiscard]] double torque_limit() const { return torque_limit_; }
   /// How often the limit cut the torque.

@@ -1608,6 +1608,11 @@ class ControlRun:
             Raw reading of the torque sensor. Default 0.
         reference, reference_velocity, reference_acceleration : float
             Desired motion [rad], [rad/s], [rad/s²]. Default 0.
+
+        Raises
+        ------
+        ValueError
+            One of them is not finite.
         """
     @property
     def period(self) -> float: ...
