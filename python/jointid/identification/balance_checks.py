@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from jointid.estimate.findings import Warned
 from jointid.identification.covariance import parameter_covariance
 from jointid.identification.facts import Facts, Regressor
+from jointid.identification.unit_advice import degrees_advice
 
 Array = NDArray[np.float64]
 
@@ -161,8 +162,8 @@ def _inertia_contradicts(facts: Facts, free: _Free) -> Iterator[Warned]:
                 code="implausible_units",
                 parameters=("inertia",),
                 message=(
-                    f"{told}, which is what degrees taken for radians make of it: load with "
-                    "units={'position': 'deg', 'velocity': 'deg/s'}"
+                    f"{told}, which is what degrees taken for radians make of it: "
+                    f"{degrees_advice(facts.recordings[0], ('position', 'velocity'))}"
                 ),
             )
             return

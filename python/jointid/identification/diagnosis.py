@@ -141,8 +141,8 @@ def _sequence(value: object) -> tuple[object, ...]:
 
 _CHECKS: tuple[Callable[[Facts], Iterator[Warned]], ...] = (
     _stopped,
-    too_fast,
     velocity_disagrees,
+    too_fast,
     balance,
     constant,
     clipped,

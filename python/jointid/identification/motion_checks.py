@@ -10,9 +10,11 @@ from jointid.estimate.findings import Warned
 from jointid.estimate.wording import percent
 from jointid.identification.facts import Facts
 from jointid.identification.inspection import inspect
+from jointid.identification.unit_advice import degrees_advice
 from jointid.recording.recording import Recording
 
 _DEGREE = np.pi / 180.0
+_MISMATCH = 0.03  # of the position's rate
 _LAG = 0.4  # sample periods between position and velocity; a backward difference has 0.5
 _SENSOR_LAG = 1.0  # sample periods between motion and sensor
 _SURE = 8.0  # standard errors
@@ -42,10 +44,10 @@ def velocity_disagrees(facts: Facts) -> Iterator[Warned]:
                 parameters=(),
                 message=(
                     f"position and velocity differ by a factor of 57.3: the {which} seems to be in degrees; "
-                    f"load with units={{'{which}': '{'deg/s' if which == 'velocity' else 'deg'}'}}"
+                    f"{degrees_advice(recording, (which,))}"
                 ),
             )
-        elif abs(found.scale - 1.0) > 0.03:
+        elif abs(found.scale - 1.0) > _MISMATCH:
             yield Warned(
                 code="velocity_mismatch",
                 parameters=(),
@@ -131,8 +133,11 @@ def too_fast(facts: Facts) -> Iterator[Warned]:
     gear = abs(facts.joint.gear_ratio) if facts.joint is not None else 1.0
     for inspected in facts.inspections:
         recording, peak = inspected.recording, inspected.found.peak_speed
-        if recording.kind == "prismatic":
-            continue
+        agreement = inspected.found.agreement
+        if recording.kind == "prismatic" or (
+            agreement is not None and abs(agreement.scale - 1.0) > _MISMATCH
+        ):
+            continue  # what contradicts itself has no speed, and that is told already
         if gear > 1.0 and peak * gear > _MOTOR_SPEED:  # a single wild sample is no speed
             peak = float(np.percentile(np.abs(recording.velocity), 99.0))
         swing = inspected.found.swing
@@ -143,11 +148,11 @@ def too_fast(facts: Facts) -> Iterator[Warned]:
             told = f"the joint would swing through {swing / (2.0 * np.pi):.0f} turns and back"
         else:
             continue
+        signals = ("position",) if recording.velocity_derived else ("position", "velocity")
         yield Warned(
             code="implausible_units",
             parameters=(),
             message=(
-                f"{told}: are these degrees? Load with units={{'position': 'deg', 'velocity': 'deg/s'}}, "
-                "or correct the gear ratio"
+                f"{told}: are these degrees? Then {degrees_advice(recording, signals)}; else correct the gear ratio"
             ),
         )

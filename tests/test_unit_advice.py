@@ -1,0 +1,56 @@
+"""Degrees taken for radians: the advice names what no header states, and following it ends the matter."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import jointid as jid
+from jointid.demo import data_folder
+
+
+def written(folder: Path, position: str, velocity: str, *, both: bool = False) -> Path:
+    """The shipped recording under these headers, its position (or both) in degrees."""
+    run = jid.load(data_folder() / "well_excited.csv.gz")
+    speed = np.degrees(run.velocity) if both else run.velocity
+    columns = (run.time, np.degrees(run.position), speed, run.torque, run.sensor)
+    path = folder / "log.csv"
+    header = f"time_s,{position},{velocity},torque_Nm,sensor_raw"
+    np.savetxt(path, np.column_stack(columns), delimiter=",", header=header, comments="")  # type: ignore[arg-type]
+    return path
+
+
+def about_units(path: Path, units: dict[str, str] | None = None) -> list[str]:
+    recording = jid.load(path, columns={"position": 1, "velocity": 2}, units=units)
+    codes = {"implausible_units", "velocity_mismatch", "wrong_scale"}
+    return [
+        warning.message
+        for warning in jid.identify(recording, jid.thesis_joint()).warnings
+        if warning.code in codes
+    ]
+
+
+@pytest.mark.parametrize(
+    ("position", "velocity", "both", "units"),
+    [
+        ("enc1", "velocity_rad_s", False, {"position": "deg"}),
+        ("enc1", "speed1", True, {"position": "deg", "velocity": "deg/s"}),
+        ("enc1", "velocity_deg_s", True, {"position": "deg"}),
+    ],
+)
+def test_the_advice_names_the_units_that_no_header_states(
+    position: str, velocity: str, both: bool, units: dict[str, str], tmp_path: Path
+) -> None:
+    path = written(tmp_path, position, velocity, both=both)
+    (told,) = about_units(path)
+    advised = dict(re.findall(r"'(position|velocity)': '([a-z/]+)'", told))
+    assert advised == units
+    assert about_units(path, advised) == []
+
+
+@pytest.mark.parametrize("both", [False, True])
+def test_a_stated_unit_is_not_overruled(both: bool, tmp_path: Path) -> None:
+    (told,) = about_units(written(tmp_path, "position_rad", "velocity_rad_s", both=both))
+    assert "units=" not in told
+    assert "a header, or who made the recording, says radians" in told
