@@ -30,6 +30,8 @@ COARSE = ElmoOptions(mantissa_bits=4)
 WIRINGS = {"converter": CONVERTER, "analog": ANALOG, "none": NO_SENSOR, "coarse": COARSE}
 ROUNDING = 1e-9  # [s] of a stamp in the log
 
+_BEFORE_CYCLES = 3  # heartbeats of ours while the motor is switched on
+
 
 def ran(path: Path, drive: ElmoOptions = CONVERTER, **more: Any) -> jid.Recording:
     """A session on an emulated drive, with its files."""
@@ -206,9 +208,8 @@ def test_a_missing_frame_is_named(
     cycle = recording.metadata["cycles_before"] + 101
     lines = log.read_text().splitlines(keepends=True)
     ends = [k for k, line in enumerate(lines) if " 701#" in line]
-    (missing,) = [
-        k for k in range(ends[cycle - 2] + 1, ends[cycle - 1] + 1) if f" {identifier}#" in lines[k]
-    ]
+    first, last = (ends[_BEFORE_CYCLES + cycle - k] + 1 for k in (2, 1))
+    (missing,) = [k for k in range(first, last) if f" {identifier}#" in lines[k]]
     lacking = tmp_path / "run.log"
     lacking.write_text("".join(lines[:missing] + lines[missing + 1 :]))
     with pytest.raises(jid.InputError) as caught:

@@ -13,7 +13,7 @@ import numpy as np
 
 from jointid import _core
 from jointid.hardware.drive import Drive, DriveEnd, DriveFaultError, check_drive
-from jointid.hardware.following import Follower, Observer, unwritten
+from jointid.hardware.following import Course, Follower, Observer, unwritten
 from jointid.hardware.guard import Guard
 from jointid.hardware.interruptions import Interruptions
 from jointid.hardware.limits import SessionLimits
@@ -135,6 +135,8 @@ class Session:
                 try:
                     self._refuse_or_go_on()
                     if dry_run:
+                        if interruptions.reason is not None:
+                            raise KeyboardInterrupt
                         return None
                     if self._output is not None:
                         recorder = Recorder(self._output, self._metadata(), self._output.stem)
@@ -182,6 +184,7 @@ class Session:
         try:
             feedback = not isinstance(self._controller, _core.OpenLoop)
             law = self._controller.start(period=options.period, torque_limit=limits.torque)
+            course = Course.of(self._trajectory, options.period)
             follower = Follower(
                 self._drive,
                 law,
@@ -199,7 +202,7 @@ class Session:
             if feedback:
                 self._approach(follower)
             follower.enter("run")
-            follower.follow(self._trajectory, recorder)
+            follower.follow(course, recorder)
         except (Exception, KeyboardInterrupt) as error:
             moment = self._drive.clock.now()
             self._switch_off()
@@ -217,7 +220,7 @@ class Session:
         rise = max(0.2, 0.5 * math.pi * abs(distance) / options.approach_velocity)
         approach = Trajectory.sigmoid(distance, rise=rise, duration=rise + options.settle)
         follower.enter("move")
-        follower.follow(approach, None, offset=here, settled=rise)
+        follower.follow(Course.of(approach, options.period), None, offset=here, settled=rise)
 
     # Ways out.
 
@@ -265,8 +268,8 @@ class Session:
             time=0.0 if follower is None else moment - follower.began,
             moment=moment,
             message=message,
-            measured=getattr(cause, "measured", None),
-            allowed=getattr(cause, "allowed", None),
+            measured=_finite(getattr(cause, "measured", None)),
+            allowed=_finite(getattr(cause, "allowed", None)),
             motor_off=end.motor_off,
         )
 
@@ -324,6 +327,12 @@ class Session:
                 **self._ending(stop),
             },
         )
+
+
+def _finite(value: Any) -> float | None:
+    """A number that a recording can keep; what is none is told in the message."""
+    number = math.nan if value is None else float(value)
+    return number if math.isfinite(number) else None
 
 
 def _json(value: Any) -> Any:
