@@ -22,6 +22,7 @@ from jointid.hardware import (
     EmulatorThread,
     SessionStoppedError,
 )
+from jointid.hardware.session_notes import elmo_options_of
 
 CONVERTER = ElmoOptions()
 ANALOG = ElmoOptions(torque=AnalogInput())
@@ -82,6 +83,18 @@ def test_a_log_gives_the_sessions_recording(
     assert largest(again, recording, "reference") == 0.0
     assert again.metadata["replayed"] == log.name
     assert again.metadata["cycles_before"] == recording.metadata["cycles_before"] > 0
+
+
+@pytest.mark.parametrize("name", WIRINGS)
+def test_the_recording_knows_how_the_drive_was_wired(
+    made: Callable[[str], tuple[jid.Recording, Path]], name: str
+) -> None:
+    recording, log = made(name)
+    assert elmo_options_of(recording.metadata, "here") == WIRINGS[name]
+    same(jid.hardware.replay(log, JOINT), recording)
+    other = {**recording.metadata, "drive_options": {"torque": None, "servo": 3}}
+    with pytest.raises(jid.InputError, match="here: its drive_options are not those of an Elmo"):
+        elmo_options_of(other, "here")
 
 
 def test_a_log_alone_is_enough(
