@@ -106,6 +106,8 @@ def test_a_log_alone_is_enough(
     with pytest.raises(jid.InputError, match=r"period is None; give period=, or the session's"):
         jid.hardware.replay(alone, JOINT)
     before = recording.metadata["cycles_before"]
+    with pytest.raises(jid.InputError, match="cycles_before is -1; 0 or a positive number"):
+        jid.hardware.replay(alone, JOINT, period=PERIOD, cycles_before=-1)
     whole = jid.hardware.replay(alone, JOINT, period=PERIOD)
     assert len(whole.time) == before + len(recording.time)
     assert whole.reference is None

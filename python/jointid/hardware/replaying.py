@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -84,13 +84,15 @@ def replay(
     session = _session(file, recording)
     said: dict[str, Any] = {} if session is None else dict(session.metadata)
     wired = elmo_options_of(said, str(file)) if options is None else options
-    drive = said.get("drive", {})
+    drive = said["drive"] if isinstance(said.get("drive"), Mapping) else {}
     period = said.get("control_period") if period is None else period
-    if period is None or not 0.0 < period < math.inf:
+    if not isinstance(period, int | float) or not 0.0 < period < math.inf:
         raise InputError(
             f"{file}: the session's period is {period}; give period=, or the session's .csv with recording="
         )
     before = said.get("cycles_before", 0) if cycles_before is None else cycles_before
+    if not isinstance(before, int) or before < 0:
+        raise InputError(f"{file}: cycles_before is {before!r}; 0 or a positive number is expected")
     reader = CycleReader(
         joint,
         wired,

@@ -71,7 +71,8 @@ def ended_before(notes: Mapping[str, Any]) -> str:
 
 def untold(saved: Mapping[str, Any], values: Mapping[str, FloatArray]) -> bool:
     """Whether a session's drive did not tell its current: the column is there, but not all of its numbers."""
-    session = bool((saved.get("metadata") or {}).get("session"))
+    metadata = saved.get("metadata")
+    session = isinstance(metadata, Mapping) and metadata.get("session") is True
     return session and "current" in values and bool(np.isnan(values["current"]).any())
 
 
