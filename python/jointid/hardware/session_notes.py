@@ -42,7 +42,7 @@ def notes_of_session(
     notes = {
         "control_period": options.period,
         "joint": joint_document(joint) if isinstance(joint, Joint) else None,
-        "controller": {"kind": type(controller).__name__, "gains": plain(controller.asdict())},
+        "controller": {"kind": type(controller).__name__} | _gains(controller),
         "trajectory": {
             "form": trajectory.form,
             "duration": trajectory.duration,
@@ -98,6 +98,12 @@ def elmo_options_of(notes: Mapping[str, Any], place: str) -> ElmoOptions:
         raise InputError(
             f"{place}: its drive_options are not those of an Elmo drive ({error}); give options="
         ) from None
+
+
+def _gains(controller: object) -> dict[str, Any]:
+    """The core's controllers tell them; another that works like one need not."""
+    told = getattr(controller, "asdict", None)
+    return {"gains": plain(told())} if callable(told) else {}
 
 
 def _short(value: Any) -> Any:
