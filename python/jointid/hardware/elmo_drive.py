@@ -65,6 +65,7 @@ class ElmoDrive:
                 "ElmoDrive: the joint has no torque_constant, so no torque can be commanded; give it in "
                 "the joint file under [drive]"
             )
+        self.joint = joint
         self.options = options if options is not None else ElmoOptions()
         self._seen = ElmoDecoder(joint, self.options)
         self._link = ElmoLink(bus, self.options, self._seen, clock)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from jointid.hardware.interruptions import Interruptions
 from jointid.hardware.limits import SessionLimits
 from jointid.hardware.realtime import RealTime, RealTimeOptions
 from jointid.hardware.recorder import Frame, Recorder, check_output
+from jointid.hardware.session_notes import notes_of_session
 from jointid.hardware.session_options import SessionOptions
 from jointid.hardware.start_checks import problems_at_rest, problems_on_paper
 from jointid.hardware.stop import LimitError, SessionRefusedError, SessionStoppedError, Stop
@@ -139,7 +141,7 @@ class Session:
                             raise KeyboardInterrupt
                         return None
                     if self._output is not None:
-                        recorder = Recorder(self._output, self._metadata(), self._output.stem)
+                        recorder = self._recorder(self._output)
                         for frame in early:
                             recorder.frame(*frame)
                         self._tap(recorder.frame)
@@ -165,6 +167,14 @@ class Session:
         if stop is not None:
             raise SessionStoppedError(stop, recording) from cause
         return recording
+
+    def _recorder(self, output: Path) -> Recorder:
+        # The date is in the file only: what a session returns is the same to the bit when it is repeated.
+        started = datetime.now(UTC).isoformat(timespec="milliseconds")
+        try:
+            return Recorder(output, {**self._metadata(), "started": started}, output.stem)
+        except OSError as error:
+            raise SessionRefusedError(f"not started: {unwritten(error)}") from error
 
     # The phases.
 
@@ -276,15 +286,9 @@ class Session:
     # What is left.
 
     def _metadata(self) -> dict[str, Any]:
-        limits = {name: getattr(self._limits, name) for name in self._limits.__slots__}
-        return {
-            "controller": repr(self._controller),
-            "trajectory": self._trajectory.form,
-            "control_period": self._options.period,
-            "limits": {name: _json(value) for name, value in limits.items()},
-            "drive": self._drive.identity(),
-            "version": _core.__version__,
-        }
+        return notes_of_session(
+            self._drive, self._controller, self._trajectory, self._limits, self._options
+        )
 
     def _ending(self, stop: Stop | None) -> dict[str, Any]:
         late = np.array(() if self._follower is None else self._follower.late)
@@ -333,9 +337,3 @@ def _finite(value: Any) -> float | None:
     """A number that a recording can keep; what is none is told in the message."""
     number = math.nan if value is None else float(value)
     return number if math.isfinite(number) else None
-
-
-def _json(value: Any) -> Any:
-    if isinstance(value, tuple):
-        return list(value)
-    return None if isinstance(value, float) and math.isinf(value) else value
