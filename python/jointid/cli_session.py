@@ -12,6 +12,7 @@ from jointid.cli_arguments import TEXT, whole_seed
 
 if TYPE_CHECKING:
     from jointid.commissioning import Commissioning
+    from jointid.estimate.estimate import Estimate
     from jointid.hardware.bench import Bench
     from jointid.hardware.live import Observers
 
@@ -42,9 +43,7 @@ def add_run(commands: Any) -> None:
     run.add_argument(
         "--dry-run", action="store_true", help="only check what speaks against a start; motor off"
     )
-    run.add_argument(
-        "--yes", action="store_true", help="do not ask before a real joint moves for the first time"
-    )
+    run.add_argument("--yes", action="store_true", help="do not ask before a real joint moves")
     run.add_argument("--seed", type=whole_seed, default=0, help="of emulated noise and search (0)")
     run.add_argument("--threads", type=int, default=0, help="of the search; 0: all")
     run.add_argument(
@@ -137,6 +136,7 @@ def run(arguments: argparse.Namespace) -> int:
                 output=arguments.output,
                 observer=observers,
                 callback=None if arguments.quiet else _say,
+                agree=None if arguments.emulate or arguments.yes else _agreed_again,
             )
     except (SessionRefusedError, SessionStoppedError) as error:
         print(f"jointid run: {error}", file=sys.stderr)
@@ -209,6 +209,12 @@ def _agreed(bench: Bench) -> bool:
         print("give --yes to start without being asked", file=sys.stderr)
         return False
     return input("Is the space free, and the emergency stop at hand? [yes/no] ").strip() == "yes"
+
+
+def _agreed_again(estimate: Estimate) -> bool:
+    """Whether the joint is to move with what was identified."""
+    print(estimate.report(), file=sys.stderr)
+    return input("Move the joint with these values? Is the space free? [yes/no] ").strip() == "yes"
 
 
 def _write(result: Commissioning, folder: Path) -> None:

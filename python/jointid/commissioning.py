@@ -56,7 +56,7 @@ class Commissioning:
     Attributes
     ----------
     runs : tuple of BenchRun
-        The initial one, then one for each cycle.
+        The initial one, then one for each cycle that was agreed to.
     estimates : tuple of Estimate
         One for each cycle, each of all that was recorded until then.
     truth : mapping of str to float
@@ -120,6 +120,7 @@ def commission(
     output: str | Path | None = None,
     observer: Observer | None = None,
     callback: Callable[[str], object] | None = None,
+    agree: Callable[[Estimate], bool] | None = None,
 ) -> Commissioning:
     """Move the joint, identify it from that, and move it again with what was identified.
 
@@ -142,6 +143,8 @@ def commission(
         As in `Session`.
     callback : callable, optional
         Called with a sentence before each step.
+    agree : callable, optional
+        Asked before the joint moves with an estimate; False: it does not, and the ring ends there.
 
     Raises
     ------
@@ -186,12 +189,14 @@ def commission(
             estimates.append(estimate)
             if folder is not None:
                 estimate.save(folder / f"cycle_{cycle}.json")
+            if agree is not None and not agree(estimate):
+                break
             runs.append(run(f"cycle {cycle}", believing(controller, estimate.joint)))
         if emulate:
             true_run = run("true parameters", believing(controller, true_joint(bench)))
     plain = None
     if bench.joint.ripple:
-        recordings = [each.recording for each in runs[:-1]]
+        recordings = [each.recording for each in runs[: len(estimates)]]
         plain = identify(recordings, bench.joint, ripple=(), seed=seed, threads=threads)
     truth = bench.emulation.truth if emulate and bench.emulation is not None else {}
     return Commissioning(

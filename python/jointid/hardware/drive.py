@@ -14,10 +14,10 @@ from jointid.hardware.clock import Clock
 FAULT_KINDS = (
     "stale_position",
     "drive_fault",
-    "emergency",
     "heartbeat_lost",
+    "host_heartbeat_lost",
     "bus",
-    "refused",
+    "sensor",
 )
 
 

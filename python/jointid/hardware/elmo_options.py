@@ -57,6 +57,19 @@ class ElmoOptions:
     mantissa_bits: int = 24
 
     def __post_init__(self) -> None:
+        if not 10e3 <= self.bitrate <= 1e6:
+            raise InputError(
+                f"ElmoOptions: bitrate is {self.bitrate!r}; 10 000 to 1 000 000 bit/s is expected"
+            )
+        if not 0.0 <= self.execution_delay <= 0.1:
+            raise InputError(
+                f"ElmoOptions: execution_delay is {self.execution_delay!r}; 0 to 0.1 s is expected"
+            )
+        if not math.isfinite(self.position_offset):
+            raise InputError(
+                f"ElmoOptions: position_offset is {self.position_offset!r}; a finite angle is expected"
+            )
+        self._check_identifiers()
         if not 1 <= self.mantissa_bits <= 24:
             raise InputError(
                 f"ElmoOptions: mantissa_bits is {self.mantissa_bits!r}; 1 to 24 is expected"
@@ -77,6 +90,28 @@ class ElmoOptions:
                 f"ElmoOptions: drive_heartbeat is {self.drive_heartbeat}; 0.001 s to half of heartbeat, "
                 f"{0.5 * self.heartbeat:g} s, is expected"
             )
+
+    def _check_identifiers(self) -> None:
+        used = {
+            "cob_command": self.command_id,
+            "cob_reply": self.reply_id,
+            "cob_position": self.position_id,
+        }
+        if isinstance(self.torque, SyncedConverter):
+            used["the converter's identifier"] = self.torque.identifier
+        for name, identifier in used.items():
+            if not 0x81 <= identifier <= 0x7FF:
+                raise InputError(
+                    f"ElmoOptions: {name} is 0x{identifier:X}; 0x081 to 0x7FF is expected"
+                )
+        for name, identifier in used.items():
+            others = [
+                other for other, value in used.items() if value == identifier and other != name
+            ]
+            if others:
+                raise InputError(
+                    f"ElmoOptions: {name} and {others[0]} are both 0x{identifier:X}; frames cannot be told apart"
+                )
 
     @property
     def command_id(self) -> int:

@@ -45,13 +45,21 @@ def arm_watchdogs(link: ElmoLink, options: ElmoOptions) -> None:
         (0x1017, 0, round(1e3 * options.drive_heartbeat), 2),
         (0x6007, 0, 2, 2),
         (0x1029, 1, 1, 1),
-        (0x2F21, 0, 0x188, 4),
+        (0x2F21, 0, _object(link, 0x2F21, 0) | 0x188, 4),
     )
 
 
 def disarm_watchdogs(link: ElmoLink) -> None:
     """Nobody sends heartbeats from now on, which is no failure."""
     _write(link, (0x1016, 1, 0, 4), (0x1017, 0, 0, 2))
+
+
+def _object(link: ElmoLink, index: int, subindex: int) -> int:
+    """What an object holds; 0 when the drive does not tell."""
+    try:
+        return int(link.transfer(SdoRequest(index=index, subindex=subindex)))
+    except SdoAbortError:
+        return 0
 
 
 def _write(link: ElmoLink, *objects: _Write) -> None:

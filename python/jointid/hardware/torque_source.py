@@ -34,6 +34,14 @@ class SensorScaling:
     cosine: float = 0.0
     start: float = 0.0
 
+    def __post_init__(self) -> None:
+        for name in ("full_scale", "span"):
+            value = getattr(self, name)
+            if value == 0.0 or not math.isfinite(value):
+                raise InputError(
+                    f"SensorScaling: {name} is {value!r}; a number that is not 0 is expected"
+                )
+
     def reading(self, voltage: float, position: float) -> float:
         """The raw reading."""
         correction = self.zero + self.cosine * math.cos(position + self.start)
@@ -67,6 +75,18 @@ class SyncedConverter:
     highest: float = 3.0
     conversions: int = 128
     scaling: SensorScaling = field(default_factory=SensorScaling)
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.conversions <= 2**16:
+            raise InputError(
+                f"SyncedConverter: conversions is {self.conversions!r}; 1 to 65536 is expected"
+            )
+        if not 1 <= self.bits <= 24:
+            raise InputError(f"SyncedConverter: bits is {self.bits!r}; 1 to 24 is expected")
+        if not self.lowest < self.highest:
+            raise InputError(
+                f"SyncedConverter: lowest is {self.lowest!r}, highest {self.highest!r}; less and more is expected"
+            )
 
     def voltage(self, payload: bytes) -> float:
         """The mean voltage of a frame [V].

@@ -67,6 +67,8 @@ def emulated_devices(
         idle_loop=emulation.idle_loop,
         mantissa_bits=emulation.mantissa_bits,
         position_offset=bench.drive.position_offset,
+        cob_command=bench.drive.cob_command,
+        cob_reply=bench.drive.cob_reply,
         analog=source.scaling if isinstance(source, AnalogInput) else SensorScaling(),
     )
     drive = EmulatedElmo(stepped, settings)

@@ -46,6 +46,8 @@ class ElmoSettings:
         Output angle at count 0 [rad].
     analog : SensorScaling
         Between the torque sensor's reading and the voltage at the analog input.
+    cob_command, cob_reply : int, optional
+        COB-IDs of interpreter commands and replies. Default: 0x300 and 0x280 plus the node.
     """
 
     node: int = 127
@@ -59,6 +61,18 @@ class ElmoSettings:
     mantissa_bits: int = 24
     position_offset: float = 0.0
     analog: SensorScaling = field(default_factory=SensorScaling)
+    cob_command: int | None = None
+    cob_reply: int | None = None
+
+    @property
+    def command_id(self) -> int:
+        """COB-ID of interpreter commands."""
+        return self.cob_command if self.cob_command is not None else 0x300 + self.node
+
+    @property
+    def reply_id(self) -> int:
+        """COB-ID of interpreter replies."""
+        return self.cob_reply if self.cob_reply is not None else 0x280 + self.node
 
 
 class EmulatedElmo:
@@ -85,6 +99,7 @@ class EmulatedElmo:
         self.problem = 0  # of the power stage, as SR tells it
         # Faults on demand; set them at a time with the bus's `at`.
         self.stuck_encoder: int | None = None
+        self.count_offset = 0  # since PX was set
         self.slipped_counts = 0
         self.fixed_unit_mode: int | None = None
         self.stage_gain = 1.0
@@ -121,7 +136,7 @@ class EmulatedElmo:
             self._network(payload[0])
         elif identifier == canopen.SYNC:
             self._synchronise()
-        elif identifier == 0x300 + node and self.state == "operational":
+        elif identifier == self.settings.command_id and self.state == "operational":
             self._interpreter.take(payload)
         elif identifier == 0x600 + node and self.state != "stopped":
             answer = self.objects.answer(payload)
@@ -149,7 +164,7 @@ class EmulatedElmo:
             return self.stuck_encoder
         angle = self.joint.position - self.settings.position_offset
         per_turn = self.settings.counts_per_turn * self.settings.gear_ratio
-        return math.floor(angle / TWO_PI * per_turn) + self.slipped_counts
+        return math.floor(angle / TWO_PI * per_turn) + self.slipped_counts + self.count_offset
 
     def speed(self) -> int:
         """Of the motor [counts/s]."""
@@ -206,7 +221,7 @@ class EmulatedElmo:
 
     def reply(self, payload: bytes) -> None:
         """Send a reply of the interpreter's."""
-        self._send(0x280 + self.settings.node, payload)
+        self._send(self.settings.reply_id, payload)
 
     # The network.
 

@@ -103,6 +103,8 @@ class Interpreter:
             drive.torque_commands.append((drive.bus.now(), drive.current))
         elif letters == "UM" and drive.fixed_unit_mode is None:
             drive.unit_mode = int(value)
+        elif letters == "PX":
+            drive.count_offset += int(value) - drive.counts()
         elif letters == "RM":
             drive.reference_mode = int(value)
         elif letters in ("PL", "CL") and command.index == 1:
