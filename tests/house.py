@@ -40,7 +40,7 @@ class Group:
 GROUPS: dict[str, Group] = {
     "core": Group(modules={"_core"}, may_use=set(), packages=set()),
     "recording": Group(
-        modules={"errors", "files", "recording.", "joint."},
+        modules={"errors", "files", "given", "recording.", "joint."},
         may_use={"core"},
         packages={"numpy", "scipy", "pandas", "pyarrow", "tomlkit"},
     ),
