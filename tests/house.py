@@ -90,6 +90,7 @@ GROUPS: dict[str, Group] = {
     "command line": Group(
         modules={
             *("cli", "cli_arguments", "cli_commands", "cli_session", "cli_simulation", "cli_study"),
+            "cli_words",
             *("__main__", "demo", "progress"),
         },
         may_use={

@@ -309,7 +309,8 @@ def _missing(table: Table, signal: str) -> InputError:
         for header in table.headers
         if any(part in _plain(header) for part in _LIKELY[signal])
     ]
-    shown = likely or list(table.headers)
+    strange = [header for header in table.headers if _parsed(header)[0] not in _ALIASES]
+    shown = likely or strange or list(table.headers)
     example = f"columns={{{signal!r}: {shown[0]!r}}}" if shown else "columns="
     return InputError(
         f"{table.header_place}: no column is recognised as {signal}; "
