@@ -22,6 +22,7 @@ from jointid.hardware.limits import SessionLimits
 from jointid.hardware.live import ConsoleLine
 from jointid.hardware.live_plot import LivePlot
 from jointid.hardware.realtime import RealTimeOptions
+from jointid.hardware.replaying import replay
 from jointid.hardware.session import (
     Session,
     SessionOptions,
@@ -64,5 +65,6 @@ __all__ = [
     "SyncedConverter",
     "emulated_devices",
     "open_bus",
+    "replay",
     "true_joint",
 ]

@@ -45,6 +45,13 @@ class ElmoDecoder:
         synced = isinstance(self._options.torque, SyncedConverter)
         return self._positions_due == 0 and (self._readings_due == 0 or not synced)
 
+    @property
+    def lacking(self) -> str:
+        """What has not come of it; empty when all has."""
+        if self._positions_due:
+            return "position"
+        return "" if self.complete else "torque sensor's reading"
+
     def take(self, identifier: int, payload: bytes) -> bool:
         """Read a frame; whether it was one of these."""
         source = self._options.torque

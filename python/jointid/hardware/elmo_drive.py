@@ -18,6 +18,7 @@ from jointid.hardware.elmo_decoder import ElmoDecoder
 from jointid.hardware.elmo_errors import DriveStatus, failure_meaning
 from jointid.hardware.elmo_link import ElmoLink, Tap
 from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.elmo_timing import command_latency, sampled_at
 from jointid.hardware.torque_source import AnalogInput, SyncedConverter
 from jointid.joint.joint import Joint
 
@@ -74,7 +75,11 @@ class ElmoDrive:
         self._period = 0.002
         self._found_off = self._seen_off = False
         self._failure = ""
-        self._identity: dict[str, Any] = {"drive": "Elmo SimplIQ", "node": self.options.node}
+        self._identity: dict[str, Any] = {
+            "drive": "Elmo SimplIQ",
+            "node": self.options.node,
+            "stamped_frames": self._link.stamped,
+        }
         self._peak = math.inf
 
     @property
@@ -174,24 +179,15 @@ class ElmoDrive:
         self._settle(timeout)
         asked = self._asked = link.clock.now()
         seen.begin()
-        link.send(canopen.SYNC, b"")
-        taken = link.clock.now()  # behind the sending, which may have had to wait for the processor
+        sent = link.send(canopen.SYNC, b"")
         source = self.options.torque
-        bits = canopen.bits_on_wire
-        behind = bits(elmo_setup.POSITION_LENGTH)  # the SYNC, until the position is here
-        if isinstance(source, AnalogInput) and self._cycle % source.every == 0:
-            self._ask_analog(source)
-            behind += bits(4)  # the question goes before the answer
+        asked_analog = self._asks_analog()
         self._cycle += 1
         self._answered(end - asked)
         self._look_alive()
-        # Drive and converter sample when the SYNC has arrived, which other frames may have held up.
-        if link.stamped:
-            taken = link.position_came - behind / self.options.bitrate
-        else:
-            taken += bits(0) / self.options.bitrate
+        came = link.position_came if link.stamped else None
         return DriveSample(
-            time=taken,
+            time=sampled_at(self.options.bitrate, sent, came, asked=asked_analog),
             position=seen.position,
             reading=seen.reading,
             fresh=seen.fresh or source is None,
@@ -262,7 +258,7 @@ class ElmoDrive:
     @property
     def command_latency(self) -> float:
         """From sending a command until the drive acts on it [s], reckoned."""
-        return canopen.bits_on_wire(8) / self.options.bitrate + self.options.execution_delay
+        return command_latency(self.options)
 
     def bus_load(self, period: float) -> float:
         """Share of the bus: SYNC, position, command with echo, both heartbeats, sensor."""
@@ -293,8 +289,11 @@ class ElmoDrive:
         except DriveFaultError:
             return  # once more in the next round; in the end the drive's own watchdog remains
 
-    def _ask_analog(self, source: AnalogInput) -> None:
-        """Ask for the torque sensor; the answer may take some cycles, but not for ever."""
+    def _asks_analog(self) -> bool:
+        """Ask for the torque sensor in every few cycles; the answer may take some, but not for ever."""
+        source = self.options.torque
+        if not isinstance(source, AnalogInput) or self._cycle % source.every:
+            return False
         self._unread = self._unread + 1 if self._seen.readings == self._read else 0
         self._read = self._seen.readings
         if self._unread > _UNREAD:
@@ -306,6 +305,7 @@ class ElmoDrive:
                 allowed=_UNREAD,
             )
         self._link.command(Command(letters="AN", index=source.number))
+        return True
 
     def _look_alive(self) -> None:
         """After the answer to a SYNC: heartbeats that came before it have been read."""

@@ -21,7 +21,6 @@ from jointid.hardware.elmo_options import ElmoOptions
 _ANSWER = 0.2  # [s] to wait for one
 _HOST_HEARTBEAT = 0x8130  # emergency: ours has stayed away
 _MOST_WAITING = 10_000  # frames; a bus that brings more at once is not read to its end
-_MASTERS = (1, 2)  # our node, whose heartbeat the drive watches: the first that is not the drive's
 Tap = Callable[[float, int, bytes, bool], None]  # time, identifier, payload, whether sent
 
 
@@ -58,7 +57,7 @@ class ElmoLink:
         self.stamped = self._virtual or "socketcan" in type(bus).__module__.split(".")
         node = options.node
         self._command_id, self._reply_id = options.command_id, options.reply_id
-        self.master = next(each for each in _MASTERS if each != node)
+        self.master = options.master
         # Some interfaces, e.g. udp_multicast, give us our own frames back.
         self._ours = {
             *(canopen.NMT, canopen.SYNC, self._command_id, 0x600 + node),
@@ -70,8 +69,8 @@ class ElmoLink:
 
     # Towards the drive.
 
-    def send(self, identifier: int, payload: bytes) -> None:
-        """Send a frame.
+    def send(self, identifier: int, payload: bytes) -> float:
+        """Send a frame; returns when it was sent [s].
 
         Raises
         ------
@@ -83,8 +82,10 @@ class ElmoLink:
             self._bus.send(message, timeout=0.01)
         except can.CanError as error:
             raise DriveFaultError("bus", f"a frame could not be sent: {error}") from error
+        when = self.clock.now()  # behind the sending, which may have had to wait for the processor
         if self.tap is not None:
-            self.tap(self.clock.now(), identifier, payload, True)
+            self.tap(when, identifier, payload, True)
+        return when
 
     def command(self, command: Command) -> None:
         """Send a command and wait for nothing."""

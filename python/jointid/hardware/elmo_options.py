@@ -93,6 +93,11 @@ class ElmoOptions:
         """COB-ID of the PDO with the position."""
         return self.cob_position if self.cob_position is not None else 0x480 + self.node
 
+    @property
+    def master(self) -> int:
+        """Our node, whose heartbeat the drive watches: the first that is not the drive's."""
+        return 2 if self.node == 1 else 1
+
     def angle(self, counts: int, joint: Joint) -> float:
         """Output angle of encoder counts [rad]."""
         per_turn = self.counts_per_turn * joint.gear_ratio

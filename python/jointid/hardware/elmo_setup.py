@@ -9,9 +9,6 @@ from jointid.hardware.elmo_options import ElmoOptions
 
 _Write = tuple[int, int, int, int]  # index, subindex, value, size
 
-POSITION_LENGTH = 6
-"""Bytes of the position's frame, as `map_position` has it."""
-
 
 def identity(link: ElmoLink) -> dict[str, str]:
     """What object 1018h says of the drive."""

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from jointid import _core
+from jointid.hardware.cycle import held_torque, target_at
 from jointid.hardware.drive import Drive, DriveSample
 from jointid.hardware.guard import Guard
 from jointid.hardware.interruptions import Interruptions
@@ -55,6 +56,8 @@ class Follower:
         self.phase, self.began = "check", drive.clock.now()
         self.rows: list[tuple[float, ...]] = []
         self.late: list[float] = []
+        self.cycles = self.cycles_before = 0  # in which a torque was commanded; before the run
+        self._held = 0.0  # of the last command [N·m]: enabling tells the drive zero
 
     def enter(self, phase: str) -> None:
         """Begin a phase: stops are told by its name and the time since."""
@@ -92,7 +95,10 @@ class Follower:
         running = self.phase == "run"
         begin = clock.now() + period
         first: float | None = None  # how long after a cycle's begin the first sample was taken
-        before = 0.0
+        if running and recorder is not None:
+            recorder.begin({"cycles_before": self.cycles})
+        if running:
+            self.cycles_before = self.cycles
         for k in range(count):
             if settled is not None and self.phase == "move" and k * period > settled:
                 self.enter("settle")
@@ -103,31 +109,28 @@ class Follower:
             speed = self._estimate(sample.time, sample.position)
             late = sample.time - begin - k * period
             first = late if first is None else first
-            jitter = round(
-                late - first, 9
-            )  # rounding errors would turn the sign of a velocity of 0
-            # The reference of the instant at which the sample was taken, not at which it was due.
-            pace = velocity[k] + jitter * acceleration[k]
-            target = reference[k] + offset + jitter * 0.5 * (velocity[k] + pace)
-            elapsed = k * period + jitter
+            # To the nanosecond: rounding errors would turn the sign of a velocity of 0.
+            shift = round(late - first, 9)
+            pace = velocity[k] + shift * acceleration[k]
+            target = target_at(reference[k] + offset, velocity[k], acceleration[k], shift)
+            elapsed = k * period + shift
             error = sample.position - target if self._feedback else None
             guard.measured(sample, speed, error)
             torque = self._asked(elapsed, sample, speed, (target, pace, acceleration[k]))
             guard.commanded(torque, self._law.saturations)
             told = self._drive.command(torque)
+            acted = clock.now() - sample.time + self._drive.command_latency
+            self.cycles += 1
             guard.told(told)
-            now = clock.now()
             if running:
-                # Until the drive acts, the last command holds: the mean over the cycle is kept.
-                share = min(1.0, (now - sample.time + self._drive.command_latency) / period)
-                held = share * before + (1.0 - share) * told
+                held = held_torque(self._held, told, acted, period)
                 row = (elapsed, sample.position, held, sample.reading, target, sample.current)
                 self.rows.append(row)
                 if recorder is not None:
                     recorder.sample(row)
                     if recorder.failure is not None:
                         raise unwritten(recorder.failure)
-            before = told
+            self._held = told
             if self._observer is not None:
                 self._shown(elapsed, sample, target, told)
             missed = clock.now() - (begin + (k + 1) * period)

@@ -13,7 +13,7 @@ from typing import Any, BinaryIO
 
 from jointid.errors import InputError
 from jointid.recording.saving import CSV_MARK, SCHEMA
-from jointid.recording.torn import CLOSING
+from jointid.recording.torn import CLOSING, OPENING
 
 COLUMNS = (
     "time_s",
@@ -81,11 +81,17 @@ class Recorder:
         self._rows: BinaryIO = self.path.open("xb")
         self._frames: BinaryIO = self.log.open("xb")
         self._rows.write(f"{CSV_MARK}{json.dumps(attributes)}\n{','.join(COLUMNS)}\n".encode())
-        self._queue: queue.SimpleQueue[Sequence[float] | Frame | None] = queue.SimpleQueue()
+        self._queue: queue.SimpleQueue[Sequence[float] | Frame | Mapping[str, Any] | None] = (
+            queue.SimpleQueue()
+        )
         self._failure: Exception | None = None
         self._ending: Mapping[str, Any] | None = None
         self._thread = threading.Thread(target=self._write, name="recorder", daemon=True)
         self._thread.start()
+
+    def begin(self, notes: Mapping[str, Any]) -> None:
+        """Say above the first row what is known when the run begins; JSON."""
+        self._queue.put(notes)
 
     def sample(self, row: Sequence[float]) -> None:
         """Keep a row of `COLUMNS`."""
@@ -151,7 +157,9 @@ class Recorder:
                 return True
             if item is None:
                 return False
-            if isinstance(item[2], bytes):
+            if isinstance(item, Mapping):
+                self._rows.write(f"{OPENING}{json.dumps(dict(item))}\n".encode())
+            elif isinstance(item[2], bytes):
                 self._frames.write(_line(item))  # type: ignore[arg-type]
             else:
                 self._rows.write((",".join(map(repr, item)) + "\n").encode())

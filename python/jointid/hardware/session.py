@@ -294,6 +294,7 @@ class Session:
                 "slack_median": float(-np.median(late)),
             }
         return {
+            "cycles_before": 0 if self._follower is None else self._follower.cycles_before,
             "stop": None if stop is None else str(stop),
             "stopped": None if stop is None else stop.to_dict(),
             "real_time": list(self._real_time.notes),

@@ -1,4 +1,4 @@
-"""What is special in a session's .csv: it may be torn, and its last line says how it ended."""
+"""What is special in a session's .csv: it may be torn; its first and last lines say how it began and ended."""
 
 import json
 from collections.abc import Mapping
@@ -6,11 +6,11 @@ from typing import Any
 
 from jointid.recording.saving import CSV_MARK
 
-CLOSING = "# jointid session "
+OPENING, CLOSING = "# jointid run ", "# jointid session "
 
 
 def session_text(text: str) -> tuple[str, Mapping[str, Any] | None]:
-    """Leave out of a session's text what is no row: a line cut off, and the closing line.
+    """Leave out of a session's text what is no row: a line cut off, the opening and the closing line.
 
     Parameters
     ----------
@@ -22,8 +22,8 @@ def session_text(text: str) -> tuple[str, Mapping[str, Any] | None]:
     str
         The same text where no session wrote it.
     dict or None
-        What the closing line says; ``{"torn": True}`` without one: the session was killed, or the power
-        failed. None where no session wrote the text.
+        What the two lines say; with ``"torn": True`` where there is no closing line: the session was
+        killed, or the power failed. None where no session wrote the text.
     """
     # Not by `metadata`: that stays when the recording is saved anew, whole.
     end = text.find("\n")
@@ -36,16 +36,30 @@ def session_text(text: str) -> tuple[str, Mapping[str, Any] | None]:
         return text, None
     whole = text[: text.rfind("\n") + 1]  # a number cut off looks like another number
     last = whole.rfind("\n", 0, len(whole) - 1) + 1
+    notes: dict[str, Any] = {"torn": True}
     if whole.startswith(CLOSING, last):
-        try:
-            notes = json.loads(whole[last + len(CLOSING) :])
-        except (ValueError, RecursionError):
+        closing = _said(whole[last + len(CLOSING) :])
+        if closing is None:
             return text, None
-        if isinstance(notes, dict):
-            return whole[:last], notes
-    return whole, {"torn": True}
+        whole, notes = whole[:last], closing
+    first = whole.find("\n", end + 1) + 1
+    if first and whole.startswith(OPENING, first):
+        behind = whole.find("\n", first)
+        opening = _said(whole[first + len(OPENING) : behind])
+        if opening is None:
+            return text, None
+        whole, notes = whole[:first] + whole[behind:], opening | notes  # lines keep their numbers
+    return whole, notes
 
 
 def with_notes(saved: Mapping[str, Any], notes: Mapping[str, Any]) -> dict[str, Any]:
     """Return what a recording says of itself, with what is known of its end."""
     return {**saved, "metadata": {**saved["metadata"], **notes}}
+
+
+def _said(text: str) -> dict[str, Any] | None:
+    try:
+        notes = json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+    return notes if isinstance(notes, dict) else None

@@ -1,0 +1,60 @@
+"""Frames out of a log file: what a session wrote, candump, or any program whose format python-can reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import can
+
+from jointid.errors import InputError
+from jointid.recording.reasons import reason_of
+
+ENDINGS = (".log", ".asc", ".blf")
+
+LoggedFrame = tuple[float, int, bytes]  # time [s], identifier, payload
+
+
+def logged_frames(path: Path) -> Iterator[LoggedFrame]:
+    """Yield the frames with 11-bit identifiers, in the file's order; error frames are left out.
+
+    A last line that is cut off is no frame.
+
+    Parameters
+    ----------
+    path : Path
+        ``.log`` (candump), ``.asc`` or ``.blf``.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read.
+    """
+    if path.suffix.lower() not in ENDINGS:
+        raise InputError(f"{path}: a frame log ends in {', '.join(ENDINGS)}")
+    number = 0
+    try:
+        for message in _messages(path):
+            number += 1
+            if not (message.is_error_frame or message.is_remote_frame or message.is_extended_id):
+                yield message.timestamp, message.arbitration_id, bytes(message.data)
+    except FileNotFoundError:
+        raise InputError(f"{path}: there is no such file") from None
+    except OSError as error:
+        raise InputError(f"{path}: the file cannot be read ({error.strerror})") from None
+    except Exception as error:  # each of python-can's readers has errors of its own
+        raise InputError(
+            f"{path}: what follows frame {number} is no frame ({reason_of(error)})"
+        ) from error
+
+
+def _messages(path: Path) -> Iterator[can.Message]:
+    if path.suffix.lower() == ".log":
+        text = path.read_text(encoding="ascii", errors="replace")
+        reader: Any = can.CanutilsLogReader(StringIO(text[: text.rfind("\n") + 1]))
+    else:
+        reader = can.LogReader(str(path))
+    with reader:
+        yield from reader

@@ -1,0 +1,143 @@
+"""The cycles of a session out of its frames: what was sampled, and what the drive was told."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from jointid.errors import InputError
+from jointid.hardware import canopen_frames as canopen
+from jointid.hardware.elmo_codec import Command, DriveError, Reply
+from jointid.hardware.elmo_decoder import ElmoDecoder
+from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.elmo_timing import sampled_at
+from jointid.hardware.frame_log import LoggedFrame
+from jointid.joint.joint import Joint
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoggedCycle:
+    """One cycle: a SYNC, its answers, a command.
+
+    Attributes
+    ----------
+    taken, acted : float
+        When the sample was taken, and when the command was out [s], by the log's stamps.
+    position, reading, current : float
+        As in a `DriveSample`.
+    told : float
+        The current commanded [A].
+    """
+
+    taken: float
+    acted: float
+    position: float
+    reading: float
+    current: float
+    told: float
+
+
+class CycleReader:
+    """Reads frames in the order in which a session sent and received them.
+
+    A cycle ends with our heartbeat, which goes out with each command and at no other time.
+
+    Parameters
+    ----------
+    joint : Joint
+    options : ElmoOptions
+    stamped : bool
+        The position's time of arrival is exact, and tells when it was sampled; else the SYNC's is taken.
+    rated_current : float
+        The drive's CL[1] [A], where the frames do not tell; not a number: not known.
+    """
+
+    def __init__(
+        self, joint: Joint, options: ElmoOptions, *, stamped: bool, rated_current: float
+    ) -> None:
+        self._options, self._stamped = options, stamped
+        self._seen = ElmoDecoder(joint, options)
+        self._seen.rated_current = rated_current
+        self._ours = canopen.heartbeat_id(options.master)
+        self._synced = self._came = math.nan
+        self._told: float | None = None
+        self._open = self._asked = False
+        self.cycles: list[LoggedCycle] = []
+
+    def read(self, frames: Iterable[LoggedFrame]) -> None:
+        """Read all frames of a log.
+
+        Raises
+        ------
+        InputError
+            Frames are missing.
+        """
+        for when, identifier, payload in frames:
+            if identifier == canopen.SYNC:
+                self._begin(when)
+            elif identifier == self._options.command_id:
+                self._commanded(payload)
+            elif identifier == self._ours:
+                self._end(when)
+            elif identifier == self._options.reply_id:
+                self._replied(payload)
+            elif self._seen.take(identifier, payload) and identifier == self._options.position_id:
+                self._came = when
+
+    def _begin(self, when: float) -> None:
+        if self._open and self.cycles:  # in a run no SYNC is without a command
+            self._miss("command" if self._told is None else "host's heartbeat")
+        self._seen.begin()
+        self._synced, self._told = when, None
+        self._open, self._asked = True, False
+
+    def _commanded(self, payload: bytes) -> None:
+        try:
+            command = Command.of(payload)
+        except InputError:
+            return  # another program's
+        if command.letters == "TC" and command.value is not None:
+            self._told = float(command.value)
+        elif command.letters == "AN":
+            self._asked = True
+
+    def _replied(self, payload: bytes) -> None:
+        try:
+            reply = Reply.of(payload)
+        except (DriveError, InputError):
+            return  # what it meant to the session, the session says
+        if reply.letters == "AN":
+            self._seen.take_voltage(float(reply.value))
+        elif reply.key == ("CL", 1):
+            self._seen.rated_current = float(reply.value)
+
+    def _end(self, when: float) -> None:
+        if not self._open:
+            raise InputError(
+                f"the SYNC before the host's heartbeat at {when:.6f} s is missing, in cycle "
+                f"{len(self.cycles) + 1}; frames are missing from the log"
+            )
+        if self._told is None:
+            self._miss("command")
+        if not self._seen.complete:
+            self._miss(f"{self._seen.lacking} that answers")
+        came = self._came if self._stamped else None
+        self.cycles.append(
+            LoggedCycle(
+                taken=sampled_at(self._options.bitrate, self._synced, came, asked=self._asked),
+                acted=when,
+                position=self._seen.position,
+                reading=self._seen.reading,
+                current=self._seen.current,
+                told=0.0 if self._told is None else self._told,
+            )
+        )
+        self._open = False
+
+    def _miss(self, what: str) -> None:
+        link = "" if what.endswith("answers") else " that follows"
+        raise InputError(
+            f"the {what}{link} the SYNC at {self._synced:.6f} s is missing, in cycle "
+            f"{len(self.cycles) + 1}; frames are missing from the log"
+        )
