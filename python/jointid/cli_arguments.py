@@ -307,7 +307,10 @@ def check_outputs(arguments: argparse.Namespace) -> None:
     check_page("--report", arguments.report)
 
 
-_READ = ("recordings", "recording", "joint", "estimate", "believe", "trajectory", "resume")
+_READ = (
+    *("recordings", "recording", "joint", "estimate"),
+    *("simulate", "believe", "trajectory", "resume"),
+)
 _WRITTEN = ("output", "report", "table", "plot", "checkpoint", "save")
 # Going on where a file ends, and a joint file that keeps its words, are meant.
 _MEANT = {("resume", "checkpoint"), ("joint", "save")}
