@@ -302,7 +302,7 @@ CASES = (
     Case(name="joint is off its reference", stop="tracking_error", script=_slips(0.015),
          limits={"tracking_error": 0.01}, says="more than 0.01 rad"),
     Case(name="controller asks for too much", stop="torque", script=_controller(lambda t: t + 500.0),
-         says="more than 160"),
+         says="more than 159.984"),
     Case(name="controller asks for no number", stop="torque", script=_controller(lambda _: math.nan),
          says="no number"),
     Case(name="command jumps", stop="torque_rate", script=_controller(lambda t: t + 150.0),

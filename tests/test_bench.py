@@ -36,7 +36,7 @@ def test_the_example_is_the_thesis_bench() -> None:
     assert {name: getattr(bench.controller, name) for name in believed} == believed
     assert bench.trajectory == jid.Trajectory.thesis(math.radians(60), cycle=3.0, duration=12.0)
     assert isinstance(bench.drive.torque, SyncedConverter)
-    assert bench.limits.torque == 160.0
+    assert bench.limits.torque == pytest.approx(8.0 * 0.198 * 101.0)
     assert bench.options.resolution == pytest.approx(2.0 * math.pi / 808_000)
     assert bench.emulation is not None
     assert bench.emulation.truth["sensor_gain"] == 2.4

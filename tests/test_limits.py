@@ -76,17 +76,32 @@ def test_what_is_no_number_is_beyond_every_limit() -> None:
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 def test_torque_is_held_but_for_rounding(sign: float) -> None:
-    guard().commanded(sign * 100.0 * (1.0 + 1e-12), 0)
+    guard(torque_rate=1e6).commanded(sign * 100.0 * (1.0 + 1e-12), 0)
     error = stopped(lambda: guard().commanded(sign * 100.01, 0))
     assert (error.limit, error.measured, error.allowed) == ("torque", sign * 100.01, 100.0)
 
 
-def test_rate_counts_from_one_command_to_the_next() -> None:
+def test_what_the_drive_is_told_is_held_too() -> None:
     watched = guard()
-    watched.commanded(50.0, 0)  # the first has nothing before it
-    watched.commanded(60.0, 0)
-    watched.commanded(50.0, 0)
-    error = stopped(lambda: watched.commanded(39.9, 0))
+    watched.told(100.0, 100.0 * (1.0 + 1e-7))  # a float of 32 bits
+    for told in (100.1, -100.1, math.nan, math.inf):
+        assert stopped(lambda t=told: guard().told(100.0, t)).limit == "torque"
+    for asked, told in ((80.0, 75.0), (-80.0, -75.0), (0.0, 0.0)):  # rounded
+        for _ in range(30):
+            watched.told(asked, told)
+    watched.commanded(0.0, 0)
+    for _ in range(21):
+        watched.told(80.0, 40.0)  # the drive's own limit is lower
+    error = stopped(lambda: watched.commanded(0.0, 0))
+    assert (error.limit, error.measured) == ("saturated_samples", 21)
+
+
+def test_rate_counts_from_one_command_to_the_next() -> None:
+    assert stopped(lambda: guard().commanded(10.1, 0)).limit == "torque_rate"  # enabled at zero
+    watched = guard()
+    for torque in (10.0, 20.0, 10.0):
+        watched.commanded(torque, 0)
+    error = stopped(lambda: watched.commanded(-0.1, 0))
     assert error.limit == "torque_rate"
     assert error.measured == pytest.approx(-5050.0)
     assert error.allowed == 5000.0
@@ -118,7 +133,7 @@ def test_clipped_readings_count_in_a_row() -> None:
 def repeated(watched: Guard, velocity: float, torque: float, times: int) -> None:
     """A sample in motion, then the same position again and again at another torque."""
     watched.measured(sample(0.5), velocity, 0.0)
-    watched.told(torque)
+    watched.told(torque, torque)
     for _ in range(times):
         watched.measured(sample(0.5), 0.0, 0.0)
 
@@ -133,10 +148,19 @@ def test_position_that_repeats_after_motion_is_an_encoder_that_hangs() -> None:
 
 
 def test_position_that_repeats_though_the_torque_has_changed_much() -> None:
-    repeated(guard(), 0.0, -100.0, 100)
-    error = stopped(lambda: repeated(guard(), 0.0, -100.1, 11))
-    assert error.limit == "repeated_positions"
-    assert "changed by 100 N·m" in str(error)
+    for torque, stops in ((0.0, False), (-50.1, True)):
+        watched = guard()
+        watched.told(50.0, 50.0)
+        watched.measured(sample(0.5), 0.0, 0.0)
+        watched.told(torque, torque)
+        for _ in range(10):
+            watched.measured(sample(0.5), 0.0, 0.0)
+        if not stops:
+            watched.measured(sample(0.5), 0.0, 0.0)
+            continue
+        error = stopped(lambda w=watched: w.measured(sample(0.5), 0.0, 0.0))
+        assert error.limit == "repeated_positions"
+        assert "changed by 100 N·m" in str(error)
 
 
 def test_position_that_moves_by_a_count_is_none_that_hangs() -> None:
@@ -156,7 +180,7 @@ def test_measured_torque_beyond_the_limit() -> None:
 
 def test_measured_torque_that_stays_away_from_the_command() -> None:
     watched = guard()
-    watched.told(60.0)
+    watched.told(60.0, 60.0)
     for _ in range(100):
         watched.measured(sample(torque=35.0), 0.0, 0.0)  # a quarter of 100 N·m off is allowed
     for torque in (60.0, 10.0) * 50:
@@ -176,12 +200,12 @@ def test_drive_that_is_a_cycle_behind_is_no_fault() -> None:
         torque = 90.0 * (-1.0) ** cycle  # chatter
         watched.measured(sample(torque=felt), 0.0, 0.0)
         felt = -torque
-        watched.told(torque)
+        watched.told(torque, torque)
 
 
 def test_drive_that_tells_no_current_is_not_held_to_one() -> None:
     watched = guard()
-    watched.told(100.0)
+    watched.told(100.0, 100.0)
     for _ in range(50):
         watched.measured(sample(), 0.0, 0.0)
 
@@ -215,7 +239,9 @@ def test_window_that_is_none_is_refused(window: tuple[float, float]) -> None:
 
 def test_limits_of_a_joint() -> None:
     joint = jid.thesis_joint()
-    assert SessionLimits.of(joint).torque == 160.0
+    assert SessionLimits.of(joint).torque == pytest.approx(8.0 * 0.198 * 101.0)  # the smaller
+    weak = joint.replace(limits=jid.Limits(torque=160.0, current=2.0))
+    assert SessionLimits.of(weak).torque == pytest.approx(2.0 * 0.198 * 101.0)
     assert SessionLimits.of(joint, torque=80.0, velocity=1.0).velocity == 1.0
     assert SessionLimits.of(joint, torque=80.0).largest_measured == pytest.approx(96.0)
     assert SessionLimits.of(joint, torque=80.0).largest_difference == pytest.approx(20.0)

@@ -70,7 +70,7 @@ CASES: dict[str, tuple[Prepare, str]] = {
     "trajectory outside": (limited(position=(-0.2, 0.6)), "outside -0.2000 to 0.6000 rad"),
     "trajectory too fast": (limited(velocity=1.0), "rad/s fast, more than 1 rad/s"),
     "torque beyond": (open_loop, "asks for 170 N·m, more than 160 N·m"),
-    "peak current": (strong, r"PL\[1\] is 9 A, the session allows 8.001 A"),
+    "peak current": (strong, r"PL\[1\] is 9 A, the session allows 8 A"),
     "unit mode": (with_elmo(fixed_unit_mode=5), "is in unit mode 5, not in torque mode"),
     "failure latched": (with_elmo(failure=0x4), r"down before \(feedback lost\)"),
     "power stage": (with_elmo(problem=6), "reports over-temperature"),

@@ -22,6 +22,7 @@ from jointid.hardware import (
     EmulatorThread,
     SessionStoppedError,
 )
+from jointid.hardware.session_notes import elmo_options_of
 
 CONVERTER = ElmoOptions()
 ANALOG = ElmoOptions(torque=AnalogInput())
@@ -29,6 +30,8 @@ NO_SENSOR = ElmoOptions(torque=None)
 COARSE = ElmoOptions(mantissa_bits=4)
 WIRINGS = {"converter": CONVERTER, "analog": ANALOG, "none": NO_SENSOR, "coarse": COARSE}
 ROUNDING = 1e-9  # [s] of a stamp in the log
+
+_BEFORE_CYCLES = 3  # heartbeats of ours while the motor is switched on
 
 
 def ran(path: Path, drive: ElmoOptions = CONVERTER, **more: Any) -> jid.Recording:
@@ -84,6 +87,18 @@ def test_a_log_gives_the_sessions_recording(
     assert again.metadata["cycles_before"] == recording.metadata["cycles_before"] > 0
 
 
+@pytest.mark.parametrize("name", WIRINGS)
+def test_the_recording_knows_how_the_drive_was_wired(
+    made: Callable[[str], tuple[jid.Recording, Path]], name: str
+) -> None:
+    recording, log = made(name)
+    assert elmo_options_of(recording.metadata, "here") == WIRINGS[name]
+    same(jid.hardware.replay(log, JOINT), recording)
+    other = {**recording.metadata, "drive_options": {"torque": None, "servo": 3}}
+    with pytest.raises(jid.InputError, match="here: its drive_options are not those of an Elmo"):
+        elmo_options_of(other, "here")
+
+
 def test_a_log_alone_is_enough(
     made: Callable[[str], tuple[jid.Recording, Path]], tmp_path: Path
 ) -> None:
@@ -93,6 +108,8 @@ def test_a_log_alone_is_enough(
     with pytest.raises(jid.InputError, match=r"period is None; give period=, or the session's"):
         jid.hardware.replay(alone, JOINT)
     before = recording.metadata["cycles_before"]
+    with pytest.raises(jid.InputError, match="cycles_before is -1; 0 or a positive number"):
+        jid.hardware.replay(alone, JOINT, period=PERIOD, cycles_before=-1)
     whole = jid.hardware.replay(alone, JOINT, period=PERIOD)
     assert len(whole.time) == before + len(recording.time)
     assert whole.reference is None
@@ -206,9 +223,8 @@ def test_a_missing_frame_is_named(
     cycle = recording.metadata["cycles_before"] + 101
     lines = log.read_text().splitlines(keepends=True)
     ends = [k for k, line in enumerate(lines) if " 701#" in line]
-    (missing,) = [
-        k for k in range(ends[cycle - 2] + 1, ends[cycle - 1] + 1) if f" {identifier}#" in lines[k]
-    ]
+    first, last = (ends[_BEFORE_CYCLES + cycle - k] + 1 for k in (2, 1))
+    (missing,) = [k for k in range(first, last) if f" {identifier}#" in lines[k]]
     lacking = tmp_path / "run.log"
     lacking.write_text("".join(lines[:missing] + lines[missing + 1 :]))
     with pytest.raises(jid.InputError) as caught:

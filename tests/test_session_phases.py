@@ -138,10 +138,14 @@ def test_host_that_is_late_now_and_then_is_borne() -> None:
 def test_recording_that_cannot_be_written_stops_the_session(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def full(_: int) -> None:
-        raise OSError(28, "No space left on device")
+    synced = []
 
-    monkeypatch.setattr("jointid.hardware.recorder.os.fsync", full)
+    def full(descriptor: int) -> None:
+        synced.append(descriptor)
+        if len(synced) > 3:  # both files and the folder, when they are made
+            raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("jointid.hardware.appended_file.os.fsync", full)
     bench = EmulatedSession(output=tmp_path / "run.csv")
     with pytest.raises(SessionStoppedError, match=r"written: .*No space left") as found:
         bench.session().run()

@@ -113,7 +113,8 @@ class Drive(Protocol):
     All of them may raise DriveFaultError. Torque and position are positive in the same direction.
     A drive may have an attribute `tap`, None at first: if so, the session sets it to a callable
     (time [s], identifier, payload, whether sent) for the time of the run, to be called with each frame,
-    for the frame log.
+    for the frame log. It may have attributes `joint`, a `Joint`, and `options`, a dataclass: what they say
+    is in the recording's metadata then.
     """
 
     @property

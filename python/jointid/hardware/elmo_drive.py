@@ -18,11 +18,13 @@ from jointid.hardware.elmo_decoder import ElmoDecoder
 from jointid.hardware.elmo_errors import DriveStatus, failure_meaning
 from jointid.hardware.elmo_link import ElmoLink, Tap
 from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.elmo_timing import command_latency, sampled_at
+from jointid.hardware.elmo_timing import command_latency
 from jointid.hardware.torque_source import AnalogInput, SyncedConverter
 from jointid.joint.joint import Joint
 
 _BOOT, _ENABLE = 2.0, 3.0  # [s] to wait for each
+_UNIT_MODE = 0.5  # [s] that changing it may take
+_CYCLES = 1.0 / 3.0  # of the time that the drive waits for a heartbeat: one may be lost
 _STRANGER = 0.02  # [s] for an answer before the drive is reset: only one that is in use gives one
 _SEEN_OFF = 0.2  # [s] that switching off is tried for, at most
 _SOON = 3  # times that switching off is repeated in the next cycle
@@ -63,6 +65,7 @@ class ElmoDrive:
                 "ElmoDrive: the joint has no torque_constant, so no torque can be commanded; give it in "
                 "the joint file under [drive]"
             )
+        self.joint = joint
         self.options = options if options is not None else ElmoOptions()
         self._seen = ElmoDecoder(joint, self.options)
         self._link = ElmoLink(bus, self.options, self._seen, clock)
@@ -81,6 +84,7 @@ class ElmoDrive:
             "stamped_frames": self._link.stamped,
         }
         self._peak = math.inf
+        self._most_current = joint.limits.current
 
     @property
     def clock(self) -> Clock:
@@ -106,7 +110,13 @@ class ElmoDrive:
         A drive whose motor is on is left alone: somebody else moves it.
         """
         link, node = self._link, self.options.node
-        self._period = period
+        if period > _CYCLES * self.options.heartbeat:
+            raise DriveFaultError(
+                "drive_fault",
+                f"a period of {1e3 * period:g} ms is too long for a heartbeat awaited every "
+                f"{1e3 * self.options.heartbeat:g} ms, which each cycle sends; at most a third of it is expected",
+            )
+        self._period, self._cycle = period, 0
         self._found_off = self._seen_off = link.up = False
         self._failure = ""
         self._read = self._unheard = self._seen.readings
@@ -128,6 +138,9 @@ class ElmoDrive:
         self._found_off = True
         for command in (_OFF, Command(letters="RM", value=0), Command(letters="UM", value=1)):
             link.ask(command)
+        end = link.clock.now() + _UNIT_MODE
+        while self._status().unit_mode != 1 and link.clock.now() < end:
+            link.clock.sleep_until(link.clock.now() + 0.02)
         self._peak = float(link.ask(Command(letters="PL", index=1)).value)
         rated = float(link.ask(Command(letters="CL", index=1)).value)
         self._seen.rated_current = rated
@@ -138,11 +151,19 @@ class ElmoDrive:
     def problems(self, torque_limit: float) -> list[str]:
         """What speaks against enabling the motor."""
         told = []
+        if not math.isfinite(torque_limit):
+            told.append("the session has no torque limit; give one in [limits] or [session.limits]")
+        if not self._peak > 0.0:
+            told.append(
+                f"the drive's peak current PL[1] is {self._peak:g} A; more than 0 is expected"
+            )
         allowed = torque_limit / abs(self._per_ampere)
+        if self._most_current is not None:
+            allowed = min(allowed, self._most_current)
         if self._peak > allowed * (1.0 + 1e-6):
             told.append(
                 f"the drive's peak current PL[1] is {self._peak:g} A, the session allows {allowed:.4g} A; "
-                "set PL[1] down or the session's torque limit up"
+                "set PL[1] down, or the session's torque limit or the joint's current limit up"
             )
         status = self._status()
         if status.problem:
@@ -160,16 +181,24 @@ class ElmoDrive:
         return told
 
     def enable(self) -> None:
-        """Motor on, at zero torque."""
+        """Motor on, at zero torque, and watched: our heartbeat begins before the motor is on."""
         link = self._link
         self._seen_off = False
+        self._beat()
         link.ask(Command(letters="MO", value=1))
         end = link.clock.now() + _ENABLE
         while not self._status().motor_on:
+            self._beat()
             if link.clock.now() > end:
                 raise DriveFaultError("drive_fault", "the motor does not come on (MO=1, SR bit 4)")
-            link.clock.sleep_until(link.clock.now() + 0.02)
+            link.clock.sleep_until(link.clock.now() + min(0.02, _CYCLES * self.options.heartbeat))
+        self._beat()
         link.ask(_ZERO)
+        self._beat()
+
+    def _beat(self) -> None:
+        """Tell the drive that we are there."""
+        self._link.send(self._heartbeat_id, b"\x05")
 
     def read(self, timeout: float) -> DriveSample:
         """Position, current and sensor at a SYNC."""
@@ -179,15 +208,14 @@ class ElmoDrive:
         self._settle(timeout)
         asked = self._asked = link.clock.now()
         seen.begin()
-        sent = link.send(canopen.SYNC, b"")
+        link.watch.sent(link.send(canopen.SYNC, b""))
         source = self.options.torque
-        asked_analog = self._asks_analog()
+        self._ask_analog_in_turn()
         self._cycle += 1
         self._answered(end - asked)
         self._look_alive()
-        came = link.position_came if link.stamped else None
         return DriveSample(
-            time=sampled_at(self.options.bitrate, sent, came, asked=asked_analog),
+            time=link.watch.sampled,
             position=seen.position,
             reading=seen.reading,
             fresh=seen.fresh or source is None,
@@ -201,14 +229,14 @@ class ElmoDrive:
         current = max(-self._peak, min(self._peak, torque / self._per_ampere))
         told = self._kept(current)
         self._link.send(self._command_id, Command(letters="TC", value=told).payload())
-        self._link.send(self._heartbeat_id, b"\x05")
+        self._beat()
         return told * self._per_ampere
 
     def _kept(self, current: float) -> float:
-        """The nearest current that the drive keeps of a command [A]."""
+        """What the drive keeps of a command [A]: never more than was asked for."""
         if self.options.mantissa_bits < 24:
             mantissa, exponent = math.frexp(current)
-            steps = round(math.ldexp(mantissa, self.options.mantissa_bits))
+            steps = math.trunc(math.ldexp(mantissa, self.options.mantissa_bits))
             return math.ldexp(steps, exponent - self.options.mantissa_bits)
         return float(struct.unpack("<f", struct.pack("<f", current))[0])
 
@@ -254,6 +282,8 @@ class ElmoDrive:
             link.drain(0.01)
         except DriveFaultError:
             return
+        finally:
+            self._found_off = self._seen_off = False  # from now on the drive may be another's
 
     @property
     def command_latency(self) -> float:
@@ -286,14 +316,14 @@ class ElmoDrive:
     def _try(self, identifier: int, payload: bytes) -> None:
         try:
             self._link.send(identifier, payload)
-        except DriveFaultError:
+        except Exception:  # whatever a bus raises, the next command is tried
             return  # once more in the next round; in the end the drive's own watchdog remains
 
-    def _asks_analog(self) -> bool:
+    def _ask_analog_in_turn(self) -> None:
         """Ask for the torque sensor in every few cycles; the answer may take some, but not for ever."""
         source = self.options.torque
         if not isinstance(source, AnalogInput) or self._cycle % source.every:
-            return False
+            return
         self._unread = self._unread + 1 if self._seen.readings == self._read else 0
         self._read = self._seen.readings
         if self._unread > _UNREAD:
@@ -305,7 +335,6 @@ class ElmoDrive:
                 allowed=_UNREAD,
             )
         self._link.command(Command(letters="AN", index=source.number))
-        return True
 
     def _look_alive(self) -> None:
         """After the answer to a SYNC: heartbeats that came before it have been read."""

@@ -17,6 +17,7 @@ from jointid.hardware.elmo_codec import Command, DriveError, Reply
 from jointid.hardware.elmo_decoder import ElmoDecoder
 from jointid.hardware.elmo_errors import Emergency
 from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.elmo_timing import SyncWatch
 
 _ANSWER = 0.2  # [s] to wait for one
 _HOST_HEARTBEAT = 0x8130  # emergency: ours has stayed away
@@ -51,10 +52,10 @@ class ElmoLink:
         self.booted = False
         self.up = False  # from then on a boot-up message or another state is a fault
         self.heard = 0.0  # [s], when the drive's heartbeat came last
-        self.position_came = 0.0  # [s], when the position's frame came last
         # SocketCAN's frames bear the time at which the kernel got them.
         self._virtual = clock is None and own is bus
         self.stamped = self._virtual or "socketcan" in type(bus).__module__.split(".")
+        self.watch = SyncWatch(options.bitrate, stamped=self.stamped)
         node = options.node
         self._command_id, self._reply_id = options.command_id, options.reply_id
         self.master = options.master
@@ -80,7 +81,7 @@ class ElmoLink:
         message = can.Message(arbitration_id=identifier, data=payload, is_extended_id=False)
         try:
             self._bus.send(message, timeout=0.01)
-        except can.CanError as error:
+        except (can.CanError, OSError) as error:  # some interfaces let the system's errors through
             raise DriveFaultError("bus", f"a frame could not be sent: {error}") from error
         when = self.clock.now()  # behind the sending, which may have had to wait for the processor
         if self.tap is not None:
@@ -112,7 +113,7 @@ class ElmoLink:
                 if left <= 0.0:
                     return None
                 self.receive(left)
-        except DriveFaultError:
+        except Exception:
             self.clock.sleep_until(end)  # the bus may come back
             return None
         reply = self._replies.pop(command.key)
@@ -174,8 +175,9 @@ class ElmoLink:
     def drain(self, timeout: float) -> None:
         """Read what comes in a while."""
         end = self.clock.now() + timeout
-        while self.receive(max(0.0, end - self.clock.now())):
-            pass
+        for _ in range(_MOST_WAITING):
+            if not self.receive(max(0.0, end - self.clock.now())):
+                break
 
     def read_waiting(self) -> None:
         """Read what has come, e.g. while the host stood still.
@@ -204,7 +206,7 @@ class ElmoLink:
         """Read a frame; whether there was one."""
         try:
             message = self._bus.recv(timeout)
-        except can.CanError as error:
+        except (can.CanError, OSError) as error:
             raise DriveFaultError("bus", f"nothing can be received: {error}") from error
         if message is None:
             return False
@@ -213,13 +215,15 @@ class ElmoLink:
             if meaning:
                 self._note("bus", f"an error frame of the CAN controller: {meaning}")
             return True
+        if message.is_extended_id or message.is_remote_frame:
+            return True  # none of the drive's
         if message.arbitration_id in self._ours:
             return True
         payload, when = bytes(message.data), self._arrival(message)
         if self.tap is not None:
             self.tap(when, message.arbitration_id, payload, False)
-        if message.arbitration_id == self._options.position_id:
-            self.position_came = when
+        answers = message.arbitration_id == self._options.position_id
+        self.watch.came(when, len(payload), answers=answers)
         self._sort(message.arbitration_id, payload)
         return True
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from jointid.hardware.canopen_frames import bits_on_wire
 from jointid.hardware.elmo_options import ElmoOptions
 
@@ -9,24 +11,45 @@ POSITION_LENGTH = 6
 """Bytes of the position's frame, as `elmo_setup.map_position` has it."""
 
 
-def sampled_at(bitrate: float, sent: float, came: float | None, *, asked: bool) -> float:
-    """When drive and converter sampled [s]: when the SYNC had arrived, which other frames may hold up.
+class SyncWatch:
+    """Reckons when drive and converter sampled: when the SYNC had arrived.
+
+    A frame that was on the wire when the SYNC was sent, such as the drive's heartbeat, holds the SYNC up;
+    one that came between the SYNC and its answer holds up the answer only. The frames' times of arrival
+    tell which it was, where they are known to the microsecond.
 
     Parameters
     ----------
     bitrate : float
         [bit/s]
-    sent : float
-        When the SYNC was sent [s].
-    came : float or None
-        When the position came [s]; None where the bus does not tell it to the microsecond.
-    asked : bool
-        The analog input was asked for; the question went before the position.
+    stamped : bool
+        Times of arrival are that exact.
     """
-    if came is None:
-        return sent + bits_on_wire(0) / bitrate
-    behind = bits_on_wire(POSITION_LENGTH) + (bits_on_wire(4) if asked else 0)
-    return came - behind / bitrate
+
+    def __init__(self, bitrate: float, *, stamped: bool) -> None:
+        self._bitrate, self._stamped = bitrate, stamped
+        self._sent = self._free = 0.0
+        self._latest = math.inf
+
+    def sent(self, when: float) -> None:
+        """The SYNC was sent [s]."""
+        self._sent = self._free = when
+        self._latest = math.inf
+
+    def came(self, when: float, length: int, *, answers: bool) -> None:
+        """A frame of so many bytes has come [s]; the position's answers the SYNC."""
+        begun = when - bits_on_wire(length) / self._bitrate
+        if begun < self._sent < when:
+            self._free = when
+        if answers:
+            self._latest = begun
+
+    @property
+    def sampled(self) -> float:
+        """When it was sampled [s]."""
+        if not self._stamped:
+            return self._sent + bits_on_wire(0) / self._bitrate
+        return min(self._free + bits_on_wire(0) / self._bitrate, self._latest)
 
 
 def command_latency(options: ElmoOptions) -> float:

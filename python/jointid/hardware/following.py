@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,6 +19,30 @@ from jointid.hardware.velocity_estimator import VelocityEstimator
 from jointid.simulation.trajectory import Trajectory
 
 Observer = Callable[[str, float, DriveSample, float, float], object]
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """A trajectory at each cycle.
+
+    It is laid out before the motor is on: of a long one that takes longer than a drive waits for our
+    heartbeat.
+
+    Attributes
+    ----------
+    reference, velocity, acceleration : list of float
+        [rad], [rad/s], [rad/s²]
+    """
+
+    reference: list[float]
+    velocity: list[float]
+    acceleration: list[float]
+
+    @classmethod
+    def of(cls, trajectory: Trajectory, period: float) -> Course:
+        """Lay a trajectory out for cycles of a period [s]."""
+        count = round(trajectory.duration / period)
+        return cls(*(each.tolist() for each in trajectory.sample(np.arange(count) * period)))
 
 
 class Follower:
@@ -65,17 +90,17 @@ class Follower:
 
     def follow(
         self,
-        trajectory: Trajectory,
+        course: Course,
         recorder: Recorder | None,
         *,
         offset: float = 0.0,
         settled: float | None = None,
     ) -> None:
-        """Follow a trajectory; while the phase is "run", keep a row of each cycle.
+        """Follow a course; while the phase is "run", keep a row of each cycle.
 
         Parameters
         ----------
-        trajectory : Trajectory
+        course : Course
         recorder : Recorder or None
         offset : float
             Added to the reference [rad].
@@ -89,9 +114,7 @@ class Follower:
         options, clock, guard = self._options, self._drive.clock, self._guard
         period = options.period
         timeout = 0.5 * period if options.answer_timeout is None else options.answer_timeout
-        count = round(trajectory.duration / period)
-        wanted = trajectory.sample(np.arange(count) * period)
-        reference, velocity, acceleration = (each.tolist() for each in wanted)
+        reference, velocity, acceleration = course.reference, course.velocity, course.acceleration
         running = self.phase == "run"
         begin = clock.now() + period
         first: float | None = None  # how long after a cycle's begin the first sample was taken
@@ -99,7 +122,7 @@ class Follower:
             recorder.begin({"cycles_before": self.cycles})
         if running:
             self.cycles_before = self.cycles
-        for k in range(count):
+        for k in range(len(reference)):
             if settled is not None and self.phase == "move" and k * period > settled:
                 self.enter("settle")
             clock.sleep_until(begin + k * period)
@@ -121,7 +144,7 @@ class Follower:
             told = self._drive.command(torque)
             acted = clock.now() - sample.time + self._drive.command_latency
             self.cycles += 1
-            guard.told(told)
+            guard.told(torque, told)
             if running:
                 held = held_torque(self._held, told, acted, period)
                 row = (elapsed, sample.position, held, sample.reading, target, sample.current)

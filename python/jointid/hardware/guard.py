@@ -11,6 +11,9 @@ from jointid.hardware.stop import LimitError
 
 # Samples that the difference is the mean of: a drive is one or two cycles behind its command.
 _COMPARED = 10
+# A drive may round a command, by an eighth when it keeps four bits of it; what is less was cut.
+_WHOLE = 0.875 - 1e-9
+_ROUNDING = 1e-6  # of a 32-bit float
 # Counts in a cycle: from such a speed no friction brings a joint to a stand within the next.
 _MOVING = 20
 
@@ -32,7 +35,8 @@ class Guard:
         self._largest_measured = limits.largest_measured
         self._largest_difference = limits.largest_difference
         self._moving = _MOVING * resolution / period
-        self._last: float | None = None  # commanded by the controller
+        self._last = 0.0  # commanded by the controller; enabling tells the drive zero
+        self._cut = 0  # commands that the drive was told less of
         self._told = 0.0  # what the drive was told
         self._differences: deque[float] = deque((0.0,) * _COMPARED, maxlen=_COMPARED)
         self._difference = 0.0  # their sum
@@ -86,22 +90,30 @@ class Guard:
         # A law clamps to the limit itself; rounding is no excess.
         if abs(torque) > limits.torque * (1.0 + 1e-9):
             _hold("torque", torque, limits.torque, "N·m")
-        if self._last is not None:
-            rate = (torque - self._last) / self._period
-            _hold("torque_rate", rate, limits.torque_rate, "N·m/s")
+        rate = (torque - self._last) / self._period
+        _hold("torque_rate", rate, limits.torque_rate, "N·m/s")
         self._last = torque
-        if saturations > limits.saturated_samples:
+        cut = saturations + self._cut
+        if cut > limits.saturated_samples:
             raise LimitError(
                 "saturated_samples",
-                f"the torque limit cut the command {saturations} times, more than "
-                f"{limits.saturated_samples}",
-                measured=saturations,
+                f"the torque limit cut the command {cut} times, more than {limits.saturated_samples}",
+                measured=cut,
                 allowed=limits.saturated_samples,
             )
 
-    def told(self, torque: float) -> None:
-        """Remember what the drive was told [N·m]."""
-        self._told = torque
+    def told(self, asked: float, told: float) -> None:
+        """Look at what the drive was told of what was asked for [N·m]: it has limits of its own.
+
+        Raises
+        ------
+        LimitError
+        """
+        if not abs(told) <= self._limits.torque * (1.0 + _ROUNDING):
+            _hold("torque", told, self._limits.torque, "N·m")
+        if abs(told) < _WHOLE * abs(asked):
+            self._cut += 1
+        self._told = told
 
     def timed(self, late: float) -> None:
         """Look at how late a cycle ended against the next one's begin [s]; negative: in time.

@@ -1,4 +1,4 @@
-"""The user's wish to stop, by Ctrl-C or SIGTERM, taken between two cycles and not in the middle of one."""
+"""The user's wish to stop, by Ctrl-C, SIGTERM or a closed terminal, taken between two cycles."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _PATIENCE = 3  # Ctrl-C so often: a drive that does not come back is left by an 
 
 
 class Interruptions:
-    """Catches SIGINT and SIGTERM as a wish to stop while it is entered, on the main thread.
+    """Catches SIGINT, SIGTERM, SIGHUP and SIGQUIT as a wish to stop while it is entered, on the main thread.
 
     On other threads Python delivers no signals, and nothing is caught.
     """
@@ -23,8 +23,15 @@ class Interruptions:
 
     def __enter__(self) -> Interruptions:
         if threading.current_thread() is threading.main_thread():
-            for number in (signal.SIGINT, signal.SIGTERM):
-                self._before[number] = signal.signal(number, self._caught)
+            for name in (
+                "SIGINT",
+                "SIGTERM",
+                "SIGHUP",
+                "SIGQUIT",
+            ):  # the last two are not everywhere
+                number = getattr(signal, name, None)
+                if number is not None:
+                    self._before[number] = signal.signal(number, self._caught)
         return self
 
     def __exit__(

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 
 from jointid.errors import InputError
 from jointid.joint.joint import Joint
+from jointid.simulation.plant import torque_limit
 
 _MEASURED_TORQUE, _TORQUE_DIFFERENCE = 1.2, 0.25  # of the commanded limit
 
@@ -82,15 +83,14 @@ class SessionLimits:
 
     @classmethod
     def of(cls, joint: Joint, **changes: float | tuple[float, float] | None) -> SessionLimits:
-        """What a joint's own limits give, and some changes."""
+        """What a joint's own limits give, the smaller of torque and current, and some changes."""
         known = joint.limits
         values: dict[str, object] = {}
         if known.position is not None:
             values["position"] = known.position
         if known.velocity is not None:
             values["velocity"] = known.velocity
-        if known.torque is not None:
-            values["torque"] = known.torque
-        elif known.current is not None and joint.torque_constant is not None:
-            values["torque"] = known.current * joint.torque_constant * abs(joint.gear_ratio)
+        torque = torque_limit(joint)
+        if torque is not None:
+            values["torque"] = torque
         return cls(**(values | changes))  # type: ignore[arg-type]

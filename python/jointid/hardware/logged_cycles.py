@@ -11,7 +11,7 @@ from jointid.hardware import canopen_frames as canopen
 from jointid.hardware.elmo_codec import Command, DriveError, Reply
 from jointid.hardware.elmo_decoder import ElmoDecoder
 from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.elmo_timing import sampled_at
+from jointid.hardware.elmo_timing import SyncWatch
 from jointid.hardware.frame_log import LoggedFrame
 from jointid.joint.joint import Joint
 
@@ -41,7 +41,7 @@ class LoggedCycle:
 class CycleReader:
     """Reads frames in the order in which a session sent and received them.
 
-    A cycle ends with our heartbeat, which goes out with each command and at no other time.
+    A cycle ends with our heartbeat, which goes out with each command, and before the first cycle alone.
 
     Parameters
     ----------
@@ -56,13 +56,15 @@ class CycleReader:
     def __init__(
         self, joint: Joint, options: ElmoOptions, *, stamped: bool, rated_current: float
     ) -> None:
-        self._options, self._stamped = options, stamped
+        self._options = options
         self._seen = ElmoDecoder(joint, options)
         self._seen.rated_current = rated_current
         self._ours = canopen.heartbeat_id(options.master)
-        self._synced = self._came = math.nan
+        self._sent_by_us = {canopen.NMT, options.command_id, 0x600 + options.node, self._ours}
+        self._watch = SyncWatch(options.bitrate, stamped=stamped)
+        self._synced = math.nan
         self._told: float | None = None
-        self._open = self._asked = False
+        self._open = False
         self.cycles: list[LoggedCycle] = []
 
     def read(self, frames: Iterable[LoggedFrame]) -> None:
@@ -76,21 +78,26 @@ class CycleReader:
         for when, identifier, payload in frames:
             if identifier == canopen.SYNC:
                 self._begin(when)
-            elif identifier == self._options.command_id:
+                continue
+            if identifier not in self._sent_by_us:
+                answers = identifier == self._options.position_id
+                self._watch.came(when, len(payload), answers=answers)
+            if identifier == self._options.command_id:
                 self._commanded(payload)
             elif identifier == self._ours:
                 self._end(when)
             elif identifier == self._options.reply_id:
                 self._replied(payload)
-            elif self._seen.take(identifier, payload) and identifier == self._options.position_id:
-                self._came = when
+            else:
+                self._seen.take(identifier, payload)
 
     def _begin(self, when: float) -> None:
         if self._open and self.cycles:  # in a run no SYNC is without a command
             self._miss("command" if self._told is None else "host's heartbeat")
         self._seen.begin()
         self._synced, self._told = when, None
-        self._open, self._asked = True, False
+        self._open = True
+        self._watch.sent(when)
 
     def _commanded(self, payload: bytes) -> None:
         try:
@@ -99,8 +106,6 @@ class CycleReader:
             return  # another program's
         if command.letters == "TC" and command.value is not None:
             self._told = float(command.value)
-        elif command.letters == "AN":
-            self._asked = True
 
     def _replied(self, payload: bytes) -> None:
         try:
@@ -113,6 +118,9 @@ class CycleReader:
             self._seen.rated_current = float(reply.value)
 
     def _end(self, when: float) -> None:
+        if not self.cycles and (not self._open or self._told is None):
+            self._open = False  # the motor is being switched on: our heartbeat has begun
+            return
         if not self._open:
             raise InputError(
                 f"the SYNC before the host's heartbeat at {when:.6f} s is missing, in cycle "
@@ -122,10 +130,9 @@ class CycleReader:
             self._miss("command")
         if not self._seen.complete:
             self._miss(f"{self._seen.lacking} that answers")
-        came = self._came if self._stamped else None
         self.cycles.append(
             LoggedCycle(
-                taken=sampled_at(self._options.bitrate, self._synced, came, asked=self._asked),
+                taken=self._watch.sampled,
                 acted=when,
                 position=self._seen.position,
                 reading=self._seen.reading,

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import json
-import os
 import queue
 import threading
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 from jointid.errors import InputError
+from jointid.hardware.appended_file import AppendedFile, Syncing, sync_folder
 from jointid.recording.saving import CSV_MARK, SCHEMA
 from jointid.recording.torn import CLOSING, OPENING
 
@@ -23,8 +23,8 @@ COLUMNS = (
     "reference_rad",
     "current_A",
 )
-_FLUSH = 0.02  # [s]: more is not lost when the process is killed
-_SYNC = 0.5  # [s]: more is not lost with the power
+_FLUSH = 0.02  # [s]: not much more is lost when the program is killed
+_SYNC = 0.5  # [s]: not much more is lost with the power
 
 Frame = tuple[float, int, bytes, bool]
 
@@ -63,6 +63,8 @@ class Recorder:
     ------
     InputError
         The files exist, or the folder does not.
+    OSError
+        They cannot be written.
     """
 
     def __init__(self, path: Path, metadata: Mapping[str, Any], name: str = "") -> None:
@@ -78,14 +80,14 @@ class Recorder:
             "metadata": {**metadata, "session": True},
             "truth": None,
         }
-        self._rows: BinaryIO = self.path.open("xb")
-        self._frames: BinaryIO = self.log.open("xb")
-        self._rows.write(f"{CSV_MARK}{json.dumps(attributes)}\n{','.join(COLUMNS)}\n".encode())
+        header = f"{CSV_MARK}{json.dumps(attributes)}\n{','.join(COLUMNS)}\n".encode()
+        self._rows, self._frames = _created(self.path, self.log, header)
         self._queue: queue.SimpleQueue[Sequence[float] | Frame | Mapping[str, Any] | None] = (
             queue.SimpleQueue()
         )
         self._failure: Exception | None = None
         self._ending: Mapping[str, Any] | None = None
+        self._syncing = Syncing((self._frames, self._rows), _SYNC)
         self._thread = threading.Thread(target=self._write, name="recorder", daemon=True)
         self._thread.start()
 
@@ -119,51 +121,73 @@ class Recorder:
             self._ending = ending
             self._queue.put(None)
             self._thread.join()
-        if self._failure is not None:
-            raise self._failure
+        if self.failure is not None:
+            raise self.failure
 
     @property
     def failure(self) -> Exception | None:
         """What went wrong while writing, e.g. a full disk."""
-        return self._failure
+        return self._failure if self._failure is not None else self._syncing.failure
 
     def _write(self) -> None:
-        synced = time.monotonic()
+        files = (self._frames, self._rows)
         try:
             running = True
             while running:
                 running = self._write_waiting()
-                if not running and self._ending is not None:
-                    self._rows.write(f"{CLOSING}{json.dumps(self._ending)}\n".encode())
-                self._rows.flush()
-                self._frames.flush()
-                if time.monotonic() - synced > _SYNC or not running:
-                    os.fsync(self._rows.fileno())
-                    os.fsync(self._frames.fileno())
-                    synced = time.monotonic()
+            if self._ending is not None:
+                self._rows.append(f"{CLOSING}{json.dumps(self._ending)}\n".encode())
+            self._syncing.close()
+            for file in files:
+                file.sync()
         except OSError as error:
             self._failure = error
         finally:
-            self._rows.close()
-            self._frames.close()
+            self._syncing.close()
+            for file in files:
+                file.close()
 
     def _write_waiting(self) -> bool:
-        """Write what is there after a while; whether there will be more."""
-        end = time.monotonic() + _FLUSH
-        while (left := end - time.monotonic()) > 0.0:
+        """Write what comes in a while; whether there will be more."""
+        rows, frames = [], []
+        running, end = True, time.monotonic() + _FLUSH
+        while running and (left := end - time.monotonic()) > 0.0:
             try:
                 item = self._queue.get(timeout=left)
             except queue.Empty:
-                return True
+                break
             if item is None:
-                return False
-            if isinstance(item, Mapping):
-                self._rows.write(f"{OPENING}{json.dumps(dict(item))}\n".encode())
+                running = False
+            elif isinstance(item, Mapping):
+                rows.append(f"{OPENING}{json.dumps(dict(item))}\n".encode())
             elif isinstance(item[2], bytes):
-                self._frames.write(_line(item))  # type: ignore[arg-type]
+                frames.append(_line(item))  # type: ignore[arg-type]
             else:
-                self._rows.write((",".join(map(repr, item)) + "\n").encode())
-        return True
+                rows.append((",".join(map(repr, item)) + "\n").encode())
+        # Whole lines in one piece: a program that is killed leaves no line cut off. Frames first: the
+        # recording can be had from them.
+        self._frames.append(b"".join(frames))
+        self._rows.append(b"".join(rows))
+        return running
+
+
+def _created(path: Path, log: Path, header: bytes) -> tuple[AppendedFile, AppendedFile]:
+    """A session's two files, on the disk; neither of them when that fails."""
+    made: list[AppendedFile] = []
+    try:
+        made.append(AppendedFile(path))
+        made.append(AppendedFile(log))
+        rows, frames = made
+        rows.append(header)
+        rows.sync()
+        frames.sync()
+        sync_folder(path.parent)
+    except OSError:
+        for file in made:
+            file.close()
+            file.path.unlink(missing_ok=True)
+        raise
+    return rows, frames
 
 
 def _line(frame: Frame) -> bytes:

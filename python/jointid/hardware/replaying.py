@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from jointid.hardware.elmo_options import ElmoOptions
 from jointid.hardware.elmo_timing import command_latency
 from jointid.hardware.frame_log import logged_frames
 from jointid.hardware.logged_cycles import CycleReader, LoggedCycle
+from jointid.hardware.session_notes import elmo_options_of
 from jointid.joint.joint import Joint
 from jointid.recording.loading import load
 from jointid.recording.recording import Recording
@@ -50,7 +51,7 @@ def replay(
     joint : Joint
         With torque constant.
     options : ElmoOptions, optional
-        How the drive was wired. Default: `ElmoOptions()`.
+        How the drive was wired. Default: what the recording says; without one `ElmoOptions()`.
     recording : path-like or Recording, optional
         The session's, whole or torn: it says period, reference, which cycles are the run, and
         how samples are stamped. Default: the ``.csv`` beside the log; none if there is none.
@@ -76,20 +77,22 @@ def replay(
         The log cannot be read; frames are missing; the period is not known.
     """
     file = Path(log)
-    wired = options if options is not None else ElmoOptions()
     if joint.torque_constant is None:
         raise InputError(
             f"{file}: the joint has no torque_constant, so its commands are no torques"
         )
     session = _session(file, recording)
     said: dict[str, Any] = {} if session is None else dict(session.metadata)
-    drive = said.get("drive", {})
+    wired = elmo_options_of(said, str(file)) if options is None else options
+    drive = said["drive"] if isinstance(said.get("drive"), Mapping) else {}
     period = said.get("control_period") if period is None else period
-    if period is None or not 0.0 < period < math.inf:
+    if not isinstance(period, int | float) or not 0.0 < period < math.inf:
         raise InputError(
             f"{file}: the session's period is {period}; give period=, or the session's .csv with recording="
         )
     before = said.get("cycles_before", 0) if cycles_before is None else cycles_before
+    if not isinstance(before, int) or before < 0:
+        raise InputError(f"{file}: cycles_before is {before!r}; 0 or a positive number is expected")
     reader = CycleReader(
         joint,
         wired,

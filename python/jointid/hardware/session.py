@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +14,13 @@ import numpy as np
 
 from jointid import _core
 from jointid.hardware.drive import Drive, DriveEnd, DriveFaultError, check_drive
-from jointid.hardware.following import Follower, Observer, unwritten
+from jointid.hardware.following import Course, Follower, Observer, unwritten
 from jointid.hardware.guard import Guard
 from jointid.hardware.interruptions import Interruptions
 from jointid.hardware.limits import SessionLimits
 from jointid.hardware.realtime import RealTime, RealTimeOptions
 from jointid.hardware.recorder import Frame, Recorder, check_output
+from jointid.hardware.session_notes import notes_of_session
 from jointid.hardware.session_options import SessionOptions
 from jointid.hardware.start_checks import problems_at_rest, problems_on_paper
 from jointid.hardware.stop import LimitError, SessionRefusedError, SessionStoppedError, Stop
@@ -135,9 +137,11 @@ class Session:
                 try:
                     self._refuse_or_go_on()
                     if dry_run:
+                        if interruptions.reason is not None:
+                            raise KeyboardInterrupt
                         return None
                     if self._output is not None:
-                        recorder = Recorder(self._output, self._metadata(), self._output.stem)
+                        recorder = self._recorder(self._output)
                         for frame in early:
                             recorder.frame(*frame)
                         self._tap(recorder.frame)
@@ -164,6 +168,14 @@ class Session:
             raise SessionStoppedError(stop, recording) from cause
         return recording
 
+    def _recorder(self, output: Path) -> Recorder:
+        # The date is in the file only: what a session returns is the same to the bit when it is repeated.
+        started = datetime.now(UTC).isoformat(timespec="milliseconds")
+        try:
+            return Recorder(output, {**self._metadata(), "started": started}, output.stem)
+        except OSError as error:
+            raise SessionRefusedError(f"not started: {unwritten(error)}") from error
+
     # The phases.
 
     def _refuse_or_go_on(self) -> None:
@@ -182,6 +194,7 @@ class Session:
         try:
             feedback = not isinstance(self._controller, _core.OpenLoop)
             law = self._controller.start(period=options.period, torque_limit=limits.torque)
+            course = Course.of(self._trajectory, options.period)
             follower = Follower(
                 self._drive,
                 law,
@@ -199,7 +212,7 @@ class Session:
             if feedback:
                 self._approach(follower)
             follower.enter("run")
-            follower.follow(self._trajectory, recorder)
+            follower.follow(course, recorder)
         except (Exception, KeyboardInterrupt) as error:
             moment = self._drive.clock.now()
             self._switch_off()
@@ -217,7 +230,7 @@ class Session:
         rise = max(0.2, 0.5 * math.pi * abs(distance) / options.approach_velocity)
         approach = Trajectory.sigmoid(distance, rise=rise, duration=rise + options.settle)
         follower.enter("move")
-        follower.follow(approach, None, offset=here, settled=rise)
+        follower.follow(Course.of(approach, options.period), None, offset=here, settled=rise)
 
     # Ways out.
 
@@ -265,23 +278,17 @@ class Session:
             time=0.0 if follower is None else moment - follower.began,
             moment=moment,
             message=message,
-            measured=getattr(cause, "measured", None),
-            allowed=getattr(cause, "allowed", None),
+            measured=_finite(getattr(cause, "measured", None)),
+            allowed=_finite(getattr(cause, "allowed", None)),
             motor_off=end.motor_off,
         )
 
     # What is left.
 
     def _metadata(self) -> dict[str, Any]:
-        limits = {name: getattr(self._limits, name) for name in self._limits.__slots__}
-        return {
-            "controller": repr(self._controller),
-            "trajectory": self._trajectory.form,
-            "control_period": self._options.period,
-            "limits": {name: _json(value) for name, value in limits.items()},
-            "drive": self._drive.identity(),
-            "version": _core.__version__,
-        }
+        return notes_of_session(
+            self._drive, self._controller, self._trajectory, self._limits, self._options
+        )
 
     def _ending(self, stop: Stop | None) -> dict[str, Any]:
         late = np.array(() if self._follower is None else self._follower.late)
@@ -326,7 +333,7 @@ class Session:
         )
 
 
-def _json(value: Any) -> Any:
-    if isinstance(value, tuple):
-        return list(value)
-    return None if isinstance(value, float) and math.isinf(value) else value
+def _finite(value: Any) -> float | None:
+    """A number that a recording can keep; what is none is told in the message."""
+    number = math.nan if value is None else float(value)
+    return number if math.isfinite(number) else None

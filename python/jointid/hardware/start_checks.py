@@ -25,13 +25,12 @@ def problems_on_paper(
 ) -> Iterator[str]:
     """What is wrong before the bus is touched: its load, the trajectory."""
     load = drive.bus_load(period)
-    if load > FULLEST_BUS:
+    if not load <= FULLEST_BUS:
         yield (
             f"a cycle takes {100.0 * load:.0f} % of the bus, more than {100.0 * FULLEST_BUS:.0f} %; take a "
             "longer period"
         )
-    instants = np.linspace(0.0, trajectory.duration, 2000)
-    wanted, speed, _ = trajectory.sample(instants)
+    wanted, speed, _ = trajectory.sample(np.arange(0.0, trajectory.duration, period))
     if isinstance(controller, _core.OpenLoop):
         largest = float(np.abs(wanted).max())
         if largest > limits.torque:

@@ -12,6 +12,7 @@ from jointid.given import given_mapping
 from jointid.recording.attributes import check_kind, check_torque_hold
 from jointid.recording.columns import Column, Table, column_index, match_columns
 from jointid.recording.signals import FloatArray, check_signals
+from jointid.recording.torn import untold
 
 Rows = npt.NDArray[np.intp]
 
@@ -157,7 +158,12 @@ def read_contents(
     found, kind = match_columns(
         table, columns=columns, units=units, scale=scale, kind=kind or saved_kind
     )
-    values = table.numbers([column.index for column in found.values()])
+    values = dict(
+        zip(found, table.numbers([column.index for column in found.values()]), strict=True)
+    )
+    if untold(saved, values):
+        found = {signal: column for signal, column in found.items() if signal != "current"}
+        del values["current"]
     if columns and "velocity" in columns:
         saved.pop("velocity_derived", None)
     if torque_hold is not None:
@@ -165,7 +171,7 @@ def read_contents(
     return Contents(
         table=table,
         found=found,
-        values=dict(zip(found, values, strict=True)),
+        values=values,
         saved=saved,
         kind=kind,
     )

@@ -22,7 +22,7 @@ from jointid.recording.csv_dialect import (
 from jointid.recording.csv_text import text_of
 from jointid.recording.saving import CSV_MARK, saved_attributes
 from jointid.recording.signals import FloatArray
-from jointid.recording.torn import session_text, with_notes
+from jointid.recording.torn import ended_before, session_text, with_notes
 
 _LONG = 1 << 20  # characters: beyond, a file is read as a stream if it is plain
 _INNER = "\x1f"  # separates cells where they are put together anew: no file's text holds it
@@ -80,6 +80,8 @@ class CsvTable:
                 len(self.headers),
             )
         if self._table is None:
+            if not self._rows and notes is not None:
+                raise InputError(f"{self.source}: {ended_before(notes)}")
             if not self._rows:
                 raise InputError(f"{self.header_place}: a header, but no rows below it")
             self._refuse_ragged_rows()

@@ -4,7 +4,10 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from jointid.recording.saving import CSV_MARK
+from jointid.recording.signals import FloatArray
 
 OPENING, CLOSING = "# jointid run ", "# jointid session "
 
@@ -55,6 +58,22 @@ def session_text(text: str) -> tuple[str, Mapping[str, Any] | None]:
 def with_notes(saved: Mapping[str, Any], notes: Mapping[str, Any]) -> dict[str, Any]:
     """Return what a recording says of itself, with what is known of its end."""
     return {**saved, "metadata": {**saved["metadata"], **notes}}
+
+
+def ended_before(notes: Mapping[str, Any]) -> str:
+    """Return the sentence on a session of which there is no sample."""
+    why = notes.get("stop")
+    if why:
+        return f"the session ended before its first sample: {why}"
+    killed = "; it was killed, or the power failed" if notes.get("torn") else ""
+    return f"the session ended before its first sample{killed}"
+
+
+def untold(saved: Mapping[str, Any], values: Mapping[str, FloatArray]) -> bool:
+    """Whether a session's drive did not tell its current: the column is there, but not all of its numbers."""
+    metadata = saved.get("metadata")
+    session = isinstance(metadata, Mapping) and metadata.get("session") is True
+    return session and "current" in values and bool(np.isnan(values["current"]).any())
 
 
 def _said(text: str) -> dict[str, Any] | None:

@@ -1,0 +1,93 @@
+"""A new file that only grows, and the thread that brings such files from the system's memory to the disk."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+
+_NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND | getattr(os, "O_BINARY", 0)
+
+
+class AppendedFile:
+    """A file that did not exist; what is appended survives the end of this program, however it ends.
+
+    Parameters
+    ----------
+    path : Path
+
+    Raises
+    ------
+    OSError
+        It exists, or cannot be made.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.descriptor = os.open(path, _NEW, 0o644)
+
+    def append(self, block: bytes) -> None:
+        """Write a block, in one piece where the system takes it so.
+
+        Raises
+        ------
+        OSError
+        """
+        while block:
+            block = block[os.write(self.descriptor, block) :]
+
+    def sync(self) -> None:
+        """Return when everything is on the disk.
+
+        Raises
+        ------
+        OSError
+        """
+        os.fsync(self.descriptor)
+
+    def close(self) -> None:
+        """Once."""
+        os.close(self.descriptor)
+
+
+def sync_folder(folder: Path) -> None:
+    """Bring to the disk that new files are in a folder, where the system can do that."""
+    with suppress(OSError):
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+
+
+class Syncing:
+    """Brings files to the disk again and again, in a thread: a slow disk holds up nobody else.
+
+    Parameters
+    ----------
+    files : sequence of AppendedFile
+    interval : float
+        Between two times [s].
+    """
+
+    def __init__(self, files: Sequence[AppendedFile], interval: float) -> None:
+        self._files, self._interval = files, interval
+        self._ending = threading.Event()
+        self.failure: OSError | None = None
+        self._thread = threading.Thread(target=self._run, name="recorder disk", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """End the thread; it may be at the disk yet."""
+        self._ending.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        try:
+            while not self._ending.wait(self._interval):
+                for file in self._files:
+                    file.sync()
+        except OSError as error:
+            self.failure = error

@@ -1,0 +1,264 @@
+"""What a session leaves on the disk: complete, in time, and when it is killed."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import can
+import numpy as np
+import pytest
+from killed_session import DURATION
+from session_bench import JOINT, devices, law, limits, motion, session
+
+import jointid as jid
+from jointid.hardware import (
+    ElmoOptions,
+    EmulatedBus,
+    SessionRefusedError,
+    SessionStoppedError,
+)
+from jointid.hardware.appended_file import AppendedFile
+from jointid.hardware.recorder import Recorder
+from jointid.joint.joint_file import joint_document
+
+CHILD = Path(__file__).with_name("killed_session.py")
+PATIENCE = 60.0  # [s] for what takes a fraction of one
+# Of rows that may be missing, by their age when the program was killed. The promise is 50 ms: the recorder
+# writes every 20 ms. This machine stands still for longer now and then, hence ten times as much.
+BOUND = 0.5  # [s]
+
+
+def until(done: Callable[[], bool]) -> None:
+    """Look again and again, but not for ever."""
+    end = time.monotonic() + PATIENCE
+    pause = threading.Event()
+    while not done():
+        assert time.monotonic() < end, "it does not happen"
+        pause.wait(1e-3)
+
+
+@pytest.fixture(scope="module")
+def whole() -> jid.Recording:
+    """The session that is killed, not killed."""
+    with EmulatedBus(*devices(seed=5)) as bus:
+        recording = session(bus, DURATION).run()
+    assert recording is not None
+    return recording
+
+
+@pytest.mark.parametrize("rows", [20, 150, 500])
+def test_a_killed_session_has_left_its_rows(
+    tmp_path: Path, whole: jid.Recording, rows: int
+) -> None:
+    path = tmp_path / "run.csv"
+    with subprocess.Popen([sys.executable, str(CHILD), str(path)], stdout=subprocess.PIPE) as child:
+        assert child.stdout is not None
+        until(lambda: path.exists() and path.read_bytes().count(b"\n") > rows + 3)
+        child.kill()
+        handed = [int(line.split()[1]) for line in child.stdout.read().splitlines()]
+    left = jid.load(path)
+    kept = len(left.time)
+    assert kept >= rows
+    missing = handed[kept:]
+    assert not missing or handed[-1] - missing[0] <= 1e9 * BOUND
+    assert left.metadata["torn"] is True
+    for name in ("time", "position", "torque", "sensor", "reference", "current"):
+        assert np.array_equal(getattr(left, name), getattr(whole, name)[:kept]), name
+    # The frames, to the last whole line.
+    log = path.with_suffix(".log")
+    log.write_bytes(log.read_bytes()[: log.read_bytes().rfind(b"\n") + 1])
+    with can.LogReader(str(log)) as frames:
+        assert sum(frame.arbitration_id == 0x80 for frame in frames) >= kept
+    replayed = jid.hardware.replay(log, JOINT, trajectory=motion(DURATION))
+    assert len(replayed.time) >= kept
+    assert np.array_equal(replayed.position, whole.position[: len(replayed.time)])
+
+
+def header(path: Path) -> dict[str, Any]:
+    """What the first line says."""
+    with path.open() as file:
+        found: dict[str, Any] = json.loads(file.readline().partition("recording ")[2])
+    return found
+
+
+def test_a_recording_says_how_it_was_made(tmp_path: Path) -> None:
+    before = datetime.now(UTC) - timedelta(seconds=1)
+    path = tmp_path / "run.csv"
+    wired = ElmoOptions(mantissa_bits=5)
+    with EmulatedBus(*devices()) as bus:
+        recording = session(bus, 1.0, output=path, drive=wired).run()
+    assert recording is not None
+    said = dict(jid.load(path).metadata)
+    assert before <= datetime.fromisoformat(said.pop("started")) <= datetime.now(UTC)
+    assert said == json.loads(json.dumps(dict(recording.metadata)))
+    assert said["joint"] == joint_document(JOINT)
+    assert said["controller"]["kind"] == "AdaptiveRobust"
+    gains = said["controller"]["gains"]
+    assert jid.AdaptiveRobust(**gains) == law()
+    assert said["trajectory"]["form"] == motion(1.0).form
+    assert said["trajectory"]["duration"] == 1.0
+    assert said["limits"]["tracking_error"] == limits().tracking_error
+    assert said["limits"]["torque_rate"] is None  # there is none
+    assert said["options"]["settle"] == 0.05
+    assert said["drive_options"]["mantissa_bits"] == 5
+    assert said["drive_options"]["torque"]["source"] == "SyncedConverter"
+    assert said["drive"]["product"].startswith("0x")
+    assert said["versions"]["python"] == sys.version.split()[0]
+    assert said["versions"]["numpy"] == np.__version__
+    assert said["versions"]["python-can"] == can.__version__
+    assert said["versions"]["jointid"] == jid.__version__
+
+
+def test_a_slow_disk_holds_up_nobody(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    stuck, released = threading.Event(), threading.Event()
+    sync = AppendedFile.sync
+
+    def slow(self: AppendedFile) -> None:
+        if threading.current_thread().name == "recorder disk":
+            stuck.set()
+            assert released.wait(PATIENCE)
+        sync(self)
+
+    monkeypatch.setattr(AppendedFile, "sync", slow)
+    path = tmp_path / "run.csv"
+    recorder = Recorder(path, {})
+    try:
+        assert stuck.wait(PATIENCE)
+        recorder.sample((0.0, 1.0, 2.0, 3.0, 4.0, 5.0))
+        recorder.frame(0.25, 0x80, b"\x01", True)
+        until(lambda: path.read_text().endswith("0.0,1.0,2.0,3.0,4.0,5.0\n"))
+        until(lambda: path.with_suffix(".log").read_text() == "(0.250000000) can0 080#01 T\n")
+    finally:
+        released.set()
+        recorder.close({"stop": None})
+    assert path.read_text().endswith('# jointid session {"stop": null}\n')
+
+
+def test_files_and_folder_are_on_the_disk_before_the_motor_is_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    synced: list[int] = []
+    fsync = os.fsync
+
+    def watched(descriptor: int) -> None:
+        synced.append(os.fstat(descriptor).st_ino)
+        fsync(descriptor)
+
+    monkeypatch.setattr("jointid.hardware.appended_file.os.fsync", watched)
+    path = tmp_path / "run.csv"
+    recorder = Recorder(path, {})
+    files = [path.stat().st_ino, path.with_suffix(".log").stat().st_ino]
+    assert synced[:3] == [*files, tmp_path.stat().st_ino]
+    recorder.close()
+    assert set(synced[-2:]) == set(files)
+
+
+needs_full = pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
+
+
+@pytest.fixture
+def full() -> Iterator[int]:
+    """A disk that is full."""
+    descriptor = os.open("/dev/full", os.O_WRONLY)
+    yield descriptor
+    os.close(descriptor)
+
+
+@needs_full
+def test_a_disk_that_is_full_refuses_the_start(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, full: int
+) -> None:
+    made = AppendedFile.__init__
+
+    def onto_full(self: AppendedFile, path: Path) -> None:
+        made(self, path)
+        os.dup2(full, self.descriptor)
+
+    monkeypatch.setattr(AppendedFile, "__init__", onto_full)
+    emulated = devices()
+    with (
+        EmulatedBus(*emulated) as bus,
+        pytest.raises(
+            SessionRefusedError,
+            match=r"^not started: the recording cannot be written: No space left on device$",
+        ),
+    ):
+        session(bus, output=tmp_path / "run.csv").run()
+    assert not emulated[0].motor_on
+    assert not emulated[0].switchings
+    assert not list(tmp_path.iterdir())
+
+
+@needs_full
+@pytest.mark.parametrize("ending", [".csv", ".log"])
+def test_a_disk_that_fills_up_is_one_stop(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, full: int, ending: str
+) -> None:
+    made = AppendedFile.__init__
+    files: dict[str, int] = {}
+
+    def noted(self: AppendedFile, path: Path) -> None:
+        made(self, path)
+        files[path.suffix] = self.descriptor
+
+    monkeypatch.setattr(AppendedFile, "__init__", noted)
+
+    def fill(phase: str, *_: object) -> None:
+        if phase == "run" and ending in files:
+            os.dup2(full, files.pop(ending))
+
+    emulated, path = devices(), tmp_path / "run.csv"
+    with EmulatedBus(*emulated) as bus, pytest.raises(SessionStoppedError) as caught:
+        session(bus, 4.0, output=path, observer=fill).run()
+    stop = caught.value.stop
+    assert stop.limit == "recording"
+    assert stop.message == "the recording cannot be written: No space left on device"
+    assert stop.motor_off is True
+    assert not emulated[0].motor_on
+    assert caught.value.recording is not None
+
+
+def test_a_session_that_never_ran_says_so(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+
+    def refuse(phase: str, *_: object) -> None:
+        if phase == "settle":
+            raise RuntimeError("enough")
+
+    with EmulatedBus(*devices()) as bus, pytest.raises(SessionStoppedError):
+        session(bus, output=path, observer=refuse).run()
+    with pytest.raises(
+        jid.InputError, match=r"run\.csv: the session ended before its first sample: .*enough"
+    ):
+        jid.load(path)
+    content = path.read_bytes()
+    path.write_bytes(content[: content.rfind(b"# jointid session")])
+    with pytest.raises(
+        jid.InputError, match=r"before its first sample; it was killed, or the power failed$"
+    ):
+        jid.load(path)
+
+
+def test_a_drive_that_does_not_tell_its_current(tmp_path: Path) -> None:
+    path = tmp_path / "run.csv"
+    recorder = Recorder(path, {})
+    for k in range(10):
+        recorder.sample((0.1 * k, 0.2 * k, 1.0, 2.0, 0.0, float("nan")))
+    recorder.close({"stop": None})
+    loaded = jid.load(path)
+    assert loaded.current is None
+    assert "current" not in loaded.signals
+    assert np.array_equal(loaded.position, [0.2 * k for k in range(10)])
+    text = path.read_text().replace("2.0,0.0,nan", "nan,0.0,nan", 1)
+    path.write_text(text)
+    with pytest.raises(jid.InputError, match="sensor"):
+        jid.load(path)
