@@ -157,7 +157,7 @@ def test_its_fault_stops_the_session_under_its_name() -> None:
     stop = stopped.value.stop
     assert (stop.limit, stop.phase) == ("stale_position", "run")
     assert stop.time == pytest.approx(1.0, abs=5.0 * PERIOD)
-    assert "nothing came within 1 ms" in stop.message
+    assert "nothing came within 1.5 ms" in stop.message
     assert (wheel.on, wheel.torque) == (False, 0.0)
     assert wheel.calls[-1] == "close"
 

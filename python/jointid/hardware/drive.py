@@ -157,7 +157,7 @@ class Drive(Protocol):
         Parameters
         ----------
         timeout : float
-            [s]; half a period while the motor moves.
+            [s]; three quarters of a period while the motor moves.
 
         Raises
         ------

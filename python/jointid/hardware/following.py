@@ -113,7 +113,7 @@ class Follower:
         """
         options, clock, guard = self._options, self._drive.clock, self._guard
         period = options.period
-        timeout = 0.5 * period if options.answer_timeout is None else options.answer_timeout
+        timeout = 0.75 * period if options.answer_timeout is None else options.answer_timeout
         reference, velocity, acceleration = course.reference, course.velocity, course.acceleration
         running = self.phase == "run"
         begin = clock.now() + period

@@ -25,7 +25,8 @@ class SessionOptions:
     resolution : float
         Output angle of an encoder count [rad].
     answer_timeout : float, optional
-        For the drive's state in a cycle [s]; beyond, the position is stale. Default: half a period.
+        For the drive's state in a cycle [s]; beyond, the position is stale. Default: three quarters of a
+        period: behind a late cycle the bus is fuller.
     """
 
     period: float = 2e-3
