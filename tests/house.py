@@ -40,7 +40,7 @@ class Group:
 GROUPS: dict[str, Group] = {
     "core": Group(modules={"_core"}, may_use=set(), packages=set()),
     "recording": Group(
-        modules={"errors", "files", "recording.", "joint."},
+        modules={"errors", "files", "given", "recording.", "joint."},
         may_use={"core"},
         packages={"numpy", "scipy", "pandas", "pyarrow", "tomlkit"},
     ),
@@ -90,6 +90,7 @@ GROUPS: dict[str, Group] = {
     "command line": Group(
         modules={
             *("cli", "cli_arguments", "cli_commands", "cli_session", "cli_simulation", "cli_study"),
+            "cli_words",
             *("__main__", "demo", "progress"),
         },
         may_use={

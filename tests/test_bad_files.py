@@ -60,7 +60,7 @@ BAD: list[Bad] = [
         {},
         "line 1: no column is .* position; candidates are 'ax",
     ),
-    ("a.csv", headed("t,x,y,z"), {}, r"candidates are 't', 'x', 'y', 'z'; .* columns=\{'position'"),
+    ("a.csv", headed("t,x,y,z"), {}, r"candidates are 'x', 'y', 'z'; .* columns=\{'position'"),
     (
         "a.csv",
         headed("t,q_rad,q_deg,x"),

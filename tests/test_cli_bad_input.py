@@ -239,6 +239,7 @@ def test_bad_usage_ends_in_one_line(
         ["simulate", "JOINT", "--trajectory", "RUN", "--output", "RUN"],
         ["sweep", "RUN", "--table", "RUN", "--grid", "windows=50"],
         ["sweep", "RUN", "--joint", "JOINT", "--output", "JOINT", "--grid", "windows=50"],
+        ["sweep", "--simulate", "JOINT", "--plot", "JOINT", "--grid", "windows=50"],
     ],
 )
 def test_no_output_is_written_over_an_input(

@@ -8,6 +8,8 @@ import pytest
 import jointid as jid
 from jointid.cli import main
 from jointid.demo import data_folder
+from jointid.progress import StudyProgress
+from jointid.study.sweeping import StudyStep
 
 WELL = str(data_folder() / "well_excited.csv.gz")
 TRUTH = {
@@ -31,6 +33,31 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     joint.with_parameters(TRUTH).save(path / "true.toml")
     joint.with_parameters(TRUTH | {"coulomb": 10.0, "sensor_gain": 1.0}).save(path / "guess.toml")
     return path
+
+
+@pytest.mark.parametrize("kept", [True, False])
+def test_an_interrupted_sweep_says_how_much_is_done_and_how_to_go_on(
+    kept: bool, tmp_path: Path, capsys: Printed, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(_: StudyProgress, step: StudyStep) -> None:
+        raise KeyboardInterrupt
+
+    path = tmp_path / "study.jsonl"
+    words = ["sweep", WELL, "--grid", "windows=100,200", "--trials", "3"]
+    words += ["--output", str(path)] if kept else []
+    with monkeypatch.context() as patch:
+        patch.setattr(StudyProgress, "__call__", interrupted)
+        assert main(words) == 130
+    told = capsys.readouterr().err
+    assert told.startswith("jointid: interrupted: ")
+    assert "of 6 trials were done" in told
+    assert told.count("\n") == 1
+    if not kept:
+        assert "lost; --output study.jsonl keeps" in told
+        return
+    assert f"in {path}; the same command with --resume goes on" in told
+    assert main([*words, "--resume"]) == 0
+    assert len(jid.Study.load(path).rows) == 6
 
 
 def test_simulate_identify_simulate_closes_the_ring(
@@ -78,7 +105,7 @@ def test_the_recording_is_that_of_the_library(
     [
         (["--trajectory", "helix"], "neither a file nor one of"),
         (["--trajectory", "sine:amplitude"], "not of the form name=value"),
-        (["--trajectory", "sine:amplitude=1,hertz=1,duration=1"], "unexpected option 'hertz'"),
+        (["--trajectory", "sine:amplitude=1,hertz=1,duration=1"], "has no option 'hertz'"),
         (["--controller", "pdd"], "did you mean 'pd'"),
         (["--controller", "pd"], "needs --gain stiffness"),
         (["--controller", "pd", "--gain", "stiffness=1", "--believe", "x"], "compensates nothing"),
@@ -146,7 +173,7 @@ def test_sweep_simulates(folder: Path, capsys: Printed) -> None:
         ([WELL, "--grid", "windows"], "not of the form name=value"),
         ([WELL, "--table", "x.xlsx"], "written as .csv or .parquet"),
         ([WELL, "--workers", "0"], "--workers must be 1 to"),
-        ([WELL, "--resume"], "output="),
+        ([WELL, "--resume"], "give it as --output"),
         ([WELL, "--ga", "best"], "ga must be"),
         ([WELL, "--trials", "0"], "trials must be"),
     ],

@@ -69,3 +69,45 @@ def test_unbounded_agrees_with_bounded() -> None:
         assert free.parameters[name].value == pytest.approx(
             bounded.parameters[name].value, rel=1e-5
         )
+
+
+def test_one_bound_tells_the_sign() -> None:
+    recording = moved(20.0, "pd", 0.5, 0, -1.0)
+    gain = jid.identify(recording, UNBOUNDED, parameters={"sensor_gain": {"max": -0.1}}).parameters[
+        "sensor_gain"
+    ]
+    assert (gain.max, gain.at_bound) == (-0.1, None)
+    assert gain.value == pytest.approx(-TRUTH["sensor_gain"], rel=0.15)
+    assert gain.min < -TRUTH["sensor_gain"]
+
+
+LEVEL = jid.thesis_joint()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_sign_that_is_not_clear_is_told(seed: int) -> None:
+    # Two degrees about the horizontal: the link's torque hardly varies, the reading is noise.
+    run = jid.simulate(
+        LEVEL.with_parameters(TRUTH),
+        jid.Pd(stiffness=3000.0, damping=200.0),
+        jid.Trajectory.thesis(math.radians(2.0), cycle=10.0, duration=12.0),
+        sensors=jid.Sensors(torque_noise=0.5),
+        seed=seed,
+    )
+    for residual in ("sensor", "torque"):
+        estimate = jid.identify(run, LEVEL.replace(parameters={}), residual=residual)
+        (told,) = (w for w in estimate.warnings if w.code == "undetermined")
+        other = "negative" if estimate.parameters["sensor_gain"].value > 0.0 else "positive"
+        assert f"a {other} sensor_gain fits almost as well" in told.message
+        assert "sensor_gain" in told.parameters
+
+
+def test_a_sign_that_is_known_or_clear_is_not() -> None:
+    small, large = moved(5.0, "robust", 0.5, 0, 1.0), moved(60.0, "pd", 0.5, 0, 1.0)
+    for estimate in (
+        jid.identify(large, UNBOUNDED),
+        jid.identify(small, UNBOUNDED, parameters={"sensor_gain": {"value": 2.0}}),
+        jid.identify(small, UNBOUNDED, parameters={"sensor_gain": {"min": 0.1}}),
+        jid.identify(small, JOINT),
+    ):
+        assert not [w for w in estimate.warnings if "fits almost as well" in w.message]

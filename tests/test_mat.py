@@ -168,7 +168,7 @@ BAD_MAT: list[tuple[Any, Mapping[str, Any], str]] = [
     ({"name": "x", "kp": 1.0}, {}, "no vectors of numbers are found, only 'name', 'kp'; save time"),
     ({"log": {"data": {"t": TIME}}}, {}, "no vectors of numbers .* nested structs"),
     ({"c": np.array([TIME, "x"], dtype=object)}, {}, "no vectors of numbers are found, only 'c'"),
-    ({"t": TIME, "x": ANGLE}, {}, "no column is recognised as position; candidates are 't', 'x'"),
+    ({"t": TIME, "x": ANGLE}, {}, "no column is recognised as position; candidates are 'x'"),
     ({"t": TIME, "q": ANGLE * 1j}, {}, "variable 'q' does not hold numbers"),
     ({"t": TIME, "q": ANGLE[1:]}, {}, "position has 9 samples and time has 10"),
     ({"t": TIME, "q": ANGLE / [1] * np.nan}, {}, "variable 'q', index 0: position is nan"),

@@ -2,6 +2,8 @@
 
 import re
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -41,3 +43,30 @@ def test_its_comparison_runs(well_excited: jid.Recording) -> None:
     names = [name.strip().strip('"') for name in models[1].split(",")]
     comparison = jid.compare_models(well_excited, jid.thesis_joint(), models=names, folds=5)
     assert comparison.winner == "stribeck"
+
+
+def test_its_blocks_run_one_after_the_other(
+    well_excited: jid.Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    (tmp_path / "examples").symlink_to(Path(__file__).parent.parent / "examples")
+    monkeypatch.chdir(tmp_path)
+    run = well_excited
+    assert run.torque is not None
+    assert run.sensor is not None
+    columns = (run.time, run.position, run.velocity, run.torque, run.sensor)
+    samples = [
+        SimpleNamespace(t=t, q=q, v=v, tau=tau, raw=raw)
+        for t, q, v, tau, raw in zip(*(column.tolist() for column in columns), strict=True)
+    ]
+    names: dict[str, Any] = {"samples": samples}
+    blocks = re.findall(r"^```python\n(.*?)^```", README, re.DOTALL | re.MULTILINE)
+    assert len(blocks) >= 7
+    try:
+        for block in blocks:
+            exec(block, names)
+    finally:
+        pyplot.close("all")
+    assert (tmp_path / "joint.toml").is_file()
+    assert (tmp_path / "grid.csv").is_file()
+    assert names["comparison"].winner == "stribeck"

@@ -27,8 +27,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         check_distinct(arguments)
         code = getattr(cli_commands, arguments.command)(arguments)
-    except KeyboardInterrupt:
-        print("jointid: interrupted", file=sys.stderr)
+    except KeyboardInterrupt as stop:
+        told = f": {stop}" if str(stop) else ""
+        print(f"jointid: interrupted{told}", file=sys.stderr)
         return INTERRUPTED
     except BrokenPipeError:  # the reader of our output left: not our failure
         sys.stderr.close()
@@ -42,4 +43,6 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _one_line(error: Exception) -> str:
     if isinstance(error, OSError) and error.filename is not None:
         return f"{error.filename}: {error.strerror}"
-    return " ".join(str(error).split())
+    from jointid.cli_words import spoken
+
+    return spoken(" ".join(str(error).split()))

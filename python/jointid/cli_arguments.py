@@ -160,7 +160,7 @@ def reading_arguments(command: argparse.ArgumentParser) -> None:
         (
             "--column",
             "SIGNAL=HEADER",
-            "which column (header or number) is which signal; may be repeated",
+            "which column (header or number) is which signal, or none; may be repeated",
         ),
         ("--unit", "SIGNAL=UNIT", "overrides the header's unit"),
         ("--scale", "SIGNAL=FACTOR", "SI value of the file's 1, for a unit nobody knows"),
@@ -249,7 +249,8 @@ def load_all(paths: Sequence[Path], arguments: argparse.Namespace) -> list[Recor
     from jointid.recording.loading import load
 
     columns = {
-        signal: int(header) if header.isdigit() else header for signal, header in arguments.column
+        signal: int(header) if header.isdigit() else None if header == "none" else header
+        for signal, header in arguments.column
     }
     where = {column: number_or_text(value) for column, value in arguments.where}
     units = dict(arguments.unit)
@@ -306,7 +307,10 @@ def check_outputs(arguments: argparse.Namespace) -> None:
     check_page("--report", arguments.report)
 
 
-_READ = ("recordings", "recording", "joint", "estimate", "believe", "trajectory", "resume")
+_READ = (
+    *("recordings", "recording", "joint", "estimate"),
+    *("simulate", "believe", "trajectory", "resume"),
+)
 _WRITTEN = ("output", "report", "table", "plot", "checkpoint", "save")
 # Going on where a file ends, and a joint file that keeps its words, are meant.
 _MEANT = {("resume", "checkpoint"), ("joint", "save")}

@@ -11,6 +11,7 @@ from jointid.cli_arguments import check_outputs, check_page, fixed_values, load_
 from jointid.cli_session import emulate, run
 from jointid.cli_simulation import simulate
 from jointid.cli_study import sweep
+from jointid.cli_words import spoken
 
 __all__ = ["compare", "demo", "emulate", "identify", "info", "report", "run", "simulate", "sweep"]
 
@@ -84,7 +85,7 @@ def identify(arguments: argparse.Namespace) -> None:
             **model,
         )
     _write(estimate, arguments)
-    print(estimate.to_json() if arguments.json else estimate.report())
+    print(estimate.to_json() if arguments.json else spoken(estimate.report()))
 
 
 def compare(arguments: argparse.Namespace) -> None:
@@ -112,7 +113,7 @@ def compare(arguments: argparse.Namespace) -> None:
             callback=progress,
         )
     _write(comparison.estimate, arguments)
-    print(comparison.to_json() if arguments.json else comparison.report())
+    print(comparison.to_json() if arguments.json else spoken(comparison.report()))
 
 
 def report(arguments: argparse.Namespace) -> None:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
-from contextlib import nullcontext
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -126,6 +127,7 @@ def sweep(arguments: argparse.Namespace) -> None:
     else:
         subject = load_all(arguments.recordings, arguments)
     with (
+        _told(arguments),
         _workers(arguments.workers) as executor,
         StudyProgress(enabled=not arguments.quiet) as progress,
     ):
@@ -146,6 +148,25 @@ def sweep(arguments: argparse.Namespace) -> None:
             **({"parameters": fixed} if fixed else {}),
         )
     _write(study, arguments)
+
+
+@contextmanager
+def _told(arguments: argparse.Namespace) -> Iterator[None]:
+    """What is left of a sweep that ended early, and how to go on."""
+    from jointid.errors import InputError
+    from jointid.study.sweeping import StudyBrokenError, StudyInterruptedError
+
+    if arguments.output is None:
+        way_on = "they are lost; --output study.jsonl keeps each as it is done"
+    else:
+        way_on = f"they are in {arguments.output}; the same command with --resume goes on"
+    try:
+        yield
+    except StudyInterruptedError as stop:
+        raise KeyboardInterrupt(f"{stop}; {way_on}") from None
+    except StudyBrokenError as error:
+        done = str(error).partition(". ")[0]
+        raise InputError(f"{done}; {way_on}") from error
 
 
 def _write(study: Study, arguments: argparse.Namespace) -> None:

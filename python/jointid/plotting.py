@@ -8,6 +8,7 @@ import numpy as np
 
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import FrictionCurve
+from jointid.given import given_kind
 from jointid.plotting_friction import friction_curves, sensitivity, torque_over_velocity
 from jointid.plotting_motion import signal, tracking_error, trajectory
 from jointid.plotting_search import adaptation
@@ -81,6 +82,9 @@ def friction_map(recording: Recording | None, estimate: Estimate, axes: Axes | N
     axes : Axes, optional
         Drawn into; default: new ones.
     """
+    if recording is not None:
+        given_kind("recording", recording, Recording)
+    given_kind("estimate", estimate, Estimate)
     axes = _axes(axes)
     windows = estimate.windows if recording is None else estimate.predict(recording).windows
     whole = windows.duration > 0.5 * float(np.median(windows.duration))

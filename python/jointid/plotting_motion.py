@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jointid.errors import InputError
+from jointid.given import given_kind, given_mapping
 from jointid.plotting_style import given_or_new, line_style
 from jointid.recording.recording import Recording
 from jointid.simulation.simulated_recording import SimulatedRecording
@@ -146,7 +147,13 @@ def _room_for_legend(axes: Axes) -> None:
 
 
 def _named(runs: Runs) -> Mapping[str, Recording]:
-    named = {"": runs} if isinstance(runs, Recording) else runs
+    named = (
+        {"": runs}
+        if isinstance(runs, Recording)
+        else given_mapping("runs", runs, "{'before': recording}")
+    )
+    for run in named.values():
+        given_kind("runs", run, Recording)
     if not named:
         raise InputError("there is no recording to draw; give one, or several by name")
     return named

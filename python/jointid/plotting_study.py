@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.errors import InputError
+from jointid.given import given_kind
 from jointid.plotting_style import MEASURED, given_or_new, line_style
+from jointid.study.study_result import Study
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from jointid.study.study_result import Study
 
 Array = NDArray[np.float64]
 
@@ -57,6 +58,7 @@ def sweep(
     InputError
         Something that the study has not swept, or does not hold.
     """
+    given_kind("study", study, Study)
     if statistic not in STATISTICS:
         raise InputError(f"statistic '{statistic}' is not known; use {', '.join(STATISTICS)}")
     if not study.swept:

@@ -19,6 +19,7 @@ from jointid.estimate.tables import (
     quality,
 )
 from jointid.files import write_whole
+from jointid.given import given_path
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -95,7 +96,7 @@ def html_report(estimate: Estimate) -> str:
 
 def save_report(estimate: Estimate, path: str | Path) -> Path:
     """Write the report, whole or not at all; returns its path."""
-    target = Path(path)
+    target = given_path("path", path)
     write_whole(target, html_report(estimate).encode())
     return target
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from jointid import _core
 from jointid.errors import InputError
+from jointid.given import shown
 from jointid.identification.identification import identify
 
 # What a comparison sets for all models alike, or what steers a run: no part of a model.
@@ -112,6 +113,8 @@ def specified(models: str | ModelSpec | Sequence[Any]) -> tuple[ModelSpec, ...]:
     InputError
         None, something else, or the same model twice.
     """
+    if not isinstance(models, str | ModelSpec | Iterable):
+        raise InputError(f"models is {shown(models)}; a list of models' names is expected")
     entries = (models,) if isinstance(models, str | ModelSpec) else tuple(models)
     specs = tuple(_specified(entry) for entry in entries)
     if not specs:

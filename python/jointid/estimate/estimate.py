@@ -20,6 +20,7 @@ from jointid.estimate.findings import (
     Warned,
     WindowTable,
 )
+from jointid.given import given_kind, given_path
 
 if TYPE_CHECKING:
     from jointid.joint.joint import Joint
@@ -136,6 +137,7 @@ class Estimate:
         """
         from jointid.estimate.estimate_json import read_estimate
 
+        given_kind("text", text, str)
         return read_estimate(text)
 
     def save(self, path: str | Path) -> None:
@@ -150,7 +152,7 @@ class Estimate:
         """
         from jointid.files import write_whole
 
-        path = Path(path)
+        path = given_path("path", path)
         if path.suffix == ".toml":
             self.joint.save(path)
         elif path.suffix == ".json":

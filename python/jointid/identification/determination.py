@@ -100,6 +100,8 @@ def undetermined(facts: Facts) -> Iterator[Warned]:
     }
     for name, reason in _between_the_regressions(facts):
         reasons.setdefault(name, reason)
+    for name, reason in _with_a_guessed_sign(facts):
+        reasons[name] = ", and ".join((*reasons.get(name, "").splitlines(), reason))
     if not reasons:
         return
     message = "not well determined by this recording: " + "; ".join(dict.fromkeys(reasons.values()))
@@ -164,6 +166,16 @@ def _why_undetermined(p: ParameterEstimate, facts: Facts) -> str | None:
 def _with_unit(p: ParameterEstimate) -> str:
     """The standard error as the table has it."""
     return f"{two_digits(p.stderr or 0.0)} {p.unit}".rstrip()
+
+
+def _with_a_guessed_sign(facts: Facts) -> Iterator[tuple[str, str]]:
+    gain = facts.parameters.get("sensor_gain")
+    if gain is not None and gain.vary and facts.guessed_sign:
+        sign = "negative" if gain.value > 0.0 else "positive"
+        yield (
+            "sensor_gain",
+            f"a {sign} sensor_gain fits almost as well (give it a value or bounds, if its sign is known)",
+        )
 
 
 def _between_the_regressions(facts: Facts) -> Iterator[tuple[str, str]]:

@@ -61,6 +61,8 @@ class Facts:
         The part of each standard error that chance explains.
     torque_level : float
         Root mean square of the drive's torque [N·m or N].
+    guessed_sign : bool
+        Whether the gain's sign is one of two that fit alike.
     inspections : tuple of Inspected
         What each recording shows by itself.
     at_best : Regressor
@@ -81,6 +83,7 @@ class Facts:
     status: str
     message: str
     bounds_from_data: tuple[str, ...]
+    guessed_sign: bool
     inspections: tuple[Inspected, ...]
     at_best: Regressor
     correlations: Mapping[tuple[str, str], float]

@@ -16,6 +16,8 @@ from jointid.errors import InputError
 _ROOM = 100.0
 # ... or between these shares of the gain at which the sensor would make up all of the torque's swing.
 _LEAST, _MOST = 0.001, 10.0
+# Wrong signs were seen up to a contrast of 1.023 (motions of 2 and 5 degrees, mostly friction).
+_CLEAR = 1.03
 
 Array = NDArray[np.float64]
 
@@ -28,12 +30,24 @@ class GainGuess:
     ----------
     value : float
         With its sign; 0 when no gain of either sign explains anything.
+    sign : float
+        1 or -1.
     swing : float
         The gain at which the sensor's swing would be the torque's.
+    contrast : float
+        How much worse the best gain of the other sign fits: the ratio of the misfits; infinite where
+        only one sign is allowed.
     """
 
     value: float
+    sign: float
     swing: float
+    contrast: float
+
+    @property
+    def clear(self) -> bool:
+        """Whether the recording tells the sign."""
+        return self.contrast > _CLEAR
 
     @property
     def bounds(self) -> tuple[float, float]:
@@ -41,7 +55,7 @@ class GainGuess:
         size = abs(self.value) if self.value != 0.0 else self.swing
         low = min(size / _ROOM, _LEAST * self.swing)
         high = max(size * _ROOM, _MOST * self.swing)
-        return (low, high) if self.value >= 0.0 else (-high, -low)
+        return (low, high) if self.sign > 0.0 else (-high, -low)
 
 
 def around(value: float) -> tuple[float, float]:
@@ -51,7 +65,10 @@ def around(value: float) -> tuple[float, float]:
 
 
 def guess_gain(
-    penalty: _core.Penalty, columns: Iterable[Array], fixed: Mapping[str, float]
+    penalty: _core.Penalty,
+    columns: Iterable[Array],
+    fixed: Mapping[str, float],
+    signs: tuple[float, ...] = (1.0, -1.0),
 ) -> GainGuess:
     """The gain that fits best, of either sign, with all that rubs rubbing.
 
@@ -67,6 +84,8 @@ def guess_gain(
         The terms' integrals, for some shapes of the Stribeck term.
     fixed : mapping of str to float
         Coefficients that are known.
+    signs : tuple of float
+        That a bound allows. Default: both.
 
     Raises
     ------
@@ -74,13 +93,20 @@ def guess_gain(
         The reading does not vary.
     """
     best, value, swing = np.inf, 0.0, 0.0
+    misfits = dict.fromkeys((1.0, -1.0), np.inf)
     for each in columns:
         swing = swing or _swing(penalty, each)
-        for sign in (1.0, -1.0):
+        for sign in signs:
             misfit, gain = _fitted(penalty, each, fixed, sign)
+            misfits[sign] = min(misfits[sign], misfit)
             if misfit < best * (1.0 - 1e-9):
                 best, value = misfit, gain
-    return GainGuess(value=value, swing=swing)
+    return GainGuess(
+        value=value,
+        sign=np.sign(value) or signs[0],
+        swing=swing,
+        contrast=max(misfits.values()) / max(best, 1e-300),
+    )
 
 
 def _swing(penalty: _core.Penalty, columns: Array) -> float:

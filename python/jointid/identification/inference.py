@@ -106,6 +106,7 @@ def infer(
             status=status,
             message=message,
             bounds_from_data=domain.from_data,
+            guessed_sign=domain.guessed_sign,
             inspections=inspections,
             at_best=at_best,
             correlations={

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 from jointid import _core
 from jointid.errors import InputError
+from jointid.given import shown
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import order_list
 from jointid.recording.recording import Recording
@@ -110,7 +111,7 @@ def choose_terms(
         load_friction=base.load_friction
         if request.load_friction is None
         else bool(request.load_friction),
-        per_recording=tuple(request.per_recording) if len(recordings) > 1 else (),
+        per_recording=_shared_not(request.per_recording) if len(recordings) > 1 else (),
         gear_ratio=base.gear_ratio,
     )
     if choice.ripple and joint is None:
@@ -132,6 +133,14 @@ def _orders(
     name: str, asked: Collection[float] | None, known: tuple[float, ...]
 ) -> tuple[float, ...]:
     return known if asked is None else order_list("identify", name, asked)
+
+
+def _shared_not(names: object) -> tuple[str, ...]:
+    if isinstance(names, str) or not isinstance(names, Collection):
+        raise InputError(
+            f"per_recording is {shown(names)}; a list of names like ('sensor_offset',) is expected"
+        )
+    return tuple(names)
 
 
 def _friction(terms: Sequence[str], asymmetric: bool) -> list[str]:

@@ -14,6 +14,7 @@ from jointid import _core
 from jointid.errors import InputError
 from jointid.estimate.findings import Convergence
 from jointid.files import write_whole
+from jointid.given import given_path
 from jointid.identification.engine import Engine, Outcome
 from jointid.identification.search_domain import SearchDomain
 
@@ -56,6 +57,9 @@ class Search:
             raise InputError(
                 f"ga must be GaOptions, got {self.options!r}; use jointid.GaOptions(population=...)"
             )
+        for name in ("checkpoint", "resume"):
+            if getattr(self, name) is not None:
+                given_path(name, getattr(self, name))
         if self.callback is not None and not callable(self.callback):
             raise InputError(f"callback must be callable, got {self.callback!r}")
         if self.method != "ga" and (self.checkpoint is not None or self.resume is not None):

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.errors import InputError
+from jointid.given import given_mapping
 from jointid.identification.gain_domain import GainGuess, around, guess_gain
 from jointid.identification.inner_products import size
 from jointid.joint.joint import Joint
@@ -37,12 +38,15 @@ class SearchDomain:
     lower, upper : ndarray, shape (p,)
     from_data : tuple of str
         Parameters at least one of whose bounds had to be taken from the data.
+    guessed_sign : bool
+        Whether the sensor's gain is looked for on one side of zero though the other fits as well.
     """
 
     names: tuple[str, ...]
     lower: NDArray[np.float64]
     upper: NDArray[np.float64]
     from_data: tuple[str, ...]
+    guessed_sign: bool = False
 
     def fixed(self, name: str) -> bool:
         """Whether the parameter is fixed."""
@@ -72,10 +76,21 @@ def _shape_bounds(name: str, peak_speed: float) -> tuple[float, float]:
 class _Recorded:
     """The penalty's terms on the recording, each computed once."""
 
-    def __init__(self, penalty: _core.Penalty, shapes: list[tuple[float, float]]) -> None:
+    def __init__(
+        self,
+        penalty: _core.Penalty,
+        shapes: list[tuple[float, float]],
+        signs: tuple[float, ...],
+    ) -> None:
         self.penalty, self._shapes = penalty, shapes
         self._columns: Array | None = None
+        self._signs = signs
         self._gain: GainGuess | None = None
+
+    @property
+    def guessed_sign(self) -> bool:
+        """Whether a gain was looked for, and its sign is not clear."""
+        return self._gain is not None and not self._gain.clear
 
     @property
     def columns(self) -> Array:
@@ -87,7 +102,7 @@ class _Recorded:
     def gain(self, fixed: Mapping[str, float]) -> GainGuess:
         """Of the sensor, by least squares over shapes between the bounds."""
         if self._gain is None:
-            self._gain = guess_gain(self.penalty, self._shaped(), fixed)
+            self._gain = guess_gain(self.penalty, self._shaped(), fixed, self._signs)
         return self._gain
 
     def _shaped(self) -> Iterator[Array]:
@@ -182,7 +197,7 @@ def domain_for(
         if not each.vary and each.value is not None
     }
     shapes = [_shape_range(each, peak_speed) for each in known[penalty.coefficients :]]
-    recorded = _Recorded(penalty, shapes)
+    recorded = _Recorded(penalty, shapes, _signs(known))
     for index, (name, parameter) in enumerate(zip(names, known, strict=True)):
         if not parameter.vary:
             assert parameter.value is not None  # Parameter refuses a fixed one without
@@ -209,7 +224,24 @@ def domain_for(
     _refuse_collinear(names, lower, upper)
     if bool(np.all(lower == upper)):
         raise InputError("parameters: every parameter is fixed; leave at least one to identify")
-    return SearchDomain(names=names, lower=lower, upper=upper, from_data=tuple(from_data))
+    return SearchDomain(
+        names=names,
+        lower=lower,
+        upper=upper,
+        from_data=tuple(from_data),
+        guessed_sign=recorded.guessed_sign,
+    )
+
+
+def _signs(known: list[Parameter]) -> tuple[float, ...]:
+    """Signs of the sensor's gain that one bound leaves."""
+    for each in known:
+        if each.name == "sensor_gain":
+            if each.min is not None and each.min >= 0.0:
+                return (1.0,)
+            if each.max is not None and each.max <= 0.0:
+                return (-1.0,)
+    return (1.0, -1.0)
 
 
 def parameter_bounds(
@@ -224,6 +256,8 @@ def parameter_bounds(
     InputError
         The call names a parameter that is not among them, or bounds that cannot be.
     """
+    if changes is not None:
+        given_mapping("parameters", changes, "{'coulomb': {'max': 50.0}}")
     table = merge(_known_values(joint), joint.parameters if joint is not None else {})
     table = merge(
         table, {name: _freed(table, name, entry) for name, entry in (changes or {}).items()}

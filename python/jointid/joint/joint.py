@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.errors import InputError
+from jointid.given import given_mapping
 from jointid.joint.link import GravityCoefficients, Limits, Link
 from jointid.joint.parameters import (
     FieldError,
@@ -225,6 +226,7 @@ class Joint:
         InputError
             An unknown parameter, no finite number, or a value outside the parameter's bounds.
         """
+        given_mapping("values", values, "{'coulomb': 25.0}")
         table = merge(self.parameters, {name: {"value": value} for name, value in values.items()})
         for name in values:
             finite_number(f"parameter '{name}'", "value", table[name].value)

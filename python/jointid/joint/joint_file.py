@@ -11,6 +11,7 @@ from typing import Any, NoReturn
 from jointid import _core
 from jointid.errors import InputError
 from jointid.files import write_whole
+from jointid.given import given_path
 from jointid.joint.joint import Joint
 from jointid.joint.link import Limits, Link
 from jointid.joint.parameters import (
@@ -47,7 +48,7 @@ _KEPT = ("estimate", "session", "user")
 
 def load_joint(path: str | os.PathLike[str]) -> Joint:
     """Read a joint file: see `Joint.load`."""
-    return joint_from_document(read_document(path), str(Path(path)))
+    return joint_from_document(read_document(path), str(path))
 
 
 def read_document(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -58,13 +59,13 @@ def read_document(path: str | os.PathLike[str]) -> dict[str, Any]:
     InputError
         No such file, or not TOML.
     """
-    place = Path(path)
+    place = given_path("path", path)
     return _parsed(_text(place), place)
 
 
 def save_joint(joint: Joint, path: str | os.PathLike[str]) -> None:
     """Write a joint file: see `Joint.save`."""
-    place = Path(path)
+    place = given_path("path", path)
     if not place.parent.is_dir():
         raise InputError(f"{place}: the folder '{place.parent}' does not exist; create it first")
     before = _text(place) if place.exists() else ""

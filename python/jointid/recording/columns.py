@@ -10,6 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from jointid.errors import InputError
+from jointid.given import given_mapping
 from jointid.recording.signals import SIGNALS, FloatArray, check_signal_name, closest, dimensions
 from jointid.recording.units import Unit, find_unit, unit_named, unit_names
 
@@ -113,6 +114,13 @@ def match_columns(
         A signal without a column that needs one, with two, or with a unit of another dimension;
         a header, signal or unit that does not exist.
     """
+    for name, mapping, example in (
+        ("columns", columns, "{'position': 'enc1'}"),
+        ("units", units, "{'position': 'deg'}"),
+        ("scale", scale, "{'position': 0.001}"),
+    ):
+        if mapping is not None:
+            given_mapping(name, mapping, example)
     candidates = _candidates(table, columns or {})
     for signal in ("time", "position"):
         if not candidates.get(signal):
@@ -301,7 +309,8 @@ def _missing(table: Table, signal: str) -> InputError:
         for header in table.headers
         if any(part in _plain(header) for part in _LIKELY[signal])
     ]
-    shown = likely or list(table.headers)
+    strange = [header for header in table.headers if _parsed(header)[0] not in _ALIASES]
+    shown = likely or strange or list(table.headers)
     example = f"columns={{{signal!r}: {shown[0]!r}}}" if shown else "columns="
     return InputError(
         f"{table.header_place}: no column is recognised as {signal}; "

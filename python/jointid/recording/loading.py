@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from jointid.errors import InputError
+from jointid.given import given_path
 from jointid.recording.columns import Table, column_index
 from jointid.recording.contents import read_contents
 from jointid.recording.csv_reader import CsvTable
@@ -74,7 +75,7 @@ def load(
         The file cannot be read or its columns hold no recording: one sentence that names the
         file, the line or the header, and what would be right.
     """
-    file = Path(path)
+    file = given_path("path", path)
     contents = read_contents(
         _table(file), columns=columns, units=units, scale=scale, kind=kind, torque_hold=torque_hold
     )
@@ -121,7 +122,7 @@ def load_runs(
     InputError
         As `load`.
     """
-    file = Path(path)
+    file = given_path("path", path)
     contents = read_contents(
         _table(file), columns=columns, units=units, scale=scale, kind=kind, torque_hold=torque_hold
     )

@@ -12,6 +12,7 @@ import numpy as np
 
 from jointid import _core
 from jointid.errors import InputError
+from jointid.given import given_mapping
 from jointid.identification.prepared import prepare
 from jointid.joint.parameters import suggestion
 from jointid.simulation.scenario import Scenario
@@ -57,11 +58,13 @@ class Cell:
     def options(self, common: Mapping[str, Any]) -> dict[str, Any]:
         """Arguments of `identify`, without `ga`: the study's, with this cell's in their place."""
         chosen = {n: v for n, v in common.items() if n != "ga"}
-        fixed: dict[str, Any] = dict(common.get("parameters") or {})
+        fixed: dict[str, Any] = _changes(common.get("parameters"))
         for name, value in self.values.items():
             part, _, inside = name.partition(".")
             if part == "parameters" and inside:
                 fixed[inside] = value
+            elif name == "parameters":
+                fixed |= _changes(value)
             elif name in OPTIONS and name != "ga":
                 chosen[name] = value
         return chosen | ({"parameters": fixed} if fixed else {})
@@ -74,6 +77,11 @@ class Cell:
             return base.replace(**changes)
         except (ValueError, TypeError) as error:
             raise InputError(f"ga: {error}") from None
+
+
+def _changes(parameters: object) -> dict[str, Any]:
+    example = "{'coulomb': {'max': 50.0}}"
+    return dict(given_mapping("parameters", {} if parameters is None else parameters, example))
 
 
 def is_option(name: str) -> bool:

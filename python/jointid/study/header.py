@@ -9,7 +9,7 @@ from typing import Any
 
 from jointid import _core
 from jointid.errors import InputError
-from jointid.joint.parameters import finite_number
+from jointid.joint.parameters import finite_number, suggestion
 from jointid.simulation.scenario import Scenario
 from jointid.study import study_file
 from jointid.study.work import Work
@@ -62,6 +62,10 @@ def _truth(work: Work, given: Mapping[str, float] | None) -> dict[str, float]:
     if given is not None:
         if not isinstance(given, Mapping):
             raise InputError(f"truth is {given!r}; a mapping of parameters to numbers is expected")
+        for name in given:
+            if not isinstance(name, str) or not _core.is_parameter(name.partition("[")[0]):
+                known = suggestion(name, _core.parameter_names())
+                raise InputError(f"truth: {name!r} is no parameter; {known}")
         return {str(name): finite_number("truth", str(name), v) for name, v in given.items()}
     if isinstance(work.subject, Scenario):
         return work.subject.truth

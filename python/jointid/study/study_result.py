@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid.errors import InputError
+from jointid.given import given_path
 from jointid.study import study_file, tables
 from jointid.study.row import Row
 from jointid.study.summary import Summary, summarise
@@ -118,7 +118,7 @@ class Study:
         InputError
             Another extension, or the folder does not exist.
         """
-        tables.save(self, Path(path))
+        tables.save(self, given_path("path", path))
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Study:
@@ -129,7 +129,7 @@ class Study:
         InputError
             The file cannot be read, or is no study.
         """
-        header, rows, _ = study_file.read(Path(path))
+        header, rows, _ = study_file.read(given_path("path", path))
         return study_of(header, rows)
 
     def __len__(self) -> int:

@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 from jointid.errors import InputError
+from jointid.given import given_path
 from jointid.identification.problem import listed, whole_number
 from jointid.identification.search import METHODS
 from jointid.joint.joint import Joint
@@ -162,11 +162,12 @@ def sweep(
     header = header_of_work(work, trials, truth)
     file = None
     if output is not None:
-        if Path(output).suffix != ".jsonl":
+        output = given_path("output", output)
+        if output.suffix != ".jsonl":
             raise InputError(
                 f"output {output}: a study grows in a .jsonl file; Study.save writes tables"
             )
-        file = StudyFile(Path(output), header, resume=resume)
+        file = StudyFile(output, header, resume=resume)
     elif resume:
         raise InputError("resume=True goes on with a file; give it as output=")
     rows = [] if file is None else [row for row in file.rows if row.trial < trials]
