@@ -110,6 +110,8 @@ def driven(path: Path) -> ElmoDrive:
             "[session.emulator.truth]",
             r"\[session\] 'emulator' is unkno",
         ),
+        ("[session.trajectory]", "[session.limits.x]", r"no table \[session.trajectory\]"),
+        ("gear_ratio = 101", "", r"\[drive\] has no gear_ratio"),
         ("coulomb = { value = 10.0, min", "coulomb = { min", "coulomb"),
         ("torque_constant = 0.198", "", "torque_constant"),
     ],

@@ -24,6 +24,7 @@ from fault_cases import (
 )
 from fault_matrix import row
 
+from jointid.hardware import SessionStoppedError
 from jointid.hardware.emulated.faults import DRIVE_FAILURES, BusFault
 from jointid.hardware.limits import SessionLimits
 
@@ -90,7 +91,7 @@ def test_failure_of_the_drive_is_told_in_words(kind: str) -> None:
         BusFault(kind="duplicate", start=BEGIN, identifier=COMMAND),
         BusFault(kind="delay", start=BEGIN, identifier=POSITION, delay=0.2e-3),
         BusFault(kind="delay", start=BEGIN, identifier=COMMAND, delay=0.2e-3),
-        BusFault(kind="drop", start=BEGIN, identifier=REPLY),
+        BusFault(kind="drop", start=BEGIN, stop=BEGIN + 0.5, identifier=REPLY),
     ],
     ids=lambda fault: f"{fault.kind} {fault.identifier}",
 )
@@ -101,9 +102,18 @@ def test_what_a_session_can_bear_does_not_stop_it(fault: BusFault) -> None:
     assert recording.reference is not None
     assert np.abs(recording.position - recording.reference).max() < 0.01
     assert recording.metadata["stop"] is None
-    assert recording.metadata["motor_off"] is (
-        fault.kind != "drop"
-    )  # replies are dropped to the end
+    assert recording.metadata["motor_off"] is True
+    assert not bench.elmo.motor_on
+
+
+def test_a_run_whose_motor_was_not_seen_off_is_no_success() -> None:
+    bench = EmulatedSession((BusFault(kind="drop", start=BEGIN, identifier=REPLY),))
+    with pytest.raises(
+        SessionStoppedError, match="the run is done, but the motor is not off"
+    ) as found:
+        bench.session().run()
+    assert (found.value.stop.limit, found.value.stop.motor_off) == ("drive_fault", False)
+    assert found.value.recording is not None
     assert not bench.elmo.motor_on
 
 

@@ -4,6 +4,7 @@ import math
 import signal
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import can
@@ -257,3 +258,53 @@ def test_ctrl_c_in_a_dry_run_is_heard() -> None:
     bus.at(0.02, lambda: signal.raise_signal(signal.SIGINT))
     with pytest.raises(KeyboardInterrupt):
         session(bus).run(dry_run=True)
+
+
+class StubbornDrive(ElmoDrive):
+    """Does not switch its motor off."""
+
+    def disable(self) -> Any:
+        super().disable()
+        raise RuntimeError("relay stuck")
+
+
+def test_a_motor_that_does_not_go_off_after_a_run_is_no_success() -> None:
+    bus = EmulatedBus(*devices())
+    options = SessionOptions(period=PERIOD, settle=0.05)
+    with pytest.raises(SessionStoppedError, match=r"relay stuck.*THE MOTOR WAS NOT SEEN OFF") as f:
+        Session(StubbornDrive(bus, JOINT), law(), motion(), limits(), options=options).run()
+    assert f.value.stop.motor_off is False
+    assert f.value.recording is not None
+
+
+def test_without_a_sensor_there_is_no_column_of_it(tmp_path: Path) -> None:
+    elmo, _ = devices()
+    wired = ElmoOptions(torque=None)
+    within = limits(tracking_error=3.0)
+    soft = jid.Pd(stiffness=4000.0, damping=300.0)
+    path = tmp_path / "run.csv"
+    run = session(EmulatedBus(elmo), drive=wired, limits=within, law=soft, output=path).run()
+    assert run is not None
+    assert run.sensor is None
+    assert jid.load(path).sensor is None
+    assert jid.hardware.replay(path.with_suffix(".log"), JOINT, recording=run).sensor is None
+
+
+@pytest.mark.parametrize(
+    ("name", "returned", "told"),
+    [
+        ("problems", "not homed", r"problems\(\) returned 'not homed'; a list of sentences"),
+        ("command", None, r"command\(\) returned None; the torque that it was told"),
+    ],
+)
+def test_a_drive_that_returns_something_else_is_told(name: str, returned: Any, told: str) -> None:
+    drive = ElmoDrive(EmulatedBus(*devices()), JOINT)
+    setattr(drive, name, lambda *_: returned)
+    options = SessionOptions(period=PERIOD, settle=0.05)
+    with pytest.raises((jid.InputError, SessionStoppedError), match=told):
+        Session(drive, law(), motion(), limits(), options=options).run()
+
+
+def test_a_trajectory_of_a_moment_is_refused() -> None:
+    with pytest.raises(SessionRefusedError, match="at least 8 periods"):
+        session(EmulatedBus(*devices()), 5.0 * PERIOD).run()

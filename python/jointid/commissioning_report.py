@@ -79,7 +79,7 @@ def _ripple(result: Commissioning) -> str:
         off = {
             name: 100.0 * (estimate.parameters[name].value / value - 1.0)
             for name, value in result.truth.items()
-            if value
+            if value and name in estimate.parameters
         }
         return ", ".join(f"{name} {share:+.2f} %" for name, share in off.items())
 

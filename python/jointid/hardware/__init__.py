@@ -8,6 +8,7 @@
 
 from jointid.hardware.bench import Bench, BusOptions, Emulation
 from jointid.hardware.bus import open_bus
+from jointid.hardware.clock import MonotonicClock
 from jointid.hardware.drive import Drive, DriveEnd, DriveFaultError, DriveSample
 from jointid.hardware.elmo_codec import Command, DriveError, Reply
 from jointid.hardware.elmo_drive import ElmoDrive
@@ -53,6 +54,7 @@ __all__ = [
     "Emulation",
     "EmulatorThread",
     "LivePlot",
+    "MonotonicClock",
     "RealTimeOptions",
     "Reply",
     "SensorScaling",

@@ -64,6 +64,11 @@ def load_bench(path: str | Path) -> Bench:
         )
     session = _Table(document["session"], "session", place)
     inner = {name: session.table(name) for name in _TABLES}
+    for name, told in (("trajectory", "where the joint goes"), ("controller", "what moves it")):
+        if name not in session.entries:
+            raise InputError(f"{place}: there is no table [session.{name}], which says {told}")
+    if "gear_ratio" not in document.get("drive", {}):
+        raise InputError(f"{place}: [drive] has no gear_ratio; 1 where there is no gear")
     resolution = 2.0 * math.pi / abs(joint.gear_ratio)
     bus = inner["bus"].make(BusOptions)
     source = _torque(inner["torque"])

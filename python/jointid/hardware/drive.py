@@ -47,6 +47,10 @@ class DriveFaultError(RuntimeError):
         measured: float | None = None,
         allowed: float | None = None,
     ) -> None:
+        if kind not in FAULT_KINDS:
+            raise InputError(
+                f"DriveFaultError: kind is {kind!r}; one of {', '.join(FAULT_KINDS)} is expected"
+            )
         super().__init__(message)
         self.kind, self.measured, self.allowed = kind, measured, allowed
 

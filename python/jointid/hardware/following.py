@@ -9,7 +9,7 @@ import numpy as np
 
 from jointid import _core
 from jointid.hardware.cycle import held_torque, target_at
-from jointid.hardware.drive import Drive, DriveSample
+from jointid.hardware.drive import Drive, DriveFaultError, DriveSample
 from jointid.hardware.guard import Guard
 from jointid.hardware.interruptions import Interruptions
 from jointid.hardware.recorder import Recorder
@@ -141,7 +141,7 @@ class Follower:
             guard.measured(sample, speed, error)
             torque = self._asked(elapsed, sample, speed, (target, pace, acceleration[k]))
             guard.commanded(torque, self._law.saturations)
-            told = self._drive.command(torque)
+            told = self._told(torque)
             acted = clock.now() - sample.time + self._drive.command_latency
             self.cycles += 1
             guard.told(torque, told)
@@ -159,6 +159,16 @@ class Follower:
             missed = clock.now() - (begin + (k + 1) * period)
             self.late.append(missed)
             guard.timed(missed)
+
+    def _told(self, torque: float) -> float:
+        """Command the drive; what it was told [N·m]."""
+        told = self._drive.command(torque)
+        if not isinstance(told, int | float):
+            raise DriveFaultError(
+                "drive_fault",
+                f"the drive's command() returned {told!r}; the torque that it was told is expected",
+            )
+        return told
 
     def _asked(
         self, time: float, sample: DriveSample, speed: float, wanted: tuple[float, float, float]

@@ -123,7 +123,7 @@ def replay(
         time=due + shift,
         position=_column(cycles, "position"),
         torque=held_torque(told[:-1], told[1:], acted, period),
-        sensor=_column(cycles, "reading"),
+        sensor=None if wired.torque is None else _column(cycles, "reading"),
         reference=reference,
         current=None if np.isnan(current).any() else current,
         torque_hold="zoh",

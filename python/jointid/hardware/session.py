@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from jointid import _core
+from jointid.errors import InputError
 from jointid.hardware.drive import Drive, DriveEnd, DriveFaultError, check_drive
 from jointid.hardware.following import Course, Follower, Observer, unwritten
 from jointid.hardware.guard import Guard
@@ -100,7 +101,12 @@ class Session:
         if reasons:
             return reasons
         self._drive.connect(options.period)
-        reasons += self._drive.problems(limits.torque)
+        told: object = self._drive.problems(limits.torque)
+        if not isinstance(told, list):
+            raise InputError(
+                f"the drive's problems() returned {told!r}; a list of sentences is expected"
+            )
+        reasons += told
         reasons += problems_at_rest(self._drive.read(10.0 * options.period), limits)
         return reasons
 
@@ -151,6 +157,8 @@ class Session:
                     self._leave()
             if cause is None and interruptions.reason is not None:
                 cause = LimitError("user", interruptions.reason)  # it came with the end of the run
+            if cause is None and self._end is not None and self._end.motor_off is False:
+                cause = DriveFaultError("drive_fault", "the run is done, but the motor is not off")
             stop = None if cause is None else self._stop(cause, moment)
             if recorder is not None:
                 try:
@@ -320,7 +328,7 @@ class Session:
             time=time,
             position=position,
             torque=torque,
-            sensor=sensor,
+            sensor=sensor if sensor.any() else None,  # 0 throughout: there is none
             reference=reference,
             current=None if np.isnan(current).any() else current,
             torque_hold="zoh",

@@ -13,6 +13,7 @@ from jointid.hardware.limits import SessionLimits
 from jointid.simulation.arguments import Controller
 from jointid.simulation.trajectory import Trajectory
 
+_FEWEST = 8  # samples of a recording
 FULLEST_BUS = 0.8  # of its time; more leaves no room for an emergency or a repeated frame
 
 
@@ -30,6 +31,11 @@ def problems_on_paper(
             f"a cycle takes {100.0 * load:.0f} % of the bus, more than {100.0 * FULLEST_BUS:.0f} %; take a "
             "longer period"
         )
+    if trajectory.duration < _FEWEST * period:
+        yield (
+            f"the trajectory lasts {trajectory.duration:g} s; at least {_FEWEST} periods of {period:g} s are expected"
+        )
+        return
     wanted, speed, _ = trajectory.sample(np.arange(0.0, trajectory.duration, period))
     if isinstance(controller, _core.OpenLoop):
         largest = float(np.abs(wanted).max())

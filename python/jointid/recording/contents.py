@@ -161,9 +161,9 @@ def read_contents(
     values = dict(
         zip(found, table.numbers([column.index for column in found.values()]), strict=True)
     )
-    if untold(saved, values):
-        found = {signal: column for signal, column in found.items() if signal != "current"}
-        del values["current"]
+    for missing in untold(saved, values):
+        found = {signal: column for signal, column in found.items() if signal != missing}
+        del values[missing]
     if columns and "velocity" in columns:
         saved.pop("velocity_derived", None)
     if torque_hold is not None:

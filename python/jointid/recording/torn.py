@@ -69,11 +69,20 @@ def ended_before(notes: Mapping[str, Any]) -> str:
     return f"the session ended before its first sample{killed}"
 
 
-def untold(saved: Mapping[str, Any], values: Mapping[str, FloatArray]) -> bool:
-    """Whether a session's drive did not tell its current: the column is there, but not all of its numbers."""
+def untold(saved: Mapping[str, Any], values: Mapping[str, FloatArray]) -> list[str]:
+    """Signals that a session's file has a column for, though nobody told them.
+
+    A current of which not all numbers are there, and a sensor that reads exactly 0 throughout: there is none.
+    """
     metadata = saved.get("metadata")
-    session = isinstance(metadata, Mapping) and metadata.get("session") is True
-    return session and "current" in values and bool(np.isnan(values["current"]).any())
+    if not (isinstance(metadata, Mapping) and metadata.get("session") is True):
+        return []
+    found = []
+    if "current" in values and np.isnan(values["current"]).any():
+        found.append("current")
+    if "sensor" in values and not values["sensor"].any():
+        found.append("sensor")
+    return found
 
 
 def _said(text: str) -> dict[str, Any] | None:

@@ -53,7 +53,11 @@ def emulated_devices(
         position=emulation.position,
         seed=seed,
     )
-    assert joint.torque_constant is not None, "ElmoDrive asks for it"
+    if joint.torque_constant is None:
+        raise InputError(
+            "the joint has no torque_constant, so no torque can be commanded; give it in the joint file under "
+            "[drive]"
+        )
     limit = torque_limit(joint)
     largest = 1e3 if limit is None else limit / (joint.torque_constant * abs(joint.gear_ratio))
     source = bench.drive.torque
