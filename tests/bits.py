@@ -163,4 +163,4 @@ def table() -> Iterator[tuple[str, dict[str, str]]]:
 
 
 if __name__ == "__main__":
-    print(json.dumps(dict(table()), indent=1))
+    print(json.dumps(dict(table()), indent=1))  # noqa: T201
