@@ -9,7 +9,7 @@ import argparse
 import numpy as np
 
 import jointid as jid
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 
 WELL_EXCITED = {
     "coulomb": 25.0,

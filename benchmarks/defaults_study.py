@@ -8,7 +8,7 @@ import argparse
 
 import jointid as jid
 from jointid import _core
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 from jointid.identification.engine import Engine
 from jointid.identification.model_terms import Request, choose_terms
 from jointid.identification.problem import Problem

@@ -18,7 +18,7 @@ from peers.contest import problem_of
 
 import jointid as jid
 from jointid import _core
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 from jointid.identification.search_domain import domain_for
 
 Array = NDArray[np.float64]

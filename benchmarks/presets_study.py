@@ -9,7 +9,7 @@ import argparse
 import numpy as np
 
 import jointid as jid
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 
 TRUTH = {
     "coulomb": 25.0,

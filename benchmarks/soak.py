@@ -7,7 +7,7 @@ import time
 from session_soak import count, resident, soak_sessions
 
 import jointid as jid
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 
 
 def soak_identification(minutes: float) -> bool:

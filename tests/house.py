@@ -88,11 +88,7 @@ GROUPS: dict[str, Group] = {
         packages=set(),
     ),
     "command line": Group(
-        modules={
-            *("cli", "cli_arguments", "cli_commands", "cli_session", "cli_simulation", "cli_study"),
-            "cli_words",
-            *("__main__", "demo", "progress"),
-        },
+        modules={"__main__", "cli."},
         may_use={
             *("core", "recording", "simulation", "analysis", "study", "presentation"),
             *("hardware", "commissioning", "face", "command line"),

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 import jointid as jid
-from jointid.cli import main
-from jointid.demo import data_folder
+from jointid.cli.command_line import main
+from jointid.cli.demo import data_folder
 
 KR300 = str(data_folder() / "kr300_joint1.csv.gz")
 KR300_JOINT = str(data_folder() / "kr300_joint1.toml")

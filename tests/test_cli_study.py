@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 import jointid as jid
-from jointid.cli import main
-from jointid.demo import data_folder
-from jointid.progress import StudyProgress
+from jointid.cli.command_line import main
+from jointid.cli.demo import data_folder
+from jointid.cli.progress import StudyProgress
 from jointid.study.sweeping import StudyStep
 
 WELL = str(data_folder() / "well_excited.csv.gz")

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import jointid as jid
-from jointid.cli import main
-from jointid.cli_words import spoken
-from jointid.demo import data_folder
+from jointid.cli.command_line import main
+from jointid.cli.demo import data_folder
+from jointid.cli.words import spoken
 
 WELL = str(data_folder() / "well_excited.csv.gz")
 PYTHON = re.compile(

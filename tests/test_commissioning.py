@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import jointid as jid
-from jointid.cli import main
+from jointid.cli.command_line import main
 from jointid.commissioning import Commissioning, commission
 from jointid.hardware.bench import Bench
 

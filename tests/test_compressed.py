@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 import jointid as jid
 from jointid import _core
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 from jointid.identification.engine import Engine, Outcome
 from jointid.identification.model_terms import Request, choose_terms
 from jointid.identification.problem import Problem

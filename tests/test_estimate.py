@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 
 matplotlib.use("Agg")
 

@@ -13,7 +13,7 @@ import pytest
 
 import jointid as jid
 from jointid import _core
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 
 CHOICES: dict[str, list[str]] = {
     "coding": ["real", "binary"],
@@ -32,7 +32,7 @@ SHORT = jid.GaOptions(population=12, generations=40, tolerance=0.0)
 PENALTY = """
 import numpy as np
 from jointid import _core
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 
 def penalty_of(frequency):
     time = np.arange(2001) * 1e-3

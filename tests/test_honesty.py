@@ -11,7 +11,7 @@ from defects import DEFECTS, changed, degrees, late_velocity
 from simulated_joint import TRUTH, simulate
 
 import jointid as jid
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 from jointid.estimate.findings import Warned
 from jointid.identification.motion_checks import _sensor_lag, _timing_errors
 

@@ -47,9 +47,9 @@ CLEAN = {
     "python/jointid/plotting.py": (
         "from .identification import identify\ndef draw():\n    import matplotlib.pyplot\n"
     ),
-    "python/jointid/cli.py": (
+    "python/jointid/cli/command_line.py": (
         "import jointid\n"
-        "def main():\n    from .plotting import draw\n    from .hardware import bus\n"
+        "def main():\n    from ..plotting import draw\n    from ..hardware import bus\n"
     ),
     "python/jointid/hardware/__init__.py": "from .bus import Bus\n",
     "python/jointid/hardware/bus.py": (
@@ -127,7 +127,7 @@ def test_a_forbidden_include_is_found(tmp_path: Path, file: str, line: str, comp
             "imports scipy with the module",
         ),
         ("plotting.py", "from matplotlib import pyplot", "imports matplotlib with the module"),
-        ("cli.py", "from jointid.hardware import bus", "with the module"),
+        ("cli/command_line.py", "from jointid.hardware import bus", "with the module"),
         ("__init__.py", "from . import hardware", "with the module"),
         ("sweeping.py", "", "module 'sweeping' is unknown"),
         ("recording.py", "from .sweeping import sweep", "unknown to tests/house.py"),

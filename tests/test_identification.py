@@ -8,7 +8,7 @@ from reference import window_least_squares
 
 import jointid as jid
 from jointid import _core
-from jointid.demo import NOMINAL, data_folder, demonstrate
+from jointid.cli.demo import NOMINAL, data_folder, demonstrate
 
 TRUTH = {
     "coulomb": 25.0,

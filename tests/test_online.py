@@ -8,7 +8,7 @@ from online_feeding import blocks, fed, shifted
 from simulated_joint import TRUTH, simulate
 
 import jointid as jid
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 from jointid.identification.model_terms import Request
 from jointid.online.settings import Settings
 from jointid.online.sliding import Sliding

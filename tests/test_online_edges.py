@@ -9,7 +9,7 @@ import pytest
 from online_feeding import blocks
 
 import jointid as jid
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 
 
 @pytest.fixture(scope="module")
@@ -91,7 +91,7 @@ def test_the_first_update_loads_no_module() -> None:
     program = """
 import sys
 import jointid as jid
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 part = jid.load(data_folder() / "well_excited.csv.gz").crop(0.0, 3.0)
 signals = {name: getattr(part, name) for name in part.signals}
 with jid.OnlineIdentifier(jid.thesis_joint()) as identifier:

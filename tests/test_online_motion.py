@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from online_feeding import fed
 
 import jointid as jid
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 from jointid.online import sliding
 from jointid.online.plan import Plan, make_plan
 from jointid.online.settings import Settings

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 
 
 def moving(noise: float = 0.0, sign: float = 1.0) -> jid.Recording:

@@ -24,7 +24,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 import jointid as jid
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 
 
 @pytest.fixture(scope="module")

@@ -18,7 +18,7 @@ import pytest
 
 import jointid as jid
 from jointid import _core
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 from jointid.study.row import Row
 
 GRID = {"ga.population": [8, 12], "ga.generations": [5, 15]}
@@ -531,7 +531,7 @@ def test_a_file_that_is_no_study_is_refused(content: bytes, tmp_path: Path) -> N
 _LONG = """
 import sys
 import jointid as jid
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 recording = jid.load(data_folder() / "well_excited.csv.gz")
 try:
     jid.sweep(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 
 TRUTH = {
     "coulomb": 25.0,

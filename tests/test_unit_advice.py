@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 
 
 def written(folder: Path, position: str, velocity: str, *, both: bool = False) -> Path:

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 import jointid as jid
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 from jointid.reporting import save_report
 
 PATH = data_folder() / "well_excited.csv.gz"

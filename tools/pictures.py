@@ -8,7 +8,7 @@ matplotlib.use("Agg")
 from matplotlib import pyplot
 
 import jointid as jid
-from jointid.demo import data_folder, demonstrate
+from jointid.cli.demo import data_folder, demonstrate
 from jointid.plotting import style
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "pictures"

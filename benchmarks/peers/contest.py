@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 import jointid as jid
 from jointid import _core
-from jointid.demo import data_folder
+from jointid.cli.demo import data_folder
 from jointid.identification.model_terms import Request, choose_terms
 from jointid.identification.problem import Problem
 from jointid.identification.search_domain import domain_for

@@ -2,7 +2,7 @@
 
 import sys
 
-from jointid.cli import main
+from jointid.cli.command_line import main
 
 if __name__ == "__main__":
     sys.exit(main())

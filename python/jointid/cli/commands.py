@@ -7,11 +7,11 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointid.cli_arguments import check_outputs, check_page, fixed_values, load_all
-from jointid.cli_session import emulate, run
-from jointid.cli_simulation import simulate
-from jointid.cli_study import sweep
-from jointid.cli_words import spoken
+from jointid.cli.arguments import check_outputs, check_page, fixed_values, load_all
+from jointid.cli.session import emulate, run
+from jointid.cli.simulation import simulate
+from jointid.cli.study import sweep
+from jointid.cli.words import spoken
 
 __all__ = ["compare", "demo", "emulate", "identify", "info", "report", "run", "simulate", "sweep"]
 
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 def demo(arguments: argparse.Namespace) -> None:
     """Identify the joint that ships with the package."""
-    from jointid.demo import demonstrate
-    from jointid.progress import Progress
+    from jointid.cli.demo import demonstrate
+    from jointid.cli.progress import Progress
     from jointid.reporting import save_report
 
     with Progress(enabled=not arguments.quiet) as progress:
@@ -50,9 +50,9 @@ def demo(arguments: argparse.Namespace) -> None:
 def identify(arguments: argparse.Namespace) -> None:
     """Identify a joint from one recording or several."""
     from jointid._core import GaOptions
+    from jointid.cli.progress import Progress
     from jointid.comparison.model_spec import ModelSpec
     from jointid.identification import identification
-    from jointid.progress import Progress
 
     changes = fixed_values(arguments)
     check_outputs(arguments)
@@ -90,8 +90,8 @@ def identify(arguments: argparse.Namespace) -> None:
 
 def compare(arguments: argparse.Namespace) -> None:
     """Compare models by how well they predict held-out motion."""
+    from jointid.cli.progress import ComparisonProgress
     from jointid.comparison.comparison import compare_models
-    from jointid.progress import ComparisonProgress
 
     changes = fixed_values(arguments)
     check_outputs(arguments)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from jointid.cli_arguments import BAD_USAGE, check_distinct, parser
+from jointid.cli.arguments import BAD_USAGE, check_distinct, parser
 
 DONE, BAD_INPUT, INTERRUPTED = 0, BAD_USAGE, 130
 
@@ -22,7 +22,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     if arguments.command is None:
         grammar.print_help()
         return DONE
-    from jointid import cli_commands
+    from jointid.cli import commands as cli_commands
 
     try:
         check_distinct(arguments)
@@ -43,6 +43,6 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _one_line(error: Exception) -> str:
     if isinstance(error, OSError) and error.filename is not None:
         return f"{error.filename}: {error.strerror}"
-    from jointid.cli_words import spoken
+    from jointid.cli.words import spoken
 
     return spoken(" ".join(str(error).split()))

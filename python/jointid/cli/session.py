@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointid.cli_arguments import TEXT, whole_seed
+from jointid.cli.arguments import TEXT, whole_seed
 
 if TYPE_CHECKING:
     from jointid.commissioning import Commissioning
@@ -161,7 +161,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _check(arguments: argparse.Namespace) -> None:
     """Refuse before the joint moves what cannot be written afterwards."""
-    from jointid.cli_arguments import check_folder
+    from jointid.cli.arguments import check_folder
     from jointid.errors import InputError
 
     if arguments.cycles < 1:

@@ -33,9 +33,9 @@ def parser() -> argparse.ArgumentParser:
     )
     main_parser.add_argument("--version", action="store_true", help="print the version and exit")
     commands = main_parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=_Parser)
-    from jointid.cli_session import add_emulate, add_run
-    from jointid.cli_simulation import add_simulate
-    from jointid.cli_study import add_sweep
+    from jointid.cli.session import add_emulate, add_run
+    from jointid.cli.simulation import add_simulate
+    from jointid.cli.study import add_sweep
 
     for add in (_add_demo, _add_identify, _add_compare, add_simulate, add_sweep, add_run):
         add(commands)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointid.cli_arguments import TEXT, check_folder, number_or_text, pair, whole_seed
+from jointid.cli.arguments import TEXT, check_folder, number_or_text, pair, whole_seed
 
 if TYPE_CHECKING:
     from jointid.simulation.arguments import Controller

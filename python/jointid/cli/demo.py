@@ -28,7 +28,7 @@ def data_folder() -> Path:
     installed = Path(str(files("jointid"))) / "data"
     if installed.is_dir():
         return installed
-    return Path(__file__).resolve().parents[2] / "examples" / "data"  # run from the source folder
+    return Path(__file__).resolve().parents[3] / "examples" / "data"  # run from the source folder
 
 
 def demonstrate(callback: Callable[[Generation], bool | None] | None = None) -> Demonstration:

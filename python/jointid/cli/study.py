@@ -9,7 +9,7 @@ from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointid.cli_arguments import (
+from jointid.cli.arguments import (
     TEXT,
     check_folder,
     fixed_values,
@@ -19,7 +19,7 @@ from jointid.cli_arguments import (
     reading_arguments,
     whole_seed,
 )
-from jointid.cli_simulation import scenario_arguments, scenario_of
+from jointid.cli.simulation import scenario_arguments, scenario_of
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -104,9 +104,9 @@ def add_sweep(commands: Any) -> None:
 
 def sweep(arguments: argparse.Namespace) -> None:
     """Identify with many settings."""
+    from jointid.cli.progress import StudyProgress
     from jointid.errors import InputError
     from jointid.joint.joint import Joint
-    from jointid.progress import StudyProgress
     from jointid.study import sweeping
 
     for option in ("output", "table", "plot"):

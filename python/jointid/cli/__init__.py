@@ -1,0 +1,5 @@
+"""The command line: `jointid COMMAND`."""
+
+from jointid.cli.command_line import main
+
+__all__ = ["main"]
