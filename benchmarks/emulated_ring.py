@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from jointid import AdaptiveRobust
+from jointid.base.files import write_whole
 from jointid.commissioning import commission
-from jointid.files import write_whole
 from jointid.hardware.bench import Bench
 from jointid.hardware.torque_source import AnalogInput
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 import jointid as jid
-from jointid.files import write_whole
+from jointid.base.files import write_whole
 
 TRUTH = {
     "coulomb": 25.0,

@@ -15,7 +15,7 @@ from pathlib import Path
 from scipy.integrate import solve_ivp
 
 import jointid as jid
-from jointid.files import write_whole
+from jointid.base.files import write_whole
 
 TRUTH = {"coulomb": 25.0, "static": 20.0, "stribeck": 100.0, "viscous": 20.0}
 SENSOR = {"sensor_gain": 2.4, "sensor_offset": 15.0}

@@ -40,7 +40,7 @@ class Group:
 GROUPS: dict[str, Group] = {
     "core": Group(modules={"_core"}, may_use=set(), packages=set()),
     "recording": Group(
-        modules={"errors", "files", "given", "recording.", "joint."},
+        modules={"base.", "recording.", "joint."},
         may_use={"core"},
         packages={"numpy", "scipy", "pandas", "pyarrow", "tomlkit"},
     ),
@@ -56,10 +56,7 @@ GROUPS: dict[str, Group] = {
         packages={"numpy", "pandas", "pyarrow"},
     ),
     "presentation": Group(
-        modules={
-            *("plotting", "plotting_friction", "plotting_motion", "plotting_search"),
-            *("plotting_study", "plotting_style", "reporting"),
-        },
+        modules={"plot.", "report."},
         may_use={"core", "recording", "simulation", "analysis", "study"},
         packages={"numpy", "matplotlib"},
     ),
@@ -75,7 +72,7 @@ GROUPS: dict[str, Group] = {
         packages={"numpy", "can", "canopen"},
     ),
     "commissioning": Group(
-        modules={"commissioning", "commissioning_report"},
+        modules={"commissioning."},
         may_use={"core", "recording", "simulation", "analysis", "hardware"},
         packages={"numpy"},
     ),

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.recording.loading import load
 
 N = 10

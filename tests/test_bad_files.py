@@ -25,7 +25,7 @@ from recording_files import (
     written,
 )
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.recording.loading import load
 from jointid.recording.recording import Recording
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import can
 import pytest
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware import bus as bus_module
 from jointid.hardware.bus import needed_identifiers, open_bus
 from jointid.hardware.elmo_options import ElmoOptions

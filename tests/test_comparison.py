@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
+from jointid.base.errors import InputError
 from jointid.cli.demo import data_folder
 from jointid.cli.progress import ComparisonProgress
 from jointid.comparison.comparison import ComparisonStep
@@ -15,7 +16,6 @@ from jointid.comparison.comparison_result import ComparedModel
 from jointid.comparison.held_out import folds_by_block, folds_by_recording
 from jointid.comparison.model_spec import ModelSpec
 from jointid.comparison.parsimony import judge
-from jointid.errors import InputError
 
 
 def simulated(seed: int, *, seconds: float = 10.0, static: float = 0.0) -> jid.Recording:

@@ -35,21 +35,21 @@ CLEAN = {
         "from . import _core\n"
         "def __getattr__(name):\n    from jointid import hardware\n    return hardware\n"
     ),
-    "python/jointid/errors.py": "class InputError(ValueError): pass\n",
+    "python/jointid/base/errors.py": "class InputError(ValueError): pass\n",
     "python/jointid/recording.py": (
-        "from typing import TYPE_CHECKING\nimport numpy as np\nfrom .errors import InputError\n"
+        "from typing import TYPE_CHECKING\nimport numpy as np\nfrom .base.errors import InputError\n"
         "if TYPE_CHECKING:\n    import pandas\n"
     ),
     "python/jointid/identification.py": (
         "from jointid import _core\nfrom jointid.recording import Recording\n"
         "def identify():\n    from scipy import stats\n    return stats\n"
     ),
-    "python/jointid/plotting.py": (
-        "from .identification import identify\ndef draw():\n    import matplotlib.pyplot\n"
+    "python/jointid/plot/estimate.py": (
+        "from ..identification import identify\ndef draw():\n    import matplotlib.pyplot\n"
     ),
     "python/jointid/cli/command_line.py": (
         "import jointid\n"
-        "def main():\n    from ..plotting import draw\n    from ..hardware import bus\n"
+        "def main():\n    from ..plot.estimate import draw\n    from ..hardware import bus\n"
     ),
     "python/jointid/hardware/__init__.py": "from .bus import Bus\n",
     "python/jointid/hardware/bus.py": (
@@ -100,7 +100,7 @@ def test_a_forbidden_include_is_found(tmp_path: Path, file: str, line: str, comp
         ("recording.py", "from jointid.identification import identify", "recording may use core"),
         ("recording.py", "from jointid import identification", "recording may use core"),
         ("recording.py", "def f():\n    from . import cli", "recording may use core"),
-        ("recording.py", "import jointid.plotting", "recording may use core"),
+        ("recording.py", "import jointid.plot.estimate", "recording may use core"),
         ("recording.py", "import jointid", "jointid.__init__ (face)"),
         ("recording.py", "from jointid import identify", "jointid.__init__ (face)"),
         (
@@ -109,12 +109,16 @@ def test_a_forbidden_include_is_found(tmp_path: Path, file: str, line: str, comp
             "analysis may use core, recording",
         ),
         ("identification.py", "def f():\n    import jointid.hardware.bus", "analysis may use"),
-        ("identification.py", "from .plotting import draw", "analysis may use core, recording"),
+        (
+            "identification.py",
+            "from .plot.estimate import draw",
+            "analysis may use core, recording",
+        ),
         ("hardware/bus.py", "from ..identification import identify", "hardware may use core"),
-        ("hardware/bus.py", "def f():\n    from jointid import plotting", "hardware may use core"),
+        ("hardware/bus.py", "def f():\n    from jointid import plot", "hardware may use core"),
         ("recording.py", "import can", "packages allowed in recording"),
         ("recording.py", "import requests", "packages allowed in recording"),
-        ("plotting.py", "def f():\n    import scipy", "packages allowed in presentation"),
+        ("plot/estimate.py", "def f():\n    import scipy", "packages allowed in presentation"),
         ("recording.py", "import pandas as pd", "imports pandas with the module"),
         (
             "recording.py",
@@ -126,7 +130,7 @@ def test_a_forbidden_include_is_found(tmp_path: Path, file: str, line: str, comp
             "class A:\n    from scipy import stats",
             "imports scipy with the module",
         ),
-        ("plotting.py", "from matplotlib import pyplot", "imports matplotlib with the module"),
+        ("plot/estimate.py", "from matplotlib import pyplot", "imports matplotlib with the module"),
         ("cli/command_line.py", "from jointid.hardware import bus", "with the module"),
         ("__init__.py", "from . import hardware", "with the module"),
         ("sweeping.py", "", "module 'sweeping' is unknown"),

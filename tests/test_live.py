@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from session_bench import devices, session
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware.drive import DriveSample
 from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.live import ConsoleLine, Observers, console_line

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from recording_files import ROWS, N, column, lines, npz, refusal, written
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.recording.loading import load
 from jointid.recording.recording import Recording
 

@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from jointid.base.errors import InputError
 from jointid.comparison.model_spec import ModelSpec, specified
-from jointid.errors import InputError
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.joint.parameters import Parameter, merge, parameter_table
 
 NAMES = st.sampled_from(_core.parameter_names())

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from session_bench import devices, session
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware import realtime
 from jointid.hardware.clock import MonotonicClock
 from jointid.hardware.emulated.bus import EmulatedBus

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.recording.loading import load
 from jointid.recording.recording import Recording
 from jointid.recording.signals import SIGNALS

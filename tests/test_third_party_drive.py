@@ -10,7 +10,7 @@ import pytest
 from session_bench import PERIOD
 
 import jointid as jid
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware.drive import Drive, DriveFaultError, DriveSample
 from jointid.hardware.limits import SessionLimits
 from jointid.hardware.session import (

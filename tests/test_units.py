@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.recording.units import UNITS, find_unit, unit_named, unit_names
 
 

@@ -9,7 +9,7 @@ from matplotlib import pyplot
 
 import jointid as jid
 from jointid.cli.demo import data_folder, demonstrate
-from jointid.plotting import style
+from jointid.plot import style
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "pictures"
 

@@ -20,7 +20,7 @@ except ModuleNotFoundError as error:
         name=error.name,
     ) from error
 
-from jointid import plotting as plot
+from jointid import plot
 from jointid._core import (
     AdaptiveRobust,
     CompensatedPid,
@@ -33,10 +33,10 @@ from jointid._core import (
     Sensors,
     WindowOptions,
 )
+from jointid.base.errors import InputError
 from jointid.comparison.comparison import compare_models
 from jointid.comparison.comparison_result import Comparison
 from jointid.comparison.model_spec import ModelSpec
-from jointid.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.identification.identification import identify
 from jointid.joint.joint import Joint
@@ -57,7 +57,8 @@ from jointid.study.study_result import Study
 from jointid.study.sweeping import StudyBrokenError, StudyInterruptedError, StudyStep, sweep
 
 if TYPE_CHECKING:
-    from jointid import commissioning, hardware
+    from jointid import hardware
+    from jointid.commissioning import ring as commissioning
 
 __version__ = _core.__version__
 

@@ -279,7 +279,7 @@ def fixed_values(arguments: argparse.Namespace) -> dict[str, float]:
 
 
 def _numbers(option: str, pairs: Sequence[tuple[str, str]]) -> dict[str, float]:
-    from jointid.errors import InputError
+    from jointid.base.errors import InputError
 
     numbers: dict[str, float] = {}
     for name, value in pairs:
@@ -298,7 +298,7 @@ def check_outputs(arguments: argparse.Namespace) -> None:
     InputError
         Another extension than .toml or .json, or a folder that does not exist.
     """
-    from jointid.errors import InputError
+    from jointid.base.errors import InputError
 
     save = arguments.save
     if save is not None and save.suffix not in (".toml", ".json"):
@@ -324,7 +324,7 @@ def check_distinct(arguments: argparse.Namespace) -> None:
     InputError
         An output is one of the inputs.
     """
-    from jointid.errors import InputError
+    from jointid.base.errors import InputError
 
     for written in _WRITTEN:
         output = getattr(arguments, written, None)
@@ -349,7 +349,7 @@ def check_page(option: str, path: Path | None) -> None:
     InputError
         Another extension, or no such folder.
     """
-    from jointid.errors import InputError
+    from jointid.base.errors import InputError
 
     if path is not None and path.suffix.lower() not in (".html", ".htm"):
         raise InputError(f"{option} {path}: a report is a page, .html")
@@ -364,7 +364,7 @@ def check_folder(option: str, path: Path | None) -> None:
     InputError
         There is no such folder.
     """
-    from jointid.errors import InputError
+    from jointid.base.errors import InputError
 
     if path is not None and not path.parent.is_dir():
         raise InputError(f"{option} {path}: the folder {path.parent} does not exist")

@@ -25,7 +25,7 @@ def demo(arguments: argparse.Namespace) -> None:
     """Identify the joint that ships with the package."""
     from jointid.cli.demo import demonstrate
     from jointid.cli.progress import Progress
-    from jointid.reporting import save_report
+    from jointid.report.html import save_report
 
     with Progress(enabled=not arguments.quiet) as progress:
         demonstration = demonstrate(callback=progress)
@@ -118,9 +118,9 @@ def compare(arguments: argparse.Namespace) -> None:
 
 def report(arguments: argparse.Namespace) -> None:
     """Write the HTML report of a saved estimate."""
-    from jointid.errors import InputError
+    from jointid.base.errors import InputError
     from jointid.estimate.estimate import Estimate
-    from jointid.reporting import save_report
+    from jointid.report.html import save_report
 
     path = arguments.estimate
     check_page("--output", arguments.output)
@@ -168,7 +168,7 @@ def _joint(arguments: argparse.Namespace) -> Joint | None:
 
 
 def _write(estimate: Estimate, arguments: argparse.Namespace) -> None:
-    from jointid.reporting import save_report
+    from jointid.report.html import save_report
 
     if arguments.report is not None:
         save_report(estimate, arguments.report)

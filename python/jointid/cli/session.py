@@ -80,7 +80,7 @@ def emulate(arguments: argparse.Namespace) -> int:
     import math
     import time
 
-    from jointid.errors import InputError
+    from jointid.base.errors import InputError
     from jointid.hardware.bench import Bench
     from jointid.hardware.bus import open_whole_bus
     from jointid.hardware.emulated.bench import emulated_devices
@@ -107,9 +107,9 @@ def emulate(arguments: argparse.Namespace) -> int:
 
 def run(arguments: argparse.Namespace) -> int:
     """Close the ring on a bench; returns the exit code."""
+    from jointid.base.errors import InputError
+    from jointid.base.files import write_whole
     from jointid.commissioning import bench_drive, commission
-    from jointid.errors import InputError
-    from jointid.files import write_whole
     from jointid.hardware.bench import Bench
     from jointid.hardware.session import Session, SessionRefusedError, SessionStoppedError
 
@@ -161,8 +161,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _check(arguments: argparse.Namespace) -> None:
     """Refuse before the joint moves what cannot be written afterwards."""
+    from jointid.base.errors import InputError
     from jointid.cli.arguments import check_folder
-    from jointid.errors import InputError
 
     if arguments.cycles < 1:
         raise InputError(f"--cycles is {arguments.cycles}; at least 1 is expected")
@@ -224,14 +224,14 @@ def _write(result: Commissioning, folder: Path) -> None:
     mpl.use("Agg")
     from matplotlib import pyplot
 
-    from jointid import plotting_motion
-    from jointid.files import write_whole
-    from jointid.plotting_style import style
-    from jointid.reporting import save_report
+    from jointid.base.files import write_whole
+    from jointid.plot.appearance import style
+    from jointid.plot.motion import tracking_error
+    from jointid.report.html import save_report
 
     with style():
         figure, axes = pyplot.subplots(figsize=(8.0, 4.5))
-        plotting_motion.tracking_error(result.recordings(), axes)
+        tracking_error(result.recordings(), axes)
         figure.savefig(folder / "tracking_error.png", dpi=150, bbox_inches="tight")
         pyplot.close(figure)
     save_report(result.estimates[-1], folder / "report.html")

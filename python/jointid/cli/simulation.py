@@ -87,7 +87,7 @@ def scenario_arguments(command: argparse.ArgumentParser) -> None:
 
 def simulate(arguments: argparse.Namespace) -> None:
     """Simulate a joint, and write what its sensors saw."""
-    from jointid.errors import InputError
+    from jointid.base.errors import InputError
 
     check_folder("--output", arguments.output)
     scenario = scenario_of(arguments.joint, arguments)
@@ -134,7 +134,7 @@ def scenario_of(joint_file: Path, arguments: argparse.Namespace) -> Scenario:
         Anything that cannot be used.
     """
     from jointid._core import Sensors
-    from jointid.errors import InputError
+    from jointid.base.errors import InputError
     from jointid.joint.joint import Joint
     from jointid.simulation.scenario import Scenario
 
@@ -169,7 +169,7 @@ def scenario_of(joint_file: Path, arguments: argparse.Namespace) -> Scenario:
 
 def _controller(word: str, gains: Sequence[tuple[str, str]]) -> Controller:
     from jointid import _core
-    from jointid.errors import InputError
+    from jointid.base.errors import InputError
     from jointid.joint.parameters import suggestion
 
     if word not in CONTROLLERS:
@@ -194,7 +194,7 @@ def trajectory_of(text: str) -> Trajectory:
     InputError
         No such trajectory, option or file.
     """
-    from jointid.errors import InputError
+    from jointid.base.errors import InputError
     from jointid.recording.loading import load
     from jointid.simulation.trajectory import Trajectory
 
@@ -221,7 +221,7 @@ def trajectory_of(text: str) -> Trajectory:
 
 def _values(option: str, pairs: Sequence[tuple[str, str]]) -> dict[str, Any]:
     """Numbers, angles such as 60deg, true and false, words."""
-    from jointid.errors import InputError
+    from jointid.base.errors import InputError
 
     values: dict[str, Any] = {}
     for name, text in pairs:

@@ -104,8 +104,8 @@ def add_sweep(commands: Any) -> None:
 
 def sweep(arguments: argparse.Namespace) -> None:
     """Identify with many settings."""
+    from jointid.base.errors import InputError
     from jointid.cli.progress import StudyProgress
-    from jointid.errors import InputError
     from jointid.joint.joint import Joint
     from jointid.study import sweeping
 
@@ -153,7 +153,7 @@ def sweep(arguments: argparse.Namespace) -> None:
 @contextmanager
 def _told(arguments: argparse.Namespace) -> Iterator[None]:
     """What is left of a sweep that ended early, and how to go on."""
-    from jointid.errors import InputError
+    from jointid.base.errors import InputError
     from jointid.study.sweeping import StudyBrokenError, StudyInterruptedError
 
     if arguments.output is None:
@@ -170,7 +170,7 @@ def _told(arguments: argparse.Namespace) -> Iterator[None]:
 
 
 def _write(study: Study, arguments: argparse.Namespace) -> None:
-    from jointid.plotting_study import sweep as draw
+    from jointid.plot.study import sweep as draw
 
     if arguments.table is not None:
         study.save(arguments.table)
@@ -186,7 +186,7 @@ def _write(study: Study, arguments: argparse.Namespace) -> None:
 
 
 def _workers(count: int | None) -> Executor | nullcontext[None]:
-    from jointid.errors import InputError
+    from jointid.base.errors import InputError
 
     if count is None:
         return nullcontext()
@@ -200,7 +200,7 @@ def _workers(count: int | None) -> Executor | nullcontext[None]:
 
 
 def _grid(pairs: list[tuple[str, str]]) -> dict[str, list[Any]]:
-    from jointid.errors import InputError
+    from jointid.base.errors import InputError
 
     grid: dict[str, list[Any]] = {}
     for name, values in pairs:

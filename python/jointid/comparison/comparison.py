@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from jointid import _core
+from jointid.base.errors import InputError
 from jointid.comparison.comparison_result import ComparedModel, Comparison
 from jointid.comparison.held_out import Fold, folds_by_block, folds_by_recording
 from jointid.comparison.model_spec import ModelSpec, specified
 from jointid.comparison.parsimony import judge, refusal
-from jointid.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.identification.identification import identify
 from jointid.identification.problem import Windows, listed

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from jointid.errors import InputError
+from jointid.base.argument_checks import require_kind, require_path
+from jointid.base.errors import InputError
 from jointid.estimate.findings import (
     Convergence,
     FrictionCurve,
@@ -20,7 +21,6 @@ from jointid.estimate.findings import (
     Warned,
     WindowTable,
 )
-from jointid.given import given_kind, given_path
 
 if TYPE_CHECKING:
     from jointid.joint.joint import Joint
@@ -137,7 +137,7 @@ class Estimate:
         """
         from jointid.estimate.estimate_json import read_estimate
 
-        given_kind("text", text, str)
+        require_kind("text", text, str)
         return read_estimate(text)
 
     def save(self, path: str | Path) -> None:
@@ -150,9 +150,9 @@ class Estimate:
         InputError
             Another extension, or an existing joint file that cannot be read.
         """
-        from jointid.files import write_whole
+        from jointid.base.files import write_whole
 
-        path = given_path("path", path)
+        path = require_path("path", path)
         if path.suffix == ".toml":
             self.joint.save(path)
         elif path.suffix == ".json":

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import (
     Convergence,

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware.elmo_options import ElmoOptions
 from jointid.hardware.limits import SessionLimits
 from jointid.hardware.realtime import RealTimeOptions

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware.bench import Bench, BusOptions, Emulation, joint_with_truth
 from jointid.hardware.elmo_options import ElmoOptions
 from jointid.hardware.limits import SessionLimits

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware import canopen_frames as canopen
 from jointid.hardware.elmo_options import ElmoOptions
 from jointid.hardware.torque_source import SyncedConverter

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Protocol
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 
 
 class Clock(Protocol):

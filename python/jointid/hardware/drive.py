@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware.clock import Clock
 
 FAULT_KINDS = (

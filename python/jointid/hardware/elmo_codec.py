@@ -11,7 +11,7 @@ import re
 import struct
 from dataclasses import dataclass
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware.elmo_errors import error_meaning
 
 _QUERY_OR_ERROR, _FLOAT = 0x40, 0x80

@@ -8,7 +8,7 @@ from typing import Any
 
 import can
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware import canopen_frames as canopen
 from jointid.hardware.bus_errors import error_frame_meaning
 from jointid.hardware.clock import Clock, MonotonicClock

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware.torque_source import AnalogInput, SyncedConverter
 from jointid.joint.joint import Joint
 

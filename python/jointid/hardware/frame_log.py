@@ -9,7 +9,7 @@ from typing import Any
 
 import can
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.recording.reasons import reason_of
 
 ENDINGS = (".log", ".asc", ".blf")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.joint.joint import Joint
 from jointid.simulation.plant import torque_limit
 

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Self
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware.drive import DriveSample
 
 POINT = struct.Struct("<5d")  # time, position, reference [rad], torque [N·m], reading

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware import canopen_frames as canopen
 from jointid.hardware.elmo_codec import Command, DriveError, Reply
 from jointid.hardware.elmo_decoder import ElmoDecoder

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 
 _LOCK_CURRENT, _LOCK_FUTURE = 1, 2  # MCL_*
 _SET_TIMER_SLACK, _GET_TIMER_SLACK = 29, 30  # PR_*

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware.appended_file import AppendedFile, Syncing, sync_folder
 from jointid.recording.saving import CSV_MARK, SCHEMA
 from jointid.recording.torn import CLOSING, OPENING

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware.cycle import held_torque, target_at
 from jointid.hardware.elmo_options import ElmoOptions
 from jointid.hardware.elmo_timing import command_latency

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware.drive import Drive, DriveEnd, DriveFaultError, check_drive
 from jointid.hardware.following import Course, Follower, Observer, unwritten
 from jointid.hardware.guard import Guard

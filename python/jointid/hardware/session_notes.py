@@ -12,7 +12,7 @@ import can
 import numpy as np
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware.drive import Drive
 from jointid.hardware.elmo_options import ElmoOptions
 from jointid.hardware.limits import SessionLimits

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

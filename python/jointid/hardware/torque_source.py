@@ -6,7 +6,7 @@ import math
 import struct
 from dataclasses import dataclass, field
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

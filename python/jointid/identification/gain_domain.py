@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 
 # A gain lies within this factor of what least squares finds: in a motion that is mostly friction, with
 # none of its shapes quite right, that may be far off ...

@@ -8,10 +8,10 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.argument_checks import require_kind
+from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Prediction
-from jointid.given import given_kind
 from jointid.identification.inference import r_squared, relative_residual
 from jointid.identification.model_terms import TermChoice
 from jointid.identification.prepared import prepare
@@ -146,7 +146,7 @@ def identify(
 
 def predict(estimate: Estimate, recording: Recording) -> Prediction:
     """Hold an estimate against a recording: see `Estimate.predict`."""
-    given_kind("recording", recording, Recording)
+    require_kind("recording", recording, Recording)
     settings = estimate.settings
     choice = TermChoice(
         terms=tuple(settings["terms"]),

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.identification.engine import Outcome
 from jointid.identification.inference import infer

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.estimate.findings import WindowTable
 from jointid.identification.model_terms import TermChoice
 from jointid.joint.joint import Joint

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.estimate.findings import Warned
 from jointid.estimate.wording import percent
 from jointid.identification.facts import Facts

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.argument_checks import require_path
+from jointid.base.errors import InputError
+from jointid.base.files import write_whole
 from jointid.estimate.findings import Convergence
-from jointid.files import write_whole
-from jointid.given import given_path
 from jointid.identification.engine import Engine, Outcome
 from jointid.identification.search_domain import SearchDomain
 
@@ -59,7 +59,7 @@ class Search:
             )
         for name in ("checkpoint", "resume"):
             if getattr(self, name) is not None:
-                given_path(name, getattr(self, name))
+                require_path(name, getattr(self, name))
         if self.callback is not None and not callable(self.callback):
             raise InputError(f"callback must be callable, got {self.callback!r}")
         if self.method != "ga" and (self.checkpoint is not None or self.resume is not None):

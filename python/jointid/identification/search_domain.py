@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.errors import InputError
-from jointid.given import given_mapping
+from jointid.base.argument_checks import require_mapping
+from jointid.base.errors import InputError
 from jointid.identification.gain_domain import GainGuess, around, guess_gain
 from jointid.identification.inner_products import size
 from jointid.joint.joint import Joint
@@ -257,7 +257,7 @@ def parameter_bounds(
         The call names a parameter that is not among them, or bounds that cannot be.
     """
     if changes is not None:
-        given_mapping("parameters", changes, "{'coulomb': {'max': 50.0}}")
+        require_mapping("parameters", changes, "{'coulomb': {'max': 50.0}}")
     table = merge(_known_values(joint), joint.parameters if joint is not None else {})
     table = merge(
         table, {name: _freed(table, name, entry) for name, entry in (changes or {}).items()}

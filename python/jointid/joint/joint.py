@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.errors import InputError
-from jointid.given import given_mapping
+from jointid.base.argument_checks import require_mapping
+from jointid.base.errors import InputError
 from jointid.joint.link import GravityCoefficients, Limits, Link
 from jointid.joint.parameters import (
     FieldError,
@@ -226,7 +226,7 @@ class Joint:
         InputError
             An unknown parameter, no finite number, or a value outside the parameter's bounds.
         """
-        given_mapping("values", values, "{'coulomb': 25.0}")
+        require_mapping("values", values, "{'coulomb': 25.0}")
         table = merge(self.parameters, {name: {"value": value} for name, value in values.items()})
         for name in values:
             finite_number(f"parameter '{name}'", "value", table[name].value)

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from jointid import _core
-from jointid.errors import InputError
-from jointid.files import write_whole
-from jointid.given import given_path
+from jointid.base.argument_checks import require_path
+from jointid.base.errors import InputError
+from jointid.base.files import write_whole
 from jointid.joint.joint import Joint
 from jointid.joint.link import Limits, Link
 from jointid.joint.parameters import (
@@ -59,13 +59,13 @@ def read_document(path: str | os.PathLike[str]) -> dict[str, Any]:
     InputError
         No such file, or not TOML.
     """
-    place = given_path("path", path)
+    place = require_path("path", path)
     return _parsed(_text(place), place)
 
 
 def save_joint(joint: Joint, path: str | os.PathLike[str]) -> None:
     """Write a joint file: see `Joint.save`."""
-    place = given_path("path", path)
+    place = require_path("path", path)
     if not place.parent.is_dir():
         raise InputError(f"{place}: the folder '{place.parent}' does not exist; create it first")
     before = _text(place) if place.exists() else ""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.recording.signals import closest
 
 

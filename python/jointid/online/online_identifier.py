@@ -10,7 +10,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.estimate.student import quantile
 from jointid.identification.model_terms import Request
 from jointid.joint.joint import Joint

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.identification.model_terms import choose_terms
 from jointid.identification.problem import Problem
 from jointid.identification.search_domain import SearchDomain, domain_for

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 
 Array = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.identification.model_terms import Request, TermChoice, choose_terms
 from jointid.identification.problem import Problem, output_torque
 from jointid.identification.search_domain import parameter_bounds

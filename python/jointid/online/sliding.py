@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.identification.covariance import parameter_covariance
 from jointid.identification.inference import freedom_of, joint_of, parameters_of
 from jointid.identification.inner_products import columns_with, size

@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.online.online_estimate import OnlineEstimate
 from jointid.online.settings import Settings
 from jointid.online.sliding import Sliding

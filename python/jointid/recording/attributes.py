@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.recording.signals import KINDS
 
 

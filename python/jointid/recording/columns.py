@@ -9,8 +9,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from jointid.errors import InputError
-from jointid.given import given_mapping
+from jointid.base.argument_checks import require_mapping
+from jointid.base.errors import InputError
 from jointid.recording.signals import SIGNALS, FloatArray, check_signal_name, closest, dimensions
 from jointid.recording.units import Unit, find_unit, unit_named, unit_names
 
@@ -120,7 +120,7 @@ def match_columns(
         ("scale", scale, "{'position': 0.001}"),
     ):
         if mapping is not None:
-            given_mapping(name, mapping, example)
+            require_mapping(name, mapping, example)
     candidates = _candidates(table, columns or {})
     for signal in ("time", "position"):
         if not candidates.get(signal):

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from jointid.errors import InputError
-from jointid.given import given_mapping
+from jointid.base.argument_checks import require_mapping
+from jointid.base.errors import InputError
 from jointid.recording.attributes import check_kind, check_torque_hold
 from jointid.recording.columns import Column, Table, column_index, match_columns
 from jointid.recording.signals import FloatArray, check_signals
@@ -84,7 +84,7 @@ class Contents:
     def rows_where(self, where: Mapping[str, float | str]) -> Rows:
         """Return the rows that have a value in each of some columns."""
         kept = np.ones(len(self.values["time"]), dtype=np.bool_)
-        for header, wanted in given_mapping("where", where, "{'run': 1}").items():
+        for header, wanted in require_mapping("where", where, "{'run': 1}").items():
             column = column_index(self.table, header, "where")
             if isinstance(wanted, str):
                 cells = self.table.text(column)

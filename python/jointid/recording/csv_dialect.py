@@ -4,7 +4,7 @@ import csv
 import re
 from collections.abc import Sequence
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 
 _SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
 _DECIMAL_COMMA = re.compile(r"[+-]?(\d+,\d*|,\d+)(e[+-]?\d+)?", re.IGNORECASE)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.recording.csv_dialect import (
     cells_of,
     decimal_comma,

@@ -5,7 +5,7 @@ import re
 import zlib
 from pathlib import Path
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 
 _GZIP = b"\x1f\x8b"
 # What no text of rows holds: control signs (other than tab and line ends), in any encoding.

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.recording.signals import FloatArray, signal_array
 
 

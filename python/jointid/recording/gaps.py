@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.recording.signals import FloatArray
 
 _LONG = 3.5  # median sample periods: two lost samples in a row are no gap yet, three are

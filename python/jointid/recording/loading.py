@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from jointid.errors import InputError
-from jointid.given import given_path
+from jointid.base.argument_checks import require_path
+from jointid.base.errors import InputError
 from jointid.recording.columns import Table, column_index
 from jointid.recording.contents import read_contents
 from jointid.recording.csv_reader import CsvTable
@@ -75,7 +75,7 @@ def load(
         The file cannot be read or its columns hold no recording: one sentence that names the
         file, the line or the header, and what would be right.
     """
-    file = given_path("path", path)
+    file = require_path("path", path)
     contents = read_contents(
         _table(file), columns=columns, units=units, scale=scale, kind=kind, torque_hold=torque_hold
     )
@@ -122,7 +122,7 @@ def load_runs(
     InputError
         As `load`.
     """
-    file = given_path("path", path)
+    file = require_path("path", path)
     contents = read_contents(
         _table(file), columns=columns, units=units, scale=scale, kind=kind, torque_hold=torque_hold
     )

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.recording.mat_elements import Array, DamageError, Variable, variables_of
 from jointid.recording.signals import FloatArray, signal_array
 

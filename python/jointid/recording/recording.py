@@ -9,7 +9,7 @@ from typing import Any, Literal, NoReturn, Self
 import numpy as np
 import numpy.typing as npt
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.recording.attributes import check_kind, check_torque_hold, json_mapping
 from jointid.recording.gaps import Gap, derived_velocity, find_gaps
 from jointid.recording.parts import slice_between, slices_of

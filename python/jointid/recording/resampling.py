@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.recording.gaps import find_gaps
 from jointid.recording.signals import SHORTEST, FloatArray
 

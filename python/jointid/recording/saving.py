@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointid.errors import InputError
-from jointid.files import write_whole
-from jointid.given import given_path
+from jointid.base.argument_checks import require_path
+from jointid.base.errors import InputError
+from jointid.base.files import write_whole
 from jointid.recording.signals import KINDS, header_unit
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ _ATTRIBUTES = ("name", "kind", "torque_hold", "velocity_derived", "metadata", "t
 
 def save_recording(recording: "Recording", path: str | os.PathLike[str]) -> None:
     """Write a recording to a file: see `Recording.save`."""
-    target = given_path("path", path)
+    target = require_path("path", path)
     ending = ending_of(target, ENDINGS)
     if not target.parent.is_dir():
         raise InputError(f"{target}: the folder '{target.parent}' does not exist; create it first")

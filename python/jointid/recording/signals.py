@@ -7,7 +7,7 @@ from typing import TypeGuard
 import numpy as np
 import numpy.typing as npt
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 
 FloatArray = npt.NDArray[np.float64]
 

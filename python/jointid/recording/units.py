@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 
 _BLANKS = str.maketrans("", "", "·⋅*. \u00a0")
 _SPELLINGS = {"°": "deg", "º": "deg", "µ": "u", "μ": "u", "/": "_", "_per_": "_"}

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.joint.joint import Joint
 from jointid.joint.link import Link
 from jointid.recording.signals import FloatArray

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from jointid import _core
-from jointid.errors import InputError
-from jointid.given import given_kind
+from jointid.base.argument_checks import require_kind
+from jointid.base.errors import InputError
 from jointid.joint.joint import Joint
 from jointid.joint.link import Link
 from jointid.joint.parameters import not_negative, positive_number, set_numbers
@@ -169,7 +169,7 @@ def control_estimates(joint: Joint) -> dict[str, Any]:
     InputError
         A value is missing, or the friction model is one that no controller has.
     """
-    given_kind("joint", joint, Joint)
+    require_kind("joint", joint, Joint)
     if joint.friction == "stribeck_general":
         raise InputError(
             "controllers compensate the friction models 'coulomb_viscous' and 'stribeck', not "

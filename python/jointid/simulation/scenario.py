@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any, Self, get_args
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.joint.joint import Joint
 from jointid.joint.link import Link
 from jointid.joint.parameters import suggestion

@@ -8,7 +8,7 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.recording.recording import Recording
 from jointid.recording.signals import FloatArray, signal_array
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.recording.recording import Recording
 
 FloatArray = npt.NDArray[np.float64]

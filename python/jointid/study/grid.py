@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from jointid import _core
-from jointid.errors import InputError
-from jointid.given import given_mapping
+from jointid.base.argument_checks import require_mapping
+from jointid.base.errors import InputError
 from jointid.identification.prepared import prepare
 from jointid.joint.parameters import suggestion
 from jointid.simulation.scenario import Scenario
@@ -81,7 +81,7 @@ class Cell:
 
 def _changes(parameters: object) -> dict[str, Any]:
     example = "{'coulomb': {'max': 50.0}}"
-    return dict(given_mapping("parameters", {} if parameters is None else parameters, example))
+    return dict(require_mapping("parameters", {} if parameters is None else parameters, example))
 
 
 def is_option(name: str) -> bool:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.joint.parameters import finite_number, suggestion
 from jointid.simulation.scenario import Scenario
 from jointid.study import study_file

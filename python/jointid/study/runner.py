@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.identification.engine import Engine, Outcome
 from jointid.identification.prepared import Prepared, prepare

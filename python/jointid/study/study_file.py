@@ -10,7 +10,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.study.row import Row
 
 FORMAT = "jointid-study"

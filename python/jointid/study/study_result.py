@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.errors import InputError
-from jointid.given import given_path
+from jointid.base.argument_checks import require_path
+from jointid.base.errors import InputError
 from jointid.study import study_file, tables
 from jointid.study.row import Row
 from jointid.study.summary import Summary, summarise
@@ -118,7 +118,7 @@ class Study:
         InputError
             Another extension, or the folder does not exist.
         """
-        tables.save(self, given_path("path", path))
+        tables.save(self, require_path("path", path))
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Study:
@@ -129,7 +129,7 @@ class Study:
         InputError
             The file cannot be read, or is no study.
         """
-        header, rows, _ = study_file.read(given_path("path", path))
+        header, rows, _ = study_file.read(require_path("path", path))
         return study_of(header, rows)
 
     def __len__(self) -> int:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.study.row import REFUSED, Row
 from jointid.study.tables import data_frame
 

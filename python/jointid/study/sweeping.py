@@ -10,8 +10,8 @@ from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from typing import Any
 
-from jointid.errors import InputError
-from jointid.given import given_path
+from jointid.base.argument_checks import require_path
+from jointid.base.errors import InputError
 from jointid.identification.problem import listed, whole_number
 from jointid.identification.search import METHODS
 from jointid.joint.joint import Joint
@@ -162,7 +162,7 @@ def sweep(
     header = header_of_work(work, trials, truth)
     file = None
     if output is not None:
-        output = given_path("output", output)
+        output = require_path("output", output)
         if output.suffix != ".jsonl":
             raise InputError(
                 f"output {output}: a study grows in a .jsonl file; Study.save writes tables"

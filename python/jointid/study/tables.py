@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointid.errors import InputError
-from jointid.files import write_whole
+from jointid.base.errors import InputError
+from jointid.base.files import write_whole
 
 if TYPE_CHECKING:
     import pandas as pd

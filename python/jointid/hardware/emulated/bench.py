@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware.bench import Bench, joint_with_truth
 from jointid.hardware.emulated.converter import EmulatedConverter
 from jointid.hardware.emulated.elmo import ElmoSettings, EmulatedElmo

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import can
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 
 # What a drive shuts its motor down for: MF, and the emergency that it sends.
 DRIVE_FAILURES = {

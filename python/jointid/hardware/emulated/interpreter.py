@@ -7,7 +7,7 @@ import struct
 from collections import deque
 from typing import TYPE_CHECKING
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.hardware.elmo_codec import Command, Reply, refusal
 
 if TYPE_CHECKING:

@@ -9,7 +9,9 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jointid import plotting
+from jointid import plot
+from jointid.base.argument_checks import require_path
+from jointid.base.files import write_whole
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.tables import (
     html_correlation,
@@ -18,8 +20,6 @@ from jointid.estimate.tables import (
     html_warnings,
     quality,
 )
-from jointid.files import write_whole
-from jointid.given import given_path
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,15 +59,15 @@ def html_report(estimate: Estimate) -> str:
         _picture(
             "Friction map: a grey point is the friction that the recording shows over one window, the line is the "
             "identified model with its 95 % band.",
-            lambda axes: plotting.friction_map(None, estimate, axes[0]),
+            lambda axes: plot.friction_map(None, estimate, axes[0]),
         ),
         "<h2>Windows</h2>",
         _picture(
             "Above: what was measured over each window and what the model makes of it. Below: the difference. Windows "
             "in which the joint stands still are left out.",
             lambda axes: (
-                plotting.window_means(estimate, axes[0]),
-                plotting.residuals(estimate, axes[1]),
+                plot.window_means(estimate, axes[0]),
+                plot.residuals(estimate, axes[1]),
             ),
             rows=2,
         ),
@@ -77,7 +77,7 @@ def html_report(estimate: Estimate) -> str:
             "<h2>Convergence</h2>",
             _picture(
                 "The genetic search, generation by generation; dashed: the penalty after the local polish.",
-                lambda axes: plotting.convergence(estimate, axes[0]),
+                lambda axes: plot.convergence(estimate, axes[0]),
             ),
         ]
     parts += [
@@ -96,7 +96,7 @@ def html_report(estimate: Estimate) -> str:
 
 def save_report(estimate: Estimate, path: str | Path) -> Path:
     """Write the report, whole or not at all; returns its path."""
-    target = given_path("path", path)
+    target = require_path("path", path)
     write_whole(target, html_report(estimate).encode())
     return target
 
@@ -105,7 +105,7 @@ def _picture(caption: str, draw: Callable[[list[Axes]], object], rows: int = 1) 
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    with plotting.style():
+    with plot.style():
         figure = Figure(figsize=(8.0, 3.6 + 1.8 * (rows - 1)))
         FigureCanvasAgg(figure)  # no pyplot: nothing global, no window, no display needed
         ratios = [2.0] + [1.0] * (rows - 1)

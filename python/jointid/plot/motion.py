@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointid.errors import InputError
-from jointid.given import given_kind, given_mapping
-from jointid.plotting_style import given_or_new, line_style
+from jointid.base.argument_checks import require_kind, require_mapping
+from jointid.base.errors import InputError
+from jointid.plot.appearance import given_or_new, line_style
 from jointid.recording.recording import Recording
 from jointid.simulation.simulated_recording import SimulatedRecording
 from jointid.simulation.trajectory import FloatArray, Trajectory
@@ -150,10 +150,10 @@ def _named(runs: Runs) -> Mapping[str, Recording]:
     named = (
         {"": runs}
         if isinstance(runs, Recording)
-        else given_mapping("runs", runs, "{'before': recording}")
+        else require_mapping("runs", runs, "{'before': recording}")
     )
     for run in named.values():
-        given_kind("runs", run, Recording)
+        require_kind("runs", run, Recording)
     if not named:
         raise InputError("there is no recording to draw; give one, or several by name")
     return named

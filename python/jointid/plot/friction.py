@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.errors import InputError
+from jointid.base.argument_checks import require_kind, require_mapping
+from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.friction_map import friction_torque
-from jointid.given import given_kind, given_mapping
 from jointid.joint.joint import Joint
-from jointid.plotting_style import MEASURED, SECOND, given_or_new, line_style
+from jointid.plot.appearance import MEASURED, SECOND, given_or_new, line_style
 from jointid.recording.recording import Recording
 
 if TYPE_CHECKING:
@@ -42,9 +42,9 @@ def friction_curves(
     InputError
         A joint without a value for any friction parameter.
     """
-    given_mapping("joints", joints, "{'before': joint}")
+    require_mapping("joints", joints, "{'before': joint}")
     for each in joints.values():
-        given_kind("joints", each, Joint, Estimate)
+        require_kind("joints", each, Joint, Estimate)
     axes = given_or_new(axes)
     for number, (name, joint) in enumerate(joints.items()):
         _draw(axes, _values(_joint(joint)), peak, number, name)
@@ -89,7 +89,7 @@ def sensitivity(
     InputError
         The parameter has no value.
     """
-    given_kind("joint", joint, Joint)
+    require_kind("joint", joint, Joint)
     axes = given_or_new(axes)
     values = _values(joint)
     if parameter not in values:
@@ -137,7 +137,7 @@ def torque_over_velocity(
     InputError
         The recording has no torque, or nothing to subtract.
     """
-    given_kind("recording", recording, Recording)
+    require_kind("recording", recording, Recording)
     if recording.torque is None:
         raise InputError("the recording has no torque; drawing it over velocity needs one")
     axes = given_or_new(axes)

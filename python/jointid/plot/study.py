@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.errors import InputError
-from jointid.given import given_kind
-from jointid.plotting_style import MEASURED, given_or_new, line_style
+from jointid.base.argument_checks import require_kind
+from jointid.base.errors import InputError
+from jointid.plot.appearance import MEASURED, given_or_new, line_style
 from jointid.study.study_result import Study
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def sweep(
     InputError
         Something that the study has not swept, or does not hold.
     """
-    given_kind("study", study, Study)
+    require_kind("study", study, Study)
     if statistic not in STATISTICS:
         raise InputError(f"statistic '{statistic}' is not known; use {', '.join(STATISTICS)}")
     if not study.swept:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.hardware.bench import Bench
 from jointid.hardware.drive import Drive
@@ -105,7 +105,7 @@ class Commissioning:
 
     def report(self) -> str:
         """Tables of tracking errors and parameters, in words."""
-        from jointid.commissioning_report import told
+        from jointid.commissioning.report import told
 
         return told(self)
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from jointid._core import GaOptions, Generation
-from jointid.plotting_style import given_or_new, line_style
+from jointid.plot.appearance import given_or_new, line_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from jointid.commissioning import Commissioning
+    from jointid.commissioning.ring import Commissioning
     from jointid.estimate.estimate import Estimate
 
 

@@ -5,24 +5,24 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from jointid.errors import InputError
+from jointid.base.errors import InputError
 
 
-def given_path(what: str, value: object) -> Path:
+def require_path(what: str, value: object) -> Path:
     """Return a file's name as a path, or refuse it."""
     if not isinstance(value, str | os.PathLike) or not isinstance(os.fspath(value), str):
         raise InputError(f"{what} is {shown(value)}; the name of a file is expected")
     return Path(value)
 
 
-def given_mapping(what: str, value: object, example: str) -> Mapping[Any, Any]:
+def require_mapping(what: str, value: object, example: str) -> Mapping[Any, Any]:
     """Return a mapping, or refuse what is none; `example` shows a right one."""
     if not isinstance(value, Mapping):
         raise InputError(f"{what} is {shown(value)}; a mapping is expected, e.g. {example}")
     return value
 
 
-def given_kind(what: str, value: object, *kinds: type) -> None:
+def require_kind(what: str, value: object, *kinds: type) -> None:
     """Refuse what is none of these."""
     if not isinstance(value, kinds):
         names = " or ".join(kind.__name__ for kind in kinds)

@@ -6,36 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from jointid.base.argument_checks import require_kind
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import FrictionCurve
-from jointid.given import given_kind
-from jointid.plotting_friction import friction_curves, sensitivity, torque_over_velocity
-from jointid.plotting_motion import signal, tracking_error, trajectory
-from jointid.plotting_search import adaptation
-from jointid.plotting_study import sweep
-from jointid.plotting_style import FITTED, MEASURED, SECOND, line_style, style
-from jointid.plotting_style import given_or_new as _axes
+from jointid.plot.appearance import FITTED, MEASURED, SECOND
+from jointid.plot.appearance import given_or_new as _axes
 from jointid.recording.recording import Recording
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-__all__ = [
-    "adaptation",
-    "convergence",
-    "friction_curves",
-    "friction_map",
-    "line_style",
-    "residuals",
-    "sensitivity",
-    "signal",
-    "style",
-    "sweep",
-    "torque_over_velocity",
-    "tracking_error",
-    "trajectory",
-    "window_means",
-]
 
 
 def _torque_unit(estimate: Estimate) -> str:
@@ -83,8 +62,8 @@ def friction_map(recording: Recording | None, estimate: Estimate, axes: Axes | N
         Drawn into; default: new ones.
     """
     if recording is not None:
-        given_kind("recording", recording, Recording)
-    given_kind("estimate", estimate, Estimate)
+        require_kind("recording", recording, Recording)
+    require_kind("estimate", estimate, Estimate)
     axes = _axes(axes)
     windows = estimate.windows if recording is None else estimate.predict(recording).windows
     whole = windows.duration > 0.5 * float(np.median(windows.duration))

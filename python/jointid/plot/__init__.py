@@ -1,0 +1,25 @@
+"""Pictures of recordings and estimates: one style, units on the axes, Matplotlib axes in and out."""
+
+from jointid.plot.appearance import line_style, style
+from jointid.plot.estimate import convergence, friction_map, residuals, window_means
+from jointid.plot.friction import friction_curves, sensitivity, torque_over_velocity
+from jointid.plot.motion import signal, tracking_error, trajectory
+from jointid.plot.search import adaptation
+from jointid.plot.study import sweep
+
+__all__ = [
+    "adaptation",
+    "convergence",
+    "friction_curves",
+    "friction_map",
+    "line_style",
+    "residuals",
+    "sensitivity",
+    "signal",
+    "style",
+    "sweep",
+    "torque_over_velocity",
+    "tracking_error",
+    "trajectory",
+    "window_means",
+]
