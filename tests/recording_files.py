@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from jointid.base.errors import InputError
-from jointid.recording.loading import load
+from jointid.recording.readers.loading import load
 
 N = 10
 ROWS = [[k * 0.01, math.sin(k), 0.5 * k, -1.25] for k in range(N)]

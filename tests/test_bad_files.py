@@ -26,7 +26,7 @@ from recording_files import (
 )
 
 from jointid.base.errors import InputError
-from jointid.recording.loading import load
+from jointid.recording.readers.loading import load
 from jointid.recording.recording import Recording
 
 # Name of the file, what it holds, arguments, and what the sentence says after the file's name.

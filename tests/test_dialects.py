@@ -23,7 +23,7 @@ from recording_files import (
     written,
 )
 
-from jointid.recording.loading import load
+from jointid.recording.readers.loading import load
 from jointid.recording.recording import Recording
 
 

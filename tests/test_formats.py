@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from recording_files import ROWS, N, assert_one_sentence, column, headed, mat, npz, refusal, written
 
 from jointid.base.errors import InputError
-from jointid.recording.loading import load, load_runs
+from jointid.recording.readers.loading import load, load_runs
 from jointid.recording.recording import Recording
 
 TIME = np.array(column(0))

@@ -10,7 +10,7 @@ import pytest
 from recording_files import ROWS, N, column, lines, npz, refusal, written
 
 from jointid.base.errors import InputError
-from jointid.recording.loading import load
+from jointid.recording.readers.loading import load
 from jointid.recording.recording import Recording
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
-from jointid.recording import csv_reader
+from jointid.recording.readers import csv_reader
 
 HEADER = "time_s,position_rad,velocity_rad_s,torque_Nm"
 

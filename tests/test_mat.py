@@ -11,7 +11,7 @@ import pytest
 from recording_files import ROWS, N, assert_one_sentence, column, mat, refusal, written
 
 import jointid as jid
-from jointid.recording.loading import load
+from jointid.recording.readers.loading import load
 from jointid.recording.recording import Recording
 
 TIME = np.array(column(0))

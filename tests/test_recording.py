@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from jointid.base.errors import InputError
-from jointid.recording.loading import load
+from jointid.recording.readers.loading import load
 from jointid.recording.recording import Recording
 from jointid.recording.signals import SIGNALS
 

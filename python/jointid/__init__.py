@@ -45,7 +45,7 @@ from jointid.joint.parameters import Parameter
 from jointid.joint.thesis import thesis_joint
 from jointid.online.online_estimate import OnlineEstimate
 from jointid.online.online_identifier import OnlineIdentifier
-from jointid.recording.loading import load, load_runs
+from jointid.recording.readers.loading import load, load_runs
 from jointid.recording.recording import Recording
 from jointid.simulation.batch import SimulatedBatch, simulate_batch
 from jointid.simulation.plant import Bristle, control_estimates

@@ -246,7 +246,7 @@ def whole_seed(text: str) -> int:
 
 def load_all(paths: Sequence[Path], arguments: argparse.Namespace) -> list[Recording]:
     """The recordings of a command, each read with the same --column, --unit and --where."""
-    from jointid.recording.loading import load
+    from jointid.recording.readers.loading import load
 
     columns = {
         signal: int(header) if header.isdigit() else None if header == "none" else header

@@ -9,7 +9,7 @@ from jointid._core import Generation
 from jointid.estimate.estimate import Estimate
 from jointid.identification.identification import identify
 from jointid.joint.joint import Joint
-from jointid.recording.loading import load
+from jointid.recording.readers.loading import load
 
 # Published beside the log by its authors (Weigand et al.).
 NOMINAL = {"viscous": 2050.0, "coulomb": 355.0}

@@ -195,7 +195,7 @@ def trajectory_of(text: str) -> Trajectory:
         No such trajectory, option or file.
     """
     from jointid.base.errors import InputError
-    from jointid.recording.loading import load
+    from jointid.recording.readers.loading import load
     from jointid.simulation.trajectory import Trajectory
 
     name, _, told = text.partition(":")

@@ -9,8 +9,8 @@ from typing import Any
 
 import can
 
+from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
-from jointid.recording.reasons import reason_of
 
 ENDINGS = (".log", ".asc", ".blf")
 

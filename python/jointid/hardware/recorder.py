@@ -13,7 +13,7 @@ from typing import Any
 from jointid.base.errors import InputError
 from jointid.hardware.appended_file import AppendedFile, Syncing, sync_folder
 from jointid.recording.saving import CSV_MARK, SCHEMA
-from jointid.recording.torn import CLOSING, OPENING
+from jointid.recording.truncated import CLOSING, OPENING
 
 COLUMNS = (
     "time_s",

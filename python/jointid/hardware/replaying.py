@@ -19,7 +19,7 @@ from jointid.hardware.frame_log import logged_frames
 from jointid.hardware.logged_cycles import CycleReader, LoggedCycle
 from jointid.hardware.session_notes import elmo_options_of
 from jointid.joint.joint import Joint
-from jointid.recording.loading import load
+from jointid.recording.readers.loading import load
 from jointid.recording.recording import Recording
 from jointid.simulation.trajectory import Trajectory
 

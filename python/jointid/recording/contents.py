@@ -12,7 +12,7 @@ from jointid.base.errors import InputError
 from jointid.recording.attributes import check_kind, check_torque_hold
 from jointid.recording.columns import Column, Table, column_index, match_columns
 from jointid.recording.signals import FloatArray, check_signals
-from jointid.recording.torn import untold
+from jointid.recording.truncated import untold
 
 Rows = npt.NDArray[np.intp]
 

@@ -12,7 +12,6 @@ import numpy.typing as npt
 from jointid.base.errors import InputError
 from jointid.recording.attributes import check_kind, check_torque_hold, json_mapping
 from jointid.recording.gaps import Gap, derived_velocity, find_gaps
-from jointid.recording.parts import slice_between, slices_of
 from jointid.recording.resampling import resampled
 from jointid.recording.signals import (
     SIGNALS,
@@ -22,6 +21,7 @@ from jointid.recording.signals import (
     shown_unit,
     signal_array,
 )
+from jointid.recording.slicing import slice_between, slices_of
 
 Kind = Literal["revolute", "prismatic"]
 TorqueHold = Literal["zoh", "linear"]
@@ -180,7 +180,7 @@ class Recording:
             As in `load`; a row is named by its 0-based number.
         """
         from jointid.recording.contents import read_contents
-        from jointid.recording.frame_reader import FrameTable
+        from jointid.recording.dataframe import FrameTable
 
         contents = read_contents(
             FrameTable(df),

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
-from jointid.recording.reasons import reason_of
 from jointid.recording.signals import FloatArray, signal_array
 
 

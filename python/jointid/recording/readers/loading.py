@@ -9,10 +9,10 @@ from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.recording.columns import Table, column_index
 from jointid.recording.contents import read_contents
-from jointid.recording.csv_reader import CsvTable
-from jointid.recording.mat_reader import MatTable
-from jointid.recording.npz_reader import NpzTable
-from jointid.recording.parquet_reader import ParquetTable
+from jointid.recording.readers.csv_reader import CsvTable
+from jointid.recording.readers.mat_reader import MatTable
+from jointid.recording.readers.npz_reader import NpzTable
+from jointid.recording.readers.parquet_reader import ParquetTable
 from jointid.recording.recording import Recording
 from jointid.recording.saving import ending_of
 

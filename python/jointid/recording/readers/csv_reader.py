@@ -12,17 +12,17 @@ from typing import Any
 import numpy as np
 
 from jointid.base.errors import InputError
-from jointid.recording.csv_dialect import (
+from jointid.recording.readers.csv_dialect import (
     cells_of,
     decimal_comma,
     number_of,
     separator_named,
     separator_of,
 )
-from jointid.recording.csv_text import text_of
+from jointid.recording.readers.csv_text import text_of
 from jointid.recording.saving import CSV_MARK, saved_attributes
 from jointid.recording.signals import FloatArray
-from jointid.recording.torn import ended_before, session_text, with_notes
+from jointid.recording.truncated import ended_before, session_text, with_notes
 
 _LONG = 1 << 20  # characters: beyond, a file is read as a stream if it is plain
 _INNER = "\x1f"  # separates cells where they are put together anew: no file's text holds it

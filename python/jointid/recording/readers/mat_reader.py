@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from jointid.base.errors import InputError
-from jointid.recording.mat_elements import Array, DamageError, Variable, variables_of
+from jointid.recording.readers.mat_elements import Array, DamageError, Variable, variables_of
 from jointid.recording.signals import FloatArray, signal_array
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
-from jointid.recording.reasons import reason_of
 from jointid.recording.saving import NPZ_MEMBER, saved_attributes
 from jointid.recording.signals import FloatArray, signal_array
 

@@ -1,0 +1,1 @@
+"""Files that hold recordings: one reader for each format, and `load`, which picks one."""
