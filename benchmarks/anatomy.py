@@ -12,9 +12,9 @@ from store import Record
 
 import jointid as jid
 from jointid import _core
-from jointid.identification.engine import Engine, Outcome
 from jointid.identification.prepared import prepare
-from jointid.identification.search import Search
+from jointid.identification.search.engine import Engine, Outcome
+from jointid.identification.search.search import Search
 
 STEPS = ("prepare", "compress", "genetic search", "polish", "inference")
 REPEATS = 31

@@ -9,10 +9,10 @@ import argparse
 import jointid as jid
 from jointid import _core
 from jointid.cli.demo import data_folder
-from jointid.identification.engine import Engine
-from jointid.identification.model_terms import Request, choose_terms
-from jointid.identification.problem import Problem
-from jointid.identification.search_domain import SearchDomain, domain_for
+from jointid.identification.search.domain import SearchDomain, domain_for
+from jointid.identification.search.engine import Engine
+from jointid.problem.problem import Problem
+from jointid.problem.terms import Request, choose_terms
 
 SIZES = ((10, 10), (16, 10), (20, 20), (20, 40), (24, 40), (30, 60), (40, 80), (60, 120))
 CLOSE = 1e-6

@@ -19,7 +19,7 @@ from peers.contest import problem_of
 import jointid as jid
 from jointid import _core
 from jointid.cli.demo import data_folder
-from jointid.identification.search_domain import domain_for
+from jointid.identification.search.domain import domain_for
 
 Array = NDArray[np.float64]
 NOISE = 1e-3  # of a signal's spread, fresh for every copy

@@ -46,7 +46,7 @@ GROUPS: dict[str, Group] = {
     ),
     "simulation": Group(modules={"simulation."}, may_use={"core", "recording"}, packages={"numpy"}),
     "analysis": Group(
-        modules={"identification.", "estimate.", "comparison.", "online."},
+        modules={"problem.", "identification.", "estimate.", "comparison.", "online."},
         may_use={"core", "recording"},
         packages={"numpy", "scipy", "pandas"},
     ),

@@ -12,10 +12,10 @@ from jointid.base.errors import InputError
 from jointid.cli.demo import data_folder
 from jointid.cli.progress import ComparisonProgress
 from jointid.comparison.comparison import ComparisonStep
-from jointid.comparison.comparison_result import ComparedModel
 from jointid.comparison.held_out import folds_by_block, folds_by_recording
 from jointid.comparison.model_spec import ModelSpec
 from jointid.comparison.parsimony import judge
+from jointid.comparison.result import ComparedModel
 
 
 def simulated(seed: int, *, seconds: float = 10.0, static: float = 0.0) -> jid.Recording:

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 import jointid as jid
 from jointid import _core
 from jointid.cli.demo import data_folder
-from jointid.identification.engine import Engine, Outcome
-from jointid.identification.model_terms import Request, choose_terms
-from jointid.identification.problem import Problem
-from jointid.identification.search_domain import SearchDomain, domain_for
+from jointid.identification.search.domain import SearchDomain, domain_for
+from jointid.identification.search.engine import Engine, Outcome
+from jointid.problem.problem import Problem
+from jointid.problem.terms import Request, choose_terms
 
 CANDIDATES = 10_000
 

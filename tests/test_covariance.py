@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jointid.estimate.student import quantile
-from jointid.identification.covariance import parameter_covariance
+from jointid.identification.inference.covariance import parameter_covariance
 
 ROWS = 400
 

@@ -12,8 +12,8 @@ from simulated_joint import TRUTH, simulate
 
 import jointid as jid
 from jointid.cli.demo import data_folder
-from jointid.estimate.findings import Warned
-from jointid.identification.motion_checks import _sensor_lag, _timing_errors
+from jointid.estimate.statistics import Warned
+from jointid.identification.warnings.motion import _sensor_lag, _timing_errors
 
 
 def codes(estimate: jid.Estimate) -> set[str]:

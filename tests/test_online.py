@@ -9,9 +9,9 @@ from simulated_joint import TRUTH, simulate
 
 import jointid as jid
 from jointid.cli.demo import data_folder
-from jointid.identification.model_terms import Request
 from jointid.online.settings import Settings
 from jointid.online.sliding import Sliding
+from jointid.problem.terms import Request
 
 
 @pytest.fixture(scope="module")

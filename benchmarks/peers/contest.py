@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 import jointid as jid
 from jointid import _core
 from jointid.cli.demo import data_folder
-from jointid.identification.model_terms import Request, choose_terms
-from jointid.identification.problem import Problem
-from jointid.identification.search_domain import domain_for
+from jointid.identification.search.domain import domain_for
+from jointid.problem.problem import Problem
+from jointid.problem.terms import Request, choose_terms
 from peers.numpy_penalty import NumpyPenalty
 
 Array = NDArray[np.float64]

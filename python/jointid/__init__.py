@@ -35,8 +35,8 @@ from jointid._core import (
 )
 from jointid.base.errors import InputError
 from jointid.comparison.comparison import compare_models
-from jointid.comparison.comparison_result import Comparison
 from jointid.comparison.model_spec import ModelSpec
+from jointid.comparison.result import Comparison
 from jointid.estimate.estimate import Estimate
 from jointid.identification.identification import identify
 from jointid.joint.joint import Joint

@@ -10,15 +10,15 @@ import numpy as np
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.comparison.comparison_result import ComparedModel, Comparison
 from jointid.comparison.held_out import Fold, folds_by_block, folds_by_recording
 from jointid.comparison.model_spec import ModelSpec, specified
 from jointid.comparison.parsimony import judge, refusal
+from jointid.comparison.result import ComparedModel, Comparison
 from jointid.estimate.estimate import Estimate
 from jointid.identification.identification import identify
-from jointid.identification.problem import Windows, listed
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
+from jointid.problem.problem import Windows, listed
 from jointid.recording.recording import Recording
 
 _MODELS = ("coulomb_viscous", "stribeck")

@@ -10,7 +10,7 @@ import numpy as np
 
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
-from jointid.estimate.findings import WindowTable
+from jointid.problem.window_table import WindowTable
 from jointid.recording.recording import Recording
 
 _FEWEST = 4  # windows in a held-out block

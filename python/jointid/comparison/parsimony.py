@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from jointid.comparison.comparison_result import ComparedModel
+from jointid.comparison.result import ComparedModel
 from jointid.estimate.estimate import Estimate
 
 

@@ -12,15 +12,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from jointid.base.argument_checks import require_kind, require_path
 from jointid.base.errors import InputError
-from jointid.estimate.findings import (
+from jointid.estimate.statistics import (
     Convergence,
     FrictionCurve,
     ParameterEstimate,
-    Prediction,
     ResidualStatistics,
     Warned,
-    WindowTable,
 )
+from jointid.problem.window_table import Prediction, WindowTable
 
 if TYPE_CHECKING:
     from jointid.joint.joint import Joint
@@ -105,7 +104,7 @@ class Estimate:
         InputError
             When the recording lacks a signal that the estimate's terms need.
         """
-        from jointid.identification.identification import predict
+        from jointid.estimate.prediction import predict
 
         return predict(self, recording)
 
@@ -122,7 +121,7 @@ class Estimate:
 
     def to_json(self) -> str:
         """Everything, as JSON with a schema version; `Estimate.from_json` reads it back."""
-        from jointid.estimate.estimate_json import write_estimate
+        from jointid.estimate.json import write_estimate
 
         return write_estimate(self)
 
@@ -135,7 +134,7 @@ class Estimate:
         InputError
             Not JSON, not an estimate, or a newer schema.
         """
-        from jointid.estimate.estimate_json import read_estimate
+        from jointid.estimate.json import read_estimate
 
         require_kind("text", text, str)
         return read_estimate(text)

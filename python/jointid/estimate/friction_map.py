@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.estimate.estimate import Estimate
-from jointid.estimate.findings import FrictionCurve
+from jointid.estimate.statistics import FrictionCurve
 from jointid.estimate.student import quantile
 
 Array = NDArray[np.float64]

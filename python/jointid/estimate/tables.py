@@ -5,7 +5,7 @@ from html import escape
 import numpy as np
 
 from jointid.estimate.estimate import Estimate
-from jointid.estimate.findings import ParameterEstimate
+from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import number, percent, two_digits
 
 _HEAD = ("parameter", "value", "± std. error", "95 % interval", "unit", "remark")

@@ -5,20 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Collection, Mapping, Sequence
 
-import numpy as np
-
 from jointid import _core
-from jointid.base.argument_checks import require_kind
-from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
-from jointid.estimate.findings import Prediction
-from jointid.identification.inference import r_squared, relative_residual
-from jointid.identification.model_terms import TermChoice
 from jointid.identification.prepared import prepare
-from jointid.identification.problem import Problem, Windows, listed, whole_number
-from jointid.identification.search import Callback, Search, StatePath
+from jointid.identification.search.search import Callback, Search, StatePath
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
+from jointid.problem.problem import Windows, whole_number
 from jointid.recording.recording import Recording
 
 
@@ -142,47 +135,3 @@ def identify(
         threads=threads,
     )
     return prepared.estimate(search, search.run(prepared.penalty, prepared.domain), started)
-
-
-def predict(estimate: Estimate, recording: Recording) -> Prediction:
-    """Hold an estimate against a recording: see `Estimate.predict`."""
-    require_kind("recording", recording, Recording)
-    settings = estimate.settings
-    choice = TermChoice(
-        terms=tuple(settings["terms"]),
-        model=settings["model"],
-        residual=settings["residual"],
-        sensor="sensor_gain" in settings["terms"],
-        gear_ratio=estimate.joint.gear_ratio,
-    )
-    if recording.kind != settings["kind"]:
-        raise InputError(
-            f"the estimate is of a {settings['kind']} joint, the recording is {recording.kind}"
-        )
-    if choice.sensor and recording.sensor is None:
-        raise InputError(
-            "the estimate has a torque sensor, but the recording has no signal 'sensor'"
-        )
-    problem = Problem(
-        recordings=listed(recording),
-        joint=estimate.joint,
-        choice=choice,
-        torque_hold=settings["torque_hold"],
-        mask_standstill=settings["mask_standstill"],
-    )
-    penalty = problem.penalty(settings["windows"])
-    theta = np.array([_predicting(estimate, name) for name in penalty.names])
-    table = problem.table(penalty, theta)
-    return Prediction(
-        windows=table,
-        relative=relative_residual(table),
-        r_squared=r_squared(table),
-    )
-
-
-def _predicting(estimate: Estimate, name: str) -> float:
-    """A parameter's value; of one that each recording had for itself, the mean."""
-    if name in estimate.parameters:
-        return estimate.parameters[name].value
-    own = [p.value for key, p in estimate.parameters.items() if key.startswith(f"{name}[")]
-    return float(np.mean(own))

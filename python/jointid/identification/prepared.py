@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
-from jointid.identification.engine import Outcome
-from jointid.identification.inference import infer
-from jointid.identification.model_terms import Request, TermChoice, choose_terms
-from jointid.identification.problem import Problem, Windows, listed, whole_number
-from jointid.identification.search import Search
-from jointid.identification.search_domain import SearchDomain, domain_for
+from jointid.identification.conclusion import infer
+from jointid.identification.search.domain import SearchDomain, domain_for
+from jointid.identification.search.engine import Outcome
+from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
+from jointid.problem.problem import Problem, Windows, listed, whole_number
+from jointid.problem.terms import Request, TermChoice, choose_terms
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from jointid.estimate.findings import ParameterEstimate
+from jointid.estimate.statistics import ParameterEstimate
 from jointid.joint.joint import Joint
 
 

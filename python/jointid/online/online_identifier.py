@@ -12,13 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from jointid.base.errors import InputError
 from jointid.estimate.student import quantile
-from jointid.identification.model_terms import Request
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
 from jointid.online.online_estimate import OnlineEstimate
 from jointid.online.samples import checked
 from jointid.online.settings import Settings
 from jointid.online.worker import Worker
+from jointid.problem.terms import Request
 
 Array = NDArray[np.float64]
 

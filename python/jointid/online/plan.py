@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.identification.model_terms import choose_terms
-from jointid.identification.problem import Problem
-from jointid.identification.search_domain import SearchDomain, domain_for
+from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.online.settings import Settings
+from jointid.problem.problem import Problem
+from jointid.problem.terms import choose_terms
 from jointid.recording.recording import Recording
 
 # Of the speed seen: room before the table of shapes has to be made anew.

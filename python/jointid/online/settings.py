@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from jointid.base.errors import InputError
-from jointid.identification.model_terms import Request, TermChoice, choose_terms
-from jointid.identification.problem import Problem, output_torque
-from jointid.identification.search_domain import parameter_bounds
+from jointid.identification.search.domain import parameter_bounds
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
+from jointid.problem.problem import Problem, output_torque
+from jointid.problem.terms import Request, TermChoice, choose_terms
 from jointid.recording.attributes import check_torque_hold
 from jointid.recording.recording import Recording
 

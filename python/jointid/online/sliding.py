@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.identification.covariance import parameter_covariance
-from jointid.identification.inference import freedom_of, joint_of, parameters_of
-from jointid.identification.inner_products import columns_with, size
+from jointid.identification.inference.covariance import parameter_covariance
+from jointid.identification.inference.inference import freedom_of, joint_of, parameters_of
 from jointid.online.online_estimate import OnlineEstimate
 from jointid.online.pieces import SHORTEST, next_piece
 from jointid.online.plan import Plan, make_plan, outdated
 from jointid.online.samples import Samples
 from jointid.online.settings import Settings
+from jointid.problem.inner_products import columns_with, size
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]

@@ -8,7 +8,7 @@ import numpy as np
 
 from jointid.base.argument_checks import require_kind
 from jointid.estimate.estimate import Estimate
-from jointid.estimate.findings import FrictionCurve
+from jointid.estimate.statistics import FrictionCurve
 from jointid.plot.appearance import FITTED, MEASURED, SECOND
 from jointid.plot.appearance import given_or_new as _axes
 from jointid.recording.recording import Recording

@@ -11,9 +11,9 @@ from dataclasses import replace
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
-from jointid.identification.engine import Engine, Outcome
 from jointid.identification.prepared import Prepared, prepare
-from jointid.identification.search import Search
+from jointid.identification.search.engine import Engine, Outcome
+from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
 from jointid.simulation.scenario import Scenario

@@ -12,10 +12,10 @@ from typing import Any
 
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
-from jointid.identification.problem import listed, whole_number
-from jointid.identification.search import METHODS
+from jointid.identification.search.search import METHODS
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import suggestion
+from jointid.problem.problem import listed, whole_number
 from jointid.recording.recording import Recording
 from jointid.simulation.scenario import Scenario
 from jointid.study.grid import OPTIONS, cells_of, genetic_options

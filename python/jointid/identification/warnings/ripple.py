@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointid.base.errors import InputError
-from jointid.estimate.findings import Warned
+from jointid.estimate.statistics import Warned
 from jointid.estimate.wording import percent
-from jointid.identification.facts import Facts
+from jointid.identification.warnings.evidence import Facts
 
 _HALVES = 16  # multiples of half the motor's angle that are looked at: 0.5 to 8
 _SHARE = 0.05  # of the residual's variance
@@ -53,7 +53,7 @@ def _highest_peak(facts: Facts, gear: float) -> _Peak | None:
     )
 
 
-def ripple(facts: Facts) -> Iterator[Warned]:
+def periodic_residual(facts: Facts) -> Iterator[Warned]:
     """A periodic residual over the motor's angle."""
     gear = abs(facts.joint.gear_ratio) if facts.joint is not None else 1.0
     if gear == 1.0 or facts.recordings[0].kind == "prismatic":

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.estimate.findings import Warned
-from jointid.identification.covariance import parameter_covariance
-from jointid.identification.facts import Facts, Regressor
-from jointid.identification.unit_advice import degrees_advice
+from jointid.estimate.statistics import Warned
+from jointid.identification.inference.covariance import parameter_covariance
+from jointid.identification.warnings.evidence import Facts, Regressor
+from jointid.identification.warnings.units import degrees_advice
 
 Array = NDArray[np.float64]
 
@@ -108,7 +108,7 @@ def _torque_opposes(facts: Facts) -> bool:
     return power < _AGAINST * level
 
 
-def balance(facts: Facts) -> Iterator[Warned]:
+def torque_balance(facts: Facts) -> Iterator[Warned]:
     """Signs and scales that the torque balance contradicts."""
     if _torque_opposes(facts):
         yield Warned(

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from jointid.estimate.findings import Warned
+from jointid.estimate.statistics import Warned
 from jointid.estimate.wording import percent
-from jointid.identification.facts import Facts
-from jointid.identification.inspection import inspect
-from jointid.identification.unit_advice import degrees_advice
+from jointid.identification.warnings.evidence import Facts
+from jointid.identification.warnings.inspection import inspect
+from jointid.identification.warnings.units import degrees_advice
 from jointid.recording.recording import Recording
 
 _DEGREE = np.pi / 180.0

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
-from jointid.identification.gain_domain import GainGuess, around, guess_gain
-from jointid.identification.inner_products import size
+from jointid.identification.search.gain_domain import GainGuess, around, guess_gain
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter, merge
+from jointid.problem.inner_products import size
 
 # A coefficient's bound is this many times the value at which its term alone would make up the torque.
 _GENEROUS = 10.0

@@ -14,9 +14,9 @@ from jointid import _core
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
-from jointid.estimate.findings import Convergence
-from jointid.identification.engine import Engine, Outcome
-from jointid.identification.search_domain import SearchDomain
+from jointid.estimate.statistics import Convergence
+from jointid.identification.search.domain import SearchDomain
+from jointid.identification.search.engine import Engine, Outcome
 
 Array = NDArray[np.float64]
 Callback = Callable[[_core.Generation], bool | None]

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.estimate.findings import ParameterEstimate, ResidualStatistics, WindowTable
-from jointid.identification.covariance import Triangle
-from jointid.identification.inspection import Inspected
-from jointid.identification.problem import Problem
+from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
+from jointid.identification.inference.covariance import Triangle
+from jointid.identification.warnings.inspection import Inspected
 from jointid.joint.joint import Joint
+from jointid.problem.problem import Problem
+from jointid.problem.window_table import WindowTable
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from jointid import _core
-from jointid.estimate.findings import Warned
+from jointid.estimate.statistics import Warned
 from jointid.estimate.wording import percent
-from jointid.identification.facts import Facts
-from jointid.identification.inspection import DRIVE
+from jointid.identification.warnings.evidence import Facts
+from jointid.identification.warnings.inspection import DRIVE
 
 _CLIPPED = 0.01  # share of the samples on a limit
 _REPEATED = 0.03

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.estimate.findings import WindowTable
-from jointid.identification.model_terms import TermChoice
 from jointid.joint.joint import Joint
+from jointid.problem.terms import TermChoice
+from jointid.problem.window_table import WindowTable
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]

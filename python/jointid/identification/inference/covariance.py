@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.identification.inner_products import inner
+from jointid.problem.inner_products import inner
 
 Array = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""The parts of an estimate: parameters, residuals, windows, convergence, warnings, curves."""
+"""The parts of an estimate: parameters, residuals, convergence, warnings, curves."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -87,41 +87,6 @@ class ResidualStatistics:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class WindowTable:
-    """One row a window; integrals of the compared signal, and means for pictures.
-
-    Attributes
-    ----------
-    recording : ndarray of int
-        Which recording.
-    start, stop : ndarray
-        [s], on the recording's clock.
-    duration : ndarray
-        Integrated time [s]; less than stop - start where samples were left out.
-    measured, fitted : ndarray
-        Integrals of the sensor reading, or of the torque [N·m·s].
-    velocity : ndarray
-        Mean velocity [rad/s or m/s].
-    friction : ndarray
-        Mean friction that the recording shows: torque less all other fitted terms [N·m or N].
-    """
-
-    recording: NDArray[np.int64]
-    start: Array
-    stop: Array
-    duration: Array
-    measured: Array
-    fitted: Array
-    velocity: Array
-    friction: Array
-
-    @property
-    def residual(self) -> Array:
-        """Measured less fitted."""
-        return self.measured - self.fitted
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Convergence:
     """The search, generation by generation.
 
@@ -188,20 +153,3 @@ class FrictionCurve:
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:
         """The torque."""
         return np.array(self.torque, dtype=dtype)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Prediction:
-    """What an estimate says of a recording it may never have seen.
-
-    Attributes
-    ----------
-    windows : WindowTable
-    relative : float
-        Norm of the residuals over the norm of the measured integrals.
-    r_squared : float
-    """
-
-    windows: WindowTable
-    relative: float
-    r_squared: float

@@ -1,37 +1,24 @@
-"""From the minimum of the penalty to an estimate: errors, correlations, statistics, warnings."""
+"""What follows from the minimum of the penalty: what was free, parameters with errors, statistics, the joint."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.estimate.estimate import Estimate
-from jointid.estimate.findings import (
-    Convergence,
-    ParameterEstimate,
-    ResidualStatistics,
-    WindowTable,
-)
+from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.estimate.student import quantile
-from jointid.identification.covariance import Covariance, parameter_covariance, widened
-from jointid.identification.diagnosis import diagnose
-from jointid.identification.facts import Facts, regressor
-from jointid.identification.inner_products import columns_with, inner, size
-from jointid.identification.inspection import inspect
-from jointid.identification.problem import Problem
-from jointid.identification.search_domain import SearchDomain
-from jointid.identification.systematic import systematic_errors
+from jointid.identification.inference.covariance import Covariance
+from jointid.identification.search.domain import SearchDomain
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
+from jointid.problem.inner_products import inner
+from jointid.problem.problem import Problem
+from jointid.problem.window_table import WindowTable, r_squared, relative_residual
 
 Array = NDArray[np.float64]
-
-# Components of the weakest direction below this share are not worth naming.
-_NAMED = 0.3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,118 +27,6 @@ class Freedom:
 
     indices: tuple[int, ...]
     at_bound: tuple[str | None, ...]
-
-
-def infer(
-    *,
-    problem: Problem,
-    penalty: _core.Penalty,
-    domain: SearchDomain,
-    best: Array,
-    shifts: tuple[Array | None, Array | None],
-    convergence: Convergence | None,
-    status: str,
-    message: str,
-    settings: dict[str, Any],
-    seconds: float,
-) -> Estimate:
-    """The estimate at a minimum.
-
-    Parameters
-    ----------
-    shifts : tuple of ndarray or None
-        How each parameter moves when the windows are halved and doubled.
-    """
-    threads = problem.threads
-    # Before anything of a window's size is held, and all of that no longer than needed: an hour's
-    # recording leaves no room for more.
-    inspections = tuple(inspect(run, threads) for run in problem.recordings)
-    value, residual, jacobian = penalty.linearised(best)
-    columns = penalty.columns(best[penalty.coefficients :])
-    sizes = np.linalg.norm(jacobian, axis=0)
-    noise = size(residual) / np.sqrt(max(1, len(residual) - len(best)))
-    alone = noise / np.where(
-        sizes > 0.0, sizes, 1.0
-    )  # each parameter's error if it were the only one
-    freedom = freedom_of(domain, best, columns_with(jacobian, residual), alone)
-    free = list(freedom.indices)
-    table = problem.table(penalty, best, (residual, columns))
-    freely = jacobian[:, free]
-    del jacobian
-    centre = _centre(penalty, columns, free)
-    by_chance = parameter_covariance(freely, residual, centre, threads=threads)
-    systematic = systematic_errors(problem, penalty, best, free, freely, columns, shifts)
-    del freely
-    spread = widened(by_chance, systematic)
-    at_best = regressor(penalty, columns, threads)
-    del columns
-    parameters = parameters_of(
-        problem, penalty, domain, best, freedom, spread, len(residual), shifts
-    )
-    statistics = _statistics(problem, penalty, table)
-    named = sorted(zip(free, np.abs(spread.weakest), strict=True), key=lambda pair: -pair[1])
-    weakest = tuple(domain.names[i] for i, share in named if share > _NAMED)
-    torque_level = float(np.sqrt(np.mean((penalty.target / penalty.usable_duration) ** 2)))
-    warnings = diagnose(
-        Facts(
-            problem=problem,
-            penalty=penalty,
-            best=best,
-            residual=residual,
-            table=table,
-            parameters=parameters,
-            chance=dict(zip((domain.names[i] for i in free), by_chance.stderr, strict=True)),
-            residuals=statistics,
-            torque_level=torque_level,
-            status=status,
-            message=message,
-            bounds_from_data=domain.from_data,
-            guessed_sign=domain.guessed_sign,
-            inspections=inspections,
-            at_best=at_best,
-            correlations={
-                (domain.names[free[i]], domain.names[free[j]]): float(spread.correlation[i, j])
-                for i in range(len(free))
-                for j in range(i)
-            },
-        )
-    )
-    return Estimate(
-        parameters=parameters,
-        free=tuple(domain.names[i] for i in free),
-        status=status,
-        message=message,
-        penalty=value,
-        correlation=spread.correlation,
-        condition=spread.condition,
-        weakest=weakest,
-        covariance=spread.matrix,
-        residuals=statistics,
-        windows=table,
-        convergence=convergence,
-        warnings=warnings,
-        joint=joint_of(problem, parameters),
-        settings=settings,
-        seconds=seconds,
-    )
-
-
-def r_squared(table: WindowTable) -> float:
-    """Share of the variance of the measured window means that the model explains, weighted by duration.
-
-    Means, because integrals of a constant signal vary with the windows' unequal durations.
-    """
-    mean = table.measured / table.duration
-    level = float(np.average(mean, weights=table.duration))
-    total = float(np.sum(table.duration * (mean - level) ** 2))
-    left = float(np.sum(table.residual**2 / table.duration))
-    return 1.0 - left / total if total > 1e-18 * level**2 * float(table.duration.sum()) else 0.0
-
-
-def relative_residual(table: WindowTable) -> float:
-    """Norm of the residuals over the norm of the measured integrals; infinite when nothing was measured."""
-    measured = size(table.measured)
-    return size(table.residual) / measured if measured > 0.0 else float("inf")
 
 
 def freedom_of(domain: SearchDomain, best: Array, gradient: Array, alone: Array) -> Freedom:
@@ -177,18 +52,10 @@ def freedom_of(domain: SearchDomain, best: Array, gradient: Array, alone: Array)
     return Freedom(indices=tuple(free), at_bound=tuple(at_bound))
 
 
-def _centre(
-    penalty: _core.Penalty, columns: Array, free: list[int]
-) -> tuple[int, int, float] | None:
-    names = [penalty.names[i] for i in free]
-    if not {"sensor_gain", "sensor_offset"} <= set(names):
-        return None
-    reading = columns[:, penalty.names.index("sensor_gain")].sum()
-    mean = float(reading / penalty.usable_duration.sum())
-    return names.index("sensor_gain"), names.index("sensor_offset"), mean
-
-
-def _statistics(problem: Problem, penalty: _core.Penalty, table: WindowTable) -> ResidualStatistics:
+def statistics_of(
+    problem: Problem, penalty: _core.Penalty, table: WindowTable
+) -> ResidualStatistics:
+    """The window residuals in numbers."""
     residual = table.residual
     intervals = penalty.total_samples - len(problem.recordings)
     return ResidualStatistics(

@@ -10,15 +10,10 @@ from numpy.typing import NDArray
 
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
-from jointid.estimate.findings import (
-    Convergence,
-    ParameterEstimate,
-    ResidualStatistics,
-    Warned,
-    WindowTable,
-)
+from jointid.estimate.statistics import Convergence, ParameterEstimate, ResidualStatistics, Warned
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_document, joint_from_document
+from jointid.problem.window_table import WindowTable
 
 SCHEMA = 1
 """Raised when a reader of the old form would misread the new one."""

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.identification.covariance import Triangle
-from jointid.identification.problem import Problem
+from jointid.identification.inference.covariance import Triangle
+from jointid.problem.problem import Problem
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]

@@ -2,19 +2,19 @@
 
 from collections.abc import Callable, Iterator
 
-from jointid.estimate.findings import Warned
+from jointid.estimate.statistics import Warned
 from jointid.estimate.wording import percent
-from jointid.identification.balance_checks import balance
-from jointid.identification.determination import at_bound, model_too_rich, undetermined
-from jointid.identification.facts import Facts
-from jointid.identification.motion_checks import (
+from jointid.identification.warnings.balance import torque_balance
+from jointid.identification.warnings.evidence import Facts
+from jointid.identification.warnings.identifiability import at_bound, model_too_rich, undetermined
+from jointid.identification.warnings.motion import (
     sensor_lags,
     time_jitter,
     too_fast,
     velocity_disagrees,
 )
-from jointid.identification.ripple_check import ripple
-from jointid.identification.signal_checks import clipped, constant, repeated, spikes
+from jointid.identification.warnings.ripple import periodic_residual
+from jointid.identification.warnings.signals import clipped, constant, repeated, spikes
 
 
 def diagnose(facts: Facts) -> tuple[Warned, ...]:
@@ -22,7 +22,7 @@ def diagnose(facts: Facts) -> tuple[Warned, ...]:
     drawn = [(check, warning) for check in _CHECKS for warning in check(facts)]
     # A controller feeds a rippling sensor back, and the motion that follows looks like a lag of it.
     modelled = any(name.startswith("ripple_") for name in facts.parameters)
-    ripples = modelled or any(check is ripple for check, _ in drawn)
+    ripples = modelled or any(check is periodic_residual for check, _ in drawn)
     found = [warning for check, warning in drawn if not (ripples and check is sensor_lags)]
     units = [warning for warning in found if warning.code == "implausible_units"]
     # Degrees make the motor's angle wrong, too: what swings with it is not ripple.
@@ -143,7 +143,7 @@ _CHECKS: tuple[Callable[[Facts], Iterator[Warned]], ...] = (
     _stopped,
     velocity_disagrees,
     too_fast,
-    balance,
+    torque_balance,
     constant,
     clipped,
     spikes,
@@ -154,7 +154,7 @@ _CHECKS: tuple[Callable[[Facts], Iterator[Warned]], ...] = (
     model_too_rich,
     at_bound,
     undetermined,
-    ripple,
+    periodic_residual,
     _poor_fit,
     _structured_residual,
     _standing,

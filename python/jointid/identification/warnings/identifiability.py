@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterator
 
 from jointid import _core
-from jointid.estimate.findings import ParameterEstimate, Warned
+from jointid.estimate.statistics import ParameterEstimate, Warned
 from jointid.estimate.wording import percent, two_digits
-from jointid.identification.facts import Facts
-from jointid.identification.inner_products import inner
+from jointid.identification.warnings.evidence import Facts
+from jointid.problem.inner_products import inner
 
 # A parameter is undetermined above this relative standard error, or when other windows move it by so many.
 _LARGE_ERROR = 0.05

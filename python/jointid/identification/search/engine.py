@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.estimate.findings import Convergence
-from jointid.identification.inner_products import inner
-from jointid.identification.search_domain import SearchDomain
+from jointid.estimate.statistics import Convergence
+from jointid.identification.search.domain import SearchDomain
+from jointid.problem.inner_products import inner
 
 Array = NDArray[np.float64]
 

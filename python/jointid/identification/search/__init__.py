@@ -1,0 +1,1 @@
+"""Where a search may look, and the searches."""

@@ -1,0 +1,1 @@
+"""What the data and the fit show to be wrong."""

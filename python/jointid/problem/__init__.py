@@ -1,0 +1,1 @@
+"""What is identified from what: terms, windows, the penalty they define."""

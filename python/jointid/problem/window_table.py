@@ -1,0 +1,82 @@
+"""The windows in numbers: what was measured, what the terms say, and how well the two agree."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.problem.inner_products import size
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class WindowTable:
+    """One row a window; integrals of the compared signal, and means for pictures.
+
+    Attributes
+    ----------
+    recording : ndarray of int
+        Which recording.
+    start, stop : ndarray
+        [s], on the recording's clock.
+    duration : ndarray
+        Integrated time [s]; less than stop - start where samples were left out.
+    measured, fitted : ndarray
+        Integrals of the sensor reading, or of the torque [N·m·s].
+    velocity : ndarray
+        Mean velocity [rad/s or m/s].
+    friction : ndarray
+        Mean friction that the recording shows: torque less all other fitted terms [N·m or N].
+    """
+
+    recording: NDArray[np.int64]
+    start: Array
+    stop: Array
+    duration: Array
+    measured: Array
+    fitted: Array
+    velocity: Array
+    friction: Array
+
+    @property
+    def residual(self) -> Array:
+        """Measured less fitted."""
+        return self.measured - self.fitted
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Prediction:
+    """What an estimate says of a recording it may never have seen.
+
+    Attributes
+    ----------
+    windows : WindowTable
+    relative : float
+        Norm of the residuals over the norm of the measured integrals.
+    r_squared : float
+    """
+
+    windows: WindowTable
+    relative: float
+    r_squared: float
+
+
+def r_squared(table: WindowTable) -> float:
+    """Share of the variance of the measured window means that the model explains, weighted by duration.
+
+    Means, because integrals of a constant signal vary with the windows' unequal durations.
+    """
+    mean = table.measured / table.duration
+    level = float(np.average(mean, weights=table.duration))
+    total = float(np.sum(table.duration * (mean - level) ** 2))
+    left = float(np.sum(table.residual**2 / table.duration))
+    return 1.0 - left / total if total > 1e-18 * level**2 * float(table.duration.sum()) else 0.0
+
+
+def relative_residual(table: WindowTable) -> float:
+    """Norm of the residuals over the norm of the measured integrals; infinite when nothing was measured."""
+    measured = size(table.measured)
+    return size(table.residual) / measured if measured > 0.0 else float("inf")
