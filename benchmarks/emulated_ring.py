@@ -14,8 +14,8 @@ import numpy as np
 from jointid import AdaptiveRobust
 from jointid.base.files import write_whole
 from jointid.commissioning import commission
-from jointid.hardware.bench import Bench
-from jointid.hardware.torque_source import AnalogInput
+from jointid.hardware.bench.bench import Bench
+from jointid.hardware.elmo.torque_source import AnalogInput
 
 FILE = Path(__file__).parent.parent / "examples" / "hardware" / "joint.toml"
 NAMES = ("coulomb", "static", "stribeck", "viscous", "sensor_gain", "sensor_offset")

@@ -14,16 +14,16 @@ from typing import Any
 import can
 
 import jointid as jid
-from jointid.hardware.drive import DriveSample
-from jointid.hardware.elmo_drive import ElmoDrive
-from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.elmo.drive import ElmoDrive
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.elmo.torque_source import AnalogInput
 from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.emulated.converter import EmulatedConverter
 from jointid.hardware.emulated.elmo import ElmoSettings, EmulatedElmo
 from jointid.hardware.emulated.faults import BusFault
-from jointid.hardware.limits import SessionLimits
-from jointid.hardware.session import Session, SessionOptions, SessionStoppedError, Stop
-from jointid.hardware.torque_source import AnalogInput
+from jointid.hardware.session.drive import DriveSample
+from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.session import Session, SessionOptions, SessionStoppedError, Stop
 from jointid.simulation.stepped import stepped_joint
 
 PERIOD = 2e-3  # [s]

@@ -5,12 +5,12 @@ import math
 from pathlib import Path
 
 import jointid as jid
-from jointid.hardware.elmo_drive import ElmoDrive
+from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.emulated.converter import EmulatedConverter
 from jointid.hardware.emulated.elmo import EmulatedElmo
-from jointid.hardware.limits import SessionLimits
-from jointid.hardware.session import Session
+from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.session import Session
 from jointid.simulation.stepped import stepped_joint
 
 PERIOD = 2e-3  # [s]

@@ -62,7 +62,7 @@ GROUPS: dict[str, Group] = {
     ),
     # A program of its own that a session starts, so that drawing takes none of the loop's time.
     "live window": Group(
-        modules={"hardware.live_window"},
+        modules={"hardware.live.window"},
         may_use={"hardware"},
         packages={"matplotlib"},
     ),

@@ -10,7 +10,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
 from fault_cases import EmulatedSession
 
-from jointid.hardware.session import SessionStoppedError
+from jointid.hardware.session.session import SessionStoppedError
 
 
 def wait() -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 from session_bench import devices, session
 
 from jointid.hardware.emulated.bus import EmulatedBus
-from jointid.hardware.recorder import Recorder
+from jointid.hardware.session.recorder import Recorder
 
 DURATION = 8.0  # [s]
 

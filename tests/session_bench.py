@@ -10,12 +10,12 @@ import numpy as np
 from closed_loop import TRUTH, thesis_joint
 
 import jointid as jid
-from jointid.hardware.elmo_drive import ElmoDrive
+from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.emulated.converter import EmulatedConverter
 from jointid.hardware.emulated.elmo import EmulatedElmo
-from jointid.hardware.limits import SessionLimits
-from jointid.hardware.session import Session, SessionOptions
+from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.session import Session, SessionOptions
 from jointid.simulation.stepped import stepped_joint
 
 JOINT = thesis_joint()

@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 
 import jointid as jid
-from jointid.hardware.bench import Bench
-from jointid.hardware.elmo_drive import ElmoDrive
+from jointid.hardware.bench.bench import Bench
+from jointid.hardware.elmo.drive import ElmoDrive
+from jointid.hardware.elmo.torque_source import AnalogInput, SyncedConverter
 from jointid.hardware.emulated.bench import true_joint
 from jointid.hardware.emulated.bus import EmulatedBus
-from jointid.hardware.torque_source import AnalogInput, SyncedConverter
 
 EXAMPLE = Path(__file__).parent.parent / "examples" / "hardware" / "joint.toml"
 TEXT = EXAMPLE.read_text(encoding="utf-8")

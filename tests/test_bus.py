@@ -7,10 +7,10 @@ import can
 import pytest
 
 from jointid.base.errors import InputError
-from jointid.hardware import bus as bus_module
-from jointid.hardware.bus import needed_identifiers, open_bus
-from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.torque_source import AnalogInput, SyncedConverter
+from jointid.hardware.can import bus as bus_module
+from jointid.hardware.can.bus import needed_identifiers, open_bus
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.elmo.torque_source import AnalogInput, SyncedConverter
 
 
 def test_a_bus_carries_frames_and_is_shut_down() -> None:

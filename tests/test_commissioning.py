@@ -9,7 +9,7 @@ import pytest
 import jointid as jid
 from jointid.cli.command_line import main
 from jointid.commissioning import Commissioning, commission
-from jointid.hardware.bench import Bench
+from jointid.hardware.bench.bench import Bench
 
 EXAMPLE = Path(__file__).parent.parent / "examples" / "hardware" / "joint.toml"
 

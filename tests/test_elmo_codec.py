@@ -8,8 +8,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 import jointid as jid
-from jointid.hardware.elmo_codec import Command, DriveError, Reply, refusal
-from jointid.hardware.elmo_errors import DriveStatus, Emergency, error_meaning, failure_meaning
+from jointid.hardware.elmo.codec import Command, DriveError, Reply, refusal
+from jointid.hardware.elmo.errors import DriveStatus, Emergency, error_meaning, failure_meaning
 
 COMMANDS = [
     ("54 43 00 80 00 00 80 3F", Command(letters="TC", value=1.0)),

@@ -13,10 +13,10 @@ import pytest
 from session_bench import devices, law, limits, session
 
 import jointid as jid
-from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.emulated.device import DeviceBus
 from jointid.hardware.emulated.thread import EmulatorThread
-from jointid.hardware.session import SessionRefusedError
+from jointid.hardware.session.session import SessionRefusedError
 
 SLOW = 10e-3  # [s]: this machine may stand still for tens of milliseconds
 PATIENT: dict[str, Any] = {

@@ -26,7 +26,7 @@ from fault_matrix import row
 
 from jointid.hardware import SessionStoppedError
 from jointid.hardware.emulated.faults import DRIVE_FAILURES, BusFault
-from jointid.hardware.limits import SessionLimits
+from jointid.hardware.session.limits import SessionLimits
 
 WATCHDOG = 0.05  # [s], of the drive, and the step it is looked at in
 LOOK = 0.5e-3

@@ -6,14 +6,14 @@ from typing import Any
 
 import pytest
 
-from jointid.hardware.bench import Bench, BusOptions, Emulation
-from jointid.hardware.elmo_drive import ElmoDrive
-from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.bench.bench import Bench, BusOptions, Emulation
+from jointid.hardware.elmo.drive import ElmoDrive
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.elmo.torque_source import AnalogInput, SensorScaling, SyncedConverter
 from jointid.hardware.emulated.bus import EmulatedBus
-from jointid.hardware.limits import SessionLimits
-from jointid.hardware.realtime import RealTimeOptions
-from jointid.hardware.session_options import SessionOptions
-from jointid.hardware.torque_source import AnalogInput, SensorScaling, SyncedConverter
+from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.options import SessionOptions
+from jointid.hardware.session.realtime import RealTimeOptions
 
 ROOT = Path(__file__).resolve().parents[1]
 TEXT = (ROOT / "docs" / "hardware.md").read_text(encoding="utf-8")

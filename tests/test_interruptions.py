@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from jointid.hardware.interruptions import Interruptions
+from jointid.hardware.session.interruptions import Interruptions
 
 CHILD = Path(__file__).with_name("interrupted_session.py")
 ZERO, OFF = "5443008000000000", "4d4f000000000000"

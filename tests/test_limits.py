@@ -8,14 +8,14 @@ from typing import Any
 import pytest
 
 import jointid as jid
-from jointid.hardware.bus_errors import error_frame_meaning
-from jointid.hardware.drive import DriveSample
-from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.can.bus_errors import error_frame_meaning
+from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.emulated.faults import BusFault, drive_failure
-from jointid.hardware.guard import Guard
-from jointid.hardware.limits import SessionLimits
-from jointid.hardware.session_options import SessionOptions
-from jointid.hardware.stop import LimitError, Stop
+from jointid.hardware.session.drive import DriveSample
+from jointid.hardware.session.guard import Guard
+from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.options import SessionOptions
+from jointid.hardware.session.stop import LimitError, Stop
 
 PERIOD, COUNT = 2e-3, 1e-5
 LIMITS = SessionLimits(

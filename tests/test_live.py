@@ -14,10 +14,10 @@ import pytest
 from session_bench import devices, session
 
 from jointid.base.errors import InputError
-from jointid.hardware.drive import DriveSample
 from jointid.hardware.emulated.bus import EmulatedBus
-from jointid.hardware.live import ConsoleLine, Observers, console_line
-from jointid.hardware.live_plot import LivePlot
+from jointid.hardware.live.console import ConsoleLine, Observers, console_line
+from jointid.hardware.live.plot import LivePlot
+from jointid.hardware.session.drive import DriveSample
 
 SAMPLE = DriveSample(time=0.0, position=math.radians(30.0), reading=12.34)
 
@@ -208,7 +208,7 @@ def test_a_window_that_does_not_keep_up_never_holds_the_loop(windowless: list[St
 
 
 def test_points_are_decimated_in_order_and_go_on_over_the_phases(windowless: list[StandIn]) -> None:
-    from jointid.hardware.live_plot import POINT
+    from jointid.hardware.live.plot import POINT
 
     clock = Time()
     plot = LivePlot(now=clock)
@@ -231,7 +231,7 @@ def test_points_are_decimated_in_order_and_go_on_over_the_phases(windowless: lis
 def test_the_panels_show_the_newest_span() -> None:
     from matplotlib.figure import Figure
 
-    from jointid.hardware.live_window import Panels
+    from jointid.hardware.live.window import Panels
 
     figure = Figure()
     panels = Panels(figure, 10.0)

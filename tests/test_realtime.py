@@ -11,10 +11,10 @@ import pytest
 from session_bench import devices, session
 
 from jointid.base.errors import InputError
-from jointid.hardware import realtime
-from jointid.hardware.clock import MonotonicClock
 from jointid.hardware.emulated.bus import EmulatedBus
-from jointid.hardware.realtime import RealTime, RealTimeOptions
+from jointid.hardware.session import realtime
+from jointid.hardware.session.clock import MonotonicClock
+from jointid.hardware.session.realtime import RealTime, RealTimeOptions
 
 linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only on Linux")
 

@@ -26,8 +26,8 @@ from jointid.hardware import (
     SessionRefusedError,
     SessionStoppedError,
 )
-from jointid.hardware.appended_file import AppendedFile
-from jointid.hardware.recorder import Recorder
+from jointid.hardware.session.appended_file import AppendedFile
+from jointid.hardware.session.recorder import Recorder
 from jointid.joint.joint_file import joint_document
 
 CHILD = Path(__file__).with_name("killed_session.py")
@@ -153,7 +153,7 @@ def test_files_and_folder_are_on_the_disk_before_the_motor_is_on(
         synced.append(os.fstat(descriptor).st_ino)
         fsync(descriptor)
 
-    monkeypatch.setattr("jointid.hardware.appended_file.os.fsync", watched)
+    monkeypatch.setattr("jointid.hardware.session.appended_file.os.fsync", watched)
     path = tmp_path / "run.csv"
     recorder = Recorder(path, {})
     files = [path.stat().st_ino, path.with_suffix(".log").stat().st_ino]

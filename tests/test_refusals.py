@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 import jointid as jid
-from jointid.hardware import canopen_frames as canopen
-from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.can import canopen_frames as canopen
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.elmo.torque_source import AnalogInput
 from jointid.hardware.emulated.faults import BusFault
-from jointid.hardware.limits import SessionLimits
-from jointid.hardware.session import Session, SessionOptions
-from jointid.hardware.stop import SessionRefusedError
-from jointid.hardware.torque_source import AnalogInput
+from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.session import Session, SessionOptions
+from jointid.hardware.session.stop import SessionRefusedError
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
 from fault_cases import EmulatedSession

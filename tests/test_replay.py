@@ -22,7 +22,7 @@ from jointid.hardware import (
     EmulatorThread,
     SessionStoppedError,
 )
-from jointid.hardware.session_notes import elmo_options_of
+from jointid.hardware.session.metadata import elmo_options_of
 
 CONVERTER = ElmoOptions()
 ANALOG = ElmoOptions(torque=AnalogInput())

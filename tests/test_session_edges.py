@@ -14,14 +14,14 @@ from session_bench import JOINT, PERIOD, devices, law, limits, motion, session
 
 import jointid as jid
 from jointid.hardware import SessionRefusedError, SessionStoppedError
-from jointid.hardware.elmo_drive import ElmoDrive
-from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.elmo.drive import ElmoDrive
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.elmo.torque_source import AnalogInput, SensorScaling, SyncedConverter
 from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.emulated.elmo import EmulatedElmo
 from jointid.hardware.emulated.faults import BusFault
-from jointid.hardware.limits import SessionLimits
-from jointid.hardware.session import Session, SessionOptions
-from jointid.hardware.torque_source import AnalogInput, SensorScaling, SyncedConverter
+from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.session import Session, SessionOptions
 
 
 def switched_on(elmo: EmulatedElmo, then: Callable[[float], None]) -> None:

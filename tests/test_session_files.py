@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import jointid as jid
 from jointid.hardware import Bench, ElmoDrive, EmulatedBus, Session, emulated_devices
-from jointid.hardware.session import SessionStoppedError
+from jointid.hardware.session.session import SessionStoppedError
 
 EXAMPLE = Path(__file__).parent.parent / "examples" / "hardware" / "joint.toml"
 
@@ -89,7 +89,7 @@ def test_a_disk_that_takes_nothing_stops_the_session(
     def full(*_: object) -> bytes:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("jointid.hardware.recorder._line", full)
+    monkeypatch.setattr("jointid.hardware.session.recorder._line", full)
     with pytest.raises(SessionStoppedError, match="cannot be written: No space left") as caught:
         ran(tmp_path / "run.csv")
     assert caught.value.stop.limit == "recording"

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import jointid as jid
-from jointid.hardware.drive import DriveEnd, DriveFaultError
-from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.session import SessionStoppedError
-from jointid.hardware.torque_source import AnalogInput
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.elmo.torque_source import AnalogInput
+from jointid.hardware.session.drive import DriveEnd, DriveFaultError
+from jointid.hardware.session.session import SessionStoppedError
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
 from fault_cases import BEGIN, PERIOD, EmulatedSession
@@ -146,7 +146,7 @@ def test_recording_that_cannot_be_written_stops_the_session(
         if len(synced) > 3:  # both files and the folder, when they are made
             raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("jointid.hardware.appended_file.os.fsync", full)
+    monkeypatch.setattr("jointid.hardware.session.appended_file.os.fsync", full)
     bench = EmulatedSession(output=tmp_path / "run.csv")
     with pytest.raises(SessionStoppedError, match=r"written: .*No space left") as found:
         bench.session().run()

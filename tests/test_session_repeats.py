@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from session_bench import HashedBus, devices, hashes_of_a_session, session
 
-from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.elmo.options import ElmoOptions
 
 
 def test_a_session_repeats_to_the_bit_and_its_seed_matters() -> None:

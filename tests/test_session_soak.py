@@ -12,7 +12,7 @@ from session_soak import Soaked, one_session, soak_sessions
 from session_speed import own_times
 
 import jointid as jid
-from jointid.hardware.recorder import Recorder
+from jointid.hardware.session.recorder import Recorder
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="counts in /proc")

@@ -6,14 +6,14 @@ import can
 import pytest
 from session_bench import JOINT, PERIOD, devices, joint
 
-from jointid.hardware import canopen_frames as canopen
-from jointid.hardware.drive import DriveFaultError
-from jointid.hardware.elmo_drive import ElmoDrive
-from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.can import canopen_frames as canopen
+from jointid.hardware.elmo.drive import ElmoDrive
+from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.emulated.converter import EmulatedConverter
 from jointid.hardware.emulated.elmo import ElmoSettings, EmulatedElmo
 from jointid.hardware.emulated.faults import BusFault
+from jointid.hardware.session.drive import DriveFaultError
 
 POSITION, SENSOR = 0x4FF, 0x1C0
 

@@ -11,9 +11,9 @@ from session_bench import PERIOD
 
 import jointid as jid
 from jointid.base.errors import InputError
-from jointid.hardware.drive import Drive, DriveFaultError, DriveSample
-from jointid.hardware.limits import SessionLimits
-from jointid.hardware.session import (
+from jointid.hardware.session.drive import Drive, DriveFaultError, DriveSample
+from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.session import (
     Session,
     SessionOptions,
     SessionRefusedError,
@@ -173,7 +173,8 @@ def test_a_missing_method_is_told_before_anything_is_called(name: str) -> None:
     with pytest.raises(InputError) as refused:
         Session(wheel, LAW, SWING, LIMITS, options=OPTIONS)
     assert str(refused.value) == (
-        f"the drive Incomplete lacks {name}(); `jointid.hardware.drive.Drive` says what a session asks of a drive"
+        f"the drive Incomplete lacks {name}(); "
+        "`jointid.hardware.session.drive.Drive` says what a session asks of a drive"
     )
     assert wheel.calls == []
 

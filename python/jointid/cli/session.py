@@ -13,8 +13,8 @@ from jointid.cli.arguments import TEXT, whole_seed
 if TYPE_CHECKING:
     from jointid.commissioning import Commissioning
     from jointid.estimate.estimate import Estimate
-    from jointid.hardware.bench import Bench
-    from jointid.hardware.live import Observers
+    from jointid.hardware.bench.bench import Bench
+    from jointid.hardware.live.console import Observers
 
 STOPPED = 3
 """Exit code when a limit, a fault or the user stopped a session, or it was refused."""
@@ -81,8 +81,8 @@ def emulate(arguments: argparse.Namespace) -> int:
     import time
 
     from jointid.base.errors import InputError
-    from jointid.hardware.bench import Bench
-    from jointid.hardware.bus import open_whole_bus
+    from jointid.hardware.bench.bench import Bench
+    from jointid.hardware.can.bus import open_whole_bus
     from jointid.hardware.emulated.bench import emulated_devices
     from jointid.hardware.emulated.thread import EmulatorThread
 
@@ -110,8 +110,8 @@ def run(arguments: argparse.Namespace) -> int:
     from jointid.base.errors import InputError
     from jointid.base.files import write_whole
     from jointid.commissioning import bench_drive, commission
-    from jointid.hardware.bench import Bench
-    from jointid.hardware.session import Session, SessionRefusedError, SessionStoppedError
+    from jointid.hardware.bench.bench import Bench
+    from jointid.hardware.session.session import Session, SessionRefusedError, SessionStoppedError
 
     _check(arguments)
     bench = Bench.load(arguments.joint)
@@ -182,8 +182,8 @@ def _check(arguments: argparse.Namespace) -> None:
 
 def _observers(arguments: argparse.Namespace) -> Observers:
     """A line on the console, a window; on virtual time both would only flicker."""
-    from jointid.hardware.live import ConsoleLine, Observers
-    from jointid.hardware.live_plot import LivePlot
+    from jointid.hardware.live.console import ConsoleLine, Observers
+    from jointid.hardware.live.plot import LivePlot
 
     shown: list[Any] = []
     if not arguments.quiet and not arguments.emulate:

@@ -12,12 +12,12 @@ import numpy as np
 
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
-from jointid.hardware.bench import Bench
-from jointid.hardware.drive import Drive
-from jointid.hardware.elmo_drive import ElmoDrive
+from jointid.hardware.bench.bench import Bench
+from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.emulated.bench import emulated_devices, true_joint
 from jointid.hardware.emulated.bus import EmulatedBus
-from jointid.hardware.session import Session
+from jointid.hardware.session.drive import Drive
+from jointid.hardware.session.session import Session
 from jointid.identification.identification import identify
 from jointid.recording.recording import Recording
 from jointid.simulation.arguments import Controller
@@ -223,7 +223,7 @@ def bench_drive(bench: Bench, *, emulate: bool, seed: int = 0) -> Iterator[Drive
         ) as emulated:
             yield ElmoDrive(emulated, bench.joint, bench.drive)
         return
-    from jointid.hardware.bus import open_bus
+    from jointid.hardware.can.bus import open_bus
 
     where = bench.bus
     with open_bus(

@@ -6,32 +6,32 @@
 ...     recording = jid.hardware.Session(drive, bench.controller, bench.trajectory, bench.limits).run()
 """
 
-from jointid.hardware.bench import Bench, BusOptions, Emulation
-from jointid.hardware.bus import open_bus
-from jointid.hardware.clock import MonotonicClock
-from jointid.hardware.drive import Drive, DriveEnd, DriveFaultError, DriveSample
-from jointid.hardware.elmo_codec import Command, DriveError, Reply
-from jointid.hardware.elmo_drive import ElmoDrive
-from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.bench.bench import Bench, BusOptions, Emulation
+from jointid.hardware.can.bus import open_bus
+from jointid.hardware.elmo.codec import Command, DriveError, Reply
+from jointid.hardware.elmo.drive import ElmoDrive
+from jointid.hardware.elmo.frame_replay import replay
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.elmo.torque_source import AnalogInput, SensorScaling, SyncedConverter
 from jointid.hardware.emulated.bench import emulated_devices, true_joint
 from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.emulated.converter import EmulatedConverter
 from jointid.hardware.emulated.elmo import ElmoSettings, EmulatedElmo
 from jointid.hardware.emulated.faults import BusFault
 from jointid.hardware.emulated.thread import EmulatorThread
-from jointid.hardware.limits import SessionLimits
-from jointid.hardware.live import ConsoleLine
-from jointid.hardware.live_plot import LivePlot
-from jointid.hardware.realtime import RealTimeOptions
-from jointid.hardware.replaying import replay
-from jointid.hardware.session import (
+from jointid.hardware.live.console import ConsoleLine
+from jointid.hardware.live.plot import LivePlot
+from jointid.hardware.session.clock import MonotonicClock
+from jointid.hardware.session.drive import Drive, DriveEnd, DriveFaultError, DriveSample
+from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.realtime import RealTimeOptions
+from jointid.hardware.session.session import (
     Session,
     SessionOptions,
     SessionRefusedError,
     SessionStoppedError,
 )
-from jointid.hardware.stop import Stop
-from jointid.hardware.torque_source import AnalogInput, SensorScaling, SyncedConverter
+from jointid.hardware.session.stop import Stop
 
 __all__ = [
     "AnalogInput",

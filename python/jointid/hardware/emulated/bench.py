@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from jointid.base.errors import InputError
-from jointid.hardware.bench import Bench, joint_with_truth
+from jointid.hardware.bench.bench import Bench, joint_with_truth
+from jointid.hardware.elmo.torque_source import AnalogInput, SensorScaling, SyncedConverter
 from jointid.hardware.emulated.converter import EmulatedConverter
 from jointid.hardware.emulated.elmo import ElmoSettings, EmulatedElmo
-from jointid.hardware.torque_source import AnalogInput, SensorScaling, SyncedConverter
 from jointid.joint.joint import Joint
 from jointid.simulation.plant import torque_limit
 from jointid.simulation.stepped import stepped_joint

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import can
 
-from jointid.hardware.canopen_frames import SYNC
-from jointid.hardware.torque_source import SensorScaling
+from jointid.hardware.can.canopen_frames import SYNC
+from jointid.hardware.elmo.torque_source import SensorScaling
 
 if TYPE_CHECKING:
     from jointid.hardware.emulated.device import DeviceBus

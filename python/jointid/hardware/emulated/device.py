@@ -9,7 +9,7 @@ from typing import Protocol
 
 import can
 
-from jointid.hardware.canopen_frames import bits_on_wire
+from jointid.hardware.can.canopen_frames import bits_on_wire
 from jointid.hardware.emulated.faults import BusFault, mangled
 
 Event = Callable[[], None]

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import can
 
-from jointid.hardware import canopen_frames as canopen
+from jointid.hardware.can import canopen_frames as canopen
+from jointid.hardware.elmo.torque_source import SensorScaling
 from jointid.hardware.emulated.faults import drive_failure
 from jointid.hardware.emulated.interpreter import Interpreter
 from jointid.hardware.emulated.objects import ObjectDictionary
-from jointid.hardware.torque_source import SensorScaling
 
 if TYPE_CHECKING:
     from jointid._core import SteppedJoint

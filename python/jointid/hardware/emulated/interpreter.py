@@ -8,7 +8,7 @@ from collections import deque
 from typing import TYPE_CHECKING
 
 from jointid.base.errors import InputError
-from jointid.hardware.elmo_codec import Command, Reply, refusal
+from jointid.hardware.elmo.codec import Command, Reply, refusal
 
 if TYPE_CHECKING:
     from jointid.hardware.emulated.elmo import EmulatedElmo

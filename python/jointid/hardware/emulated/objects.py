@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from jointid.base.errors import InputError
-from jointid.hardware.canopen_frames import SdoRequest, sdo_abort, sdo_answer
+from jointid.hardware.can.canopen_frames import SdoRequest, sdo_abort, sdo_answer
 
 _MAPPABLE = {0x60640020: "position", 0x60690020: "velocity", 0x606C0020: "velocity"}
 _MAPPABLE |= {0x60770010: "torque"}

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from jointid.base.errors import InputError
-from jointid.hardware.torque_source import AnalogInput, SyncedConverter
+from jointid.hardware.elmo.torque_source import AnalogInput, SyncedConverter
 from jointid.joint.joint import Joint
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Self
 
 from jointid.base.errors import InputError
-from jointid.hardware.drive import DriveSample
+from jointid.hardware.session.drive import DriveSample
 
 POINT = struct.Struct("<5d")  # time, position, reference [rad], torque [N·m], reading
 _SHORTEST = 0.02  # [s] between two points
@@ -64,7 +64,7 @@ class LivePlot:
         self._taken = self._written = -math.inf
         self._waiting = bytearray()
         self.dropped = 0
-        command = [sys.executable, "-m", "jointid.hardware.live_window", f"--span={span}"]
+        command = [sys.executable, "-m", "jointid.hardware.live.window", f"--span={span}"]
         if picture is not None:
             command.append(f"--picture={Path(picture).absolute()}")
         if not window:

@@ -12,12 +12,12 @@ import numpy as np
 import numpy.typing as npt
 
 from jointid.base.errors import InputError
-from jointid.hardware.cycle import held_torque, target_at
-from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.elmo_timing import command_latency
-from jointid.hardware.frame_log import logged_frames
-from jointid.hardware.logged_cycles import CycleReader, LoggedCycle
-from jointid.hardware.session_notes import elmo_options_of
+from jointid.hardware.can.frame_log import logged_frames
+from jointid.hardware.elmo.logged_cycles import CycleReader, LoggedCycle
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.elmo.timing import command_latency
+from jointid.hardware.session.cycle import held_torque, target_at
+from jointid.hardware.session.metadata import elmo_options_of
 from jointid.joint.joint import Joint
 from jointid.recording.readers.loading import load
 from jointid.recording.recording import Recording

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from jointid.base.errors import InputError
-from jointid.hardware.appended_file import AppendedFile, Syncing, sync_folder
+from jointid.hardware.session.appended_file import AppendedFile, Syncing, sync_folder
 from jointid.recording.saving import CSV_MARK, SCHEMA
 from jointid.recording.truncated import CLOSING, OPENING
 

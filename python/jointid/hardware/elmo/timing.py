@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from jointid.hardware.canopen_frames import bits_on_wire
-from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.can.canopen_frames import bits_on_wire
+from jointid.hardware.elmo.options import ElmoOptions
 
 POSITION_LENGTH = 6
 """Bytes of the position's frame, as `elmo_setup.map_position` has it."""

@@ -12,7 +12,7 @@ import struct
 from dataclasses import dataclass
 
 from jointid.base.errors import InputError
-from jointid.hardware.elmo_errors import error_meaning
+from jointid.hardware.elmo.errors import error_meaning
 
 _QUERY_OR_ERROR, _FLOAT = 0x40, 0x80
 _LARGEST_INDEX = 0x3FFF

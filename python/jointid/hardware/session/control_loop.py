@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointid import _core
-from jointid.hardware.cycle import held_torque, target_at
-from jointid.hardware.drive import Drive, DriveFaultError, DriveSample
-from jointid.hardware.guard import Guard
-from jointid.hardware.interruptions import Interruptions
-from jointid.hardware.recorder import Recorder
-from jointid.hardware.session_options import SessionOptions
-from jointid.hardware.stop import LimitError
-from jointid.hardware.velocity_estimator import VelocityEstimator
+from jointid.hardware.session.cycle import held_torque, target_at
+from jointid.hardware.session.drive import Drive, DriveFaultError, DriveSample
+from jointid.hardware.session.guard import Guard
+from jointid.hardware.session.interruptions import Interruptions
+from jointid.hardware.session.options import SessionOptions
+from jointid.hardware.session.recorder import Recorder
+from jointid.hardware.session.stop import LimitError
+from jointid.hardware.session.velocity_estimator import VelocityEstimator
 from jointid.simulation.trajectory import Trajectory
 
 Observer = Callable[[str, float, DriveSample, float, float], object]

@@ -74,7 +74,7 @@ def main() -> int:
     arguments = parser.parse_args()
     import matplotlib as mpl
 
-    from jointid.hardware.live_plot import POINT
+    from jointid.hardware.live.plot import POINT
 
     if arguments.no_window:
         mpl.use("Agg")

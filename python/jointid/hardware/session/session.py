@@ -14,17 +14,17 @@ import numpy as np
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.hardware.drive import Drive, DriveEnd, DriveFaultError, check_drive
-from jointid.hardware.following import Course, Follower, Observer, unwritten
-from jointid.hardware.guard import Guard
-from jointid.hardware.interruptions import Interruptions
-from jointid.hardware.limits import SessionLimits
-from jointid.hardware.realtime import RealTime, RealTimeOptions
-from jointid.hardware.recorder import Frame, Recorder, check_output
-from jointid.hardware.session_notes import notes_of_session
-from jointid.hardware.session_options import SessionOptions
-from jointid.hardware.start_checks import problems_at_rest, problems_on_paper
-from jointid.hardware.stop import LimitError, SessionRefusedError, SessionStoppedError, Stop
+from jointid.hardware.session.control_loop import Course, Follower, Observer, unwritten
+from jointid.hardware.session.drive import Drive, DriveEnd, DriveFaultError, check_drive
+from jointid.hardware.session.guard import Guard
+from jointid.hardware.session.interruptions import Interruptions
+from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.metadata import notes_of_session
+from jointid.hardware.session.options import SessionOptions
+from jointid.hardware.session.realtime import RealTime, RealTimeOptions
+from jointid.hardware.session.recorder import Frame, Recorder, check_output
+from jointid.hardware.session.start_checks import problems_at_rest, problems_on_paper
+from jointid.hardware.session.stop import LimitError, SessionRefusedError, SessionStoppedError, Stop
 from jointid.recording.recording import Recording
 from jointid.simulation.arguments import Controller
 from jointid.simulation.trajectory import Trajectory

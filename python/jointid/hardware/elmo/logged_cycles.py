@@ -7,12 +7,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from jointid.base.errors import InputError
-from jointid.hardware import canopen_frames as canopen
-from jointid.hardware.elmo_codec import Command, DriveError, Reply
-from jointid.hardware.elmo_decoder import ElmoDecoder
-from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.elmo_timing import SyncWatch
-from jointid.hardware.frame_log import LoggedFrame
+from jointid.hardware.can import canopen_frames as canopen
+from jointid.hardware.can.frame_log import LoggedFrame
+from jointid.hardware.elmo.codec import Command, DriveError, Reply
+from jointid.hardware.elmo.decoder import ElmoDecoder
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.elmo.timing import SyncWatch
 from jointid.joint.joint import Joint
 
 

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
-from jointid.hardware import canopen_frames as canopen
-from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.torque_source import SyncedConverter
+from jointid.hardware.can import canopen_frames as canopen
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.elmo.torque_source import SyncedConverter
 
 if TYPE_CHECKING:
     import can

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from jointid import _core
-from jointid.hardware.drive import Drive, DriveSample
-from jointid.hardware.limits import SessionLimits
+from jointid.hardware.session.drive import Drive, DriveSample
+from jointid.hardware.session.limits import SessionLimits
 from jointid.simulation.arguments import Controller
 from jointid.simulation.trajectory import Trajectory
 

@@ -13,11 +13,11 @@ import numpy as np
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.hardware.drive import Drive
-from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.limits import SessionLimits
-from jointid.hardware.session_options import SessionOptions
-from jointid.hardware.torque_source import AnalogInput, SensorScaling, SyncedConverter
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.elmo.torque_source import AnalogInput, SensorScaling, SyncedConverter
+from jointid.hardware.session.drive import Drive
+from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.options import SessionOptions
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_document
 from jointid.simulation.arguments import Controller

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections import deque
 
-from jointid.hardware.drive import DriveSample
-from jointid.hardware.limits import SessionLimits
-from jointid.hardware.stop import LimitError
+from jointid.hardware.session.drive import DriveSample
+from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.stop import LimitError
 
 # Samples that the difference is the mean of: a drive is one or two cycles behind its command.
 _COMPARED = 10

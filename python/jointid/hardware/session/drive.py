@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from jointid.base.errors import InputError
-from jointid.hardware.clock import Clock
+from jointid.hardware.session.clock import Clock
 
 FAULT_KINDS = (
     "stale_position",
@@ -236,6 +236,6 @@ def check_drive(drive: object) -> None:
     missing += [name for name in _PROPERTIES if not (hasattr(kind, name) or hasattr(drive, name))]
     if missing:
         raise InputError(
-            f"the drive {kind.__name__} lacks {', '.join(missing)}; `jointid.hardware.drive.Drive` says what "
+            f"the drive {kind.__name__} lacks {', '.join(missing)}; `jointid.hardware.session.drive.Drive` says what "
             "a session asks of a drive"
         )

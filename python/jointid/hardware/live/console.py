@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable
 from typing import Self, TextIO
 
-from jointid.hardware.drive import DriveSample
+from jointid.hardware.session.drive import DriveSample
 
 Observer = Callable[[str, float, DriveSample, float, float], object]
 _SHORTEST = 0.1  # [s] between two lines

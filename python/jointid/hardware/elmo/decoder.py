@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import struct
 
-from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.torque_source import SyncedConverter
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.elmo.torque_source import SyncedConverter
 from jointid.joint.joint import Joint
 
 

@@ -11,12 +11,12 @@ from typing import Any, TypeVar
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.hardware.bench import Bench, BusOptions, Emulation, joint_with_truth
-from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.limits import SessionLimits
-from jointid.hardware.realtime import RealTimeOptions
-from jointid.hardware.session_options import SessionOptions
-from jointid.hardware.torque_source import AnalogInput, SensorScaling, SyncedConverter
+from jointid.hardware.bench.bench import Bench, BusOptions, Emulation, joint_with_truth
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.elmo.torque_source import AnalogInput, SensorScaling, SyncedConverter
+from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.options import SessionOptions
+from jointid.hardware.session.realtime import RealTimeOptions
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_from_document, read_document
 from jointid.joint.parameters import suggestion

@@ -9,10 +9,10 @@ from pathlib import Path
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.limits import SessionLimits
-from jointid.hardware.realtime import RealTimeOptions
-from jointid.hardware.session_options import SessionOptions
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.options import SessionOptions
+from jointid.hardware.session.realtime import RealTimeOptions
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller
 from jointid.simulation.trajectory import Trajectory
@@ -121,7 +121,7 @@ class Bench:
         InputError
             Names file, table and key.
         """
-        from jointid.hardware.bench_file import load_bench
+        from jointid.hardware.bench.bench_file import load_bench
 
         return load_bench(path)
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from jointid.hardware.canopen_frames import SdoAbortError, SdoRequest
-from jointid.hardware.drive import DriveFaultError
-from jointid.hardware.elmo_link import ElmoLink
-from jointid.hardware.elmo_options import ElmoOptions
+from jointid.hardware.can.canopen_frames import SdoAbortError, SdoRequest
+from jointid.hardware.elmo.link import ElmoLink
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.session.drive import DriveFaultError
 
 _Write = tuple[int, int, int, int]  # index, subindex, value, size
 

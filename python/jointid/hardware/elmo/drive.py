@@ -9,17 +9,17 @@ from typing import Any
 import can
 
 from jointid.base.errors import InputError
-from jointid.hardware import canopen_frames as canopen
-from jointid.hardware import elmo_setup
-from jointid.hardware.clock import Clock
-from jointid.hardware.drive import DriveEnd, DriveFaultError, DriveSample
-from jointid.hardware.elmo_codec import Command
-from jointid.hardware.elmo_decoder import ElmoDecoder
-from jointid.hardware.elmo_errors import DriveStatus, failure_meaning
-from jointid.hardware.elmo_link import ElmoLink, Tap
-from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.elmo_timing import command_latency
-from jointid.hardware.torque_source import AnalogInput, SyncedConverter
+from jointid.hardware.can import canopen_frames as canopen
+from jointid.hardware.elmo import setup as elmo_setup
+from jointid.hardware.elmo.codec import Command
+from jointid.hardware.elmo.decoder import ElmoDecoder
+from jointid.hardware.elmo.errors import DriveStatus, failure_meaning
+from jointid.hardware.elmo.link import ElmoLink, Tap
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.elmo.timing import command_latency
+from jointid.hardware.elmo.torque_source import AnalogInput, SyncedConverter
+from jointid.hardware.session.clock import Clock
+from jointid.hardware.session.drive import DriveEnd, DriveFaultError, DriveSample
 from jointid.joint.joint import Joint
 
 _BOOT, _ENABLE = 2.0, 3.0  # [s] to wait for each

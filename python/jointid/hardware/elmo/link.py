@@ -9,15 +9,15 @@ from typing import Any
 import can
 
 from jointid.base.errors import InputError
-from jointid.hardware import canopen_frames as canopen
-from jointid.hardware.bus_errors import error_frame_meaning
-from jointid.hardware.clock import Clock, MonotonicClock
-from jointid.hardware.drive import DriveFaultError
-from jointid.hardware.elmo_codec import Command, DriveError, Reply
-from jointid.hardware.elmo_decoder import ElmoDecoder
-from jointid.hardware.elmo_errors import Emergency
-from jointid.hardware.elmo_options import ElmoOptions
-from jointid.hardware.elmo_timing import SyncWatch
+from jointid.hardware.can import canopen_frames as canopen
+from jointid.hardware.can.bus_errors import error_frame_meaning
+from jointid.hardware.elmo.codec import Command, DriveError, Reply
+from jointid.hardware.elmo.decoder import ElmoDecoder
+from jointid.hardware.elmo.errors import Emergency
+from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.elmo.timing import SyncWatch
+from jointid.hardware.session.clock import Clock, MonotonicClock
+from jointid.hardware.session.drive import DriveFaultError
 
 _ANSWER = 0.2  # [s] to wait for one
 _HOST_HEARTBEAT = 0x8130  # emergency: ours has stayed away

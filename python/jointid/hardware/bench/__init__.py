@@ -1,0 +1,1 @@
+"""A bench in a file: joint, drive, motion, controller, limits."""

@@ -1,0 +1,1 @@
+"""The CAN bus, CANopen frames, and logs of frames."""

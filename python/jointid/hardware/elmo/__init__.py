@@ -1,0 +1,1 @@
+"""An Elmo drive and its torque sensor's converter on CANopen."""
