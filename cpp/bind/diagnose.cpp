@@ -1,6 +1,6 @@
 #include "bind/recording.hpp"
 #include "diagnose/inspection.hpp"
-#include "identify/regression.hpp"
+#include "identify/solve/regression.hpp"
 
 namespace jointid::bind {
 

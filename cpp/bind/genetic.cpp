@@ -2,7 +2,7 @@
 
 #include "bind/bind.hpp"
 #include "bind/choices.hpp"
-#include "identify/penalty_function.hpp"
+#include "identify/penalty/penalty_function.hpp"
 #include "search/random_search.hpp"
 #include "search/trials.hpp"
 

@@ -1,6 +1,6 @@
 #include "bind/recording.hpp"
-#include "identify/sliding_penalty.hpp"
-#include "identify/windows.hpp"
+#include "identify/compressed/sliding_penalty.hpp"
+#include "identify/recording/windows.hpp"
 
 namespace jointid::bind {
 

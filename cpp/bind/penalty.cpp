@@ -1,9 +1,9 @@
-#include "identify/penalty.hpp"
+#include "identify/penalty/penalty.hpp"
 
 #include "bind/recording.hpp"
 #include "diagnose/ripple.hpp"
-#include "identify/compressed_penalty.hpp"
-#include "identify/refit.hpp"
+#include "identify/compressed/compressed_penalty.hpp"
+#include "identify/solve/refit.hpp"
 
 namespace jointid::bind {
 

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "identify/windows.hpp"
+#include "identify/recording/windows.hpp"
 
 namespace jointid::bind {
 

@@ -11,7 +11,7 @@
 
 #include "base/pool.hpp"
 #include "bind/bind.hpp"
-#include "identify/masked_recording.hpp"
+#include "identify/recording/masked_recording.hpp"
 
 namespace jointid::bind {
 

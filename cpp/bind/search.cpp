@@ -1,6 +1,6 @@
 #include "bind/bind.hpp"
-#include "identify/penalty_function.hpp"
-#include "identify/separable.hpp"
+#include "identify/penalty/penalty_function.hpp"
+#include "identify/solve/separable.hpp"
 #include "search/polish.hpp"
 
 namespace jointid::bind {

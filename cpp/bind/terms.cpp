@@ -1,4 +1,4 @@
-#include "identify/terms.hpp"
+#include "identify/balance/terms.hpp"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <limits>
 
-#include "identify/penalty_parts.hpp"
+#include "identify/penalty/penalty_parts.hpp"
 
 namespace jointid::diagnose {
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "identify/penalty_parts.hpp"
+#include "identify/penalty/penalty_parts.hpp"
 
 namespace jointid::diagnose {
 

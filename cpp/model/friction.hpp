@@ -2,7 +2,7 @@
 // Static friction maps as sums of linear coefficients times basis functions of the speed:
 // f(v) = sgn v * sum c_i h_i(|v|). (2-1) Coulomb + viscous, (2-3) Stribeck with exponent and (4-1)
 // Coulomb + static excess with Gaussian decay + viscous are such sums; only the decay has shape
-// parameters. A new map is a new basis here and a new row in identify/terms.cpp.
+// parameters. A new map is a new basis here and a new row in identify/balance/terms.cpp.
 
 #include "base/elementary.hpp"
 

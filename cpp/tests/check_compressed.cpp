@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "check.hpp"
-#include "identify/compressed_penalty.hpp"
-#include "identify/separable.hpp"
+#include "identify/compressed/compressed_penalty.hpp"
+#include "identify/solve/separable.hpp"
 #include "synthetic.hpp"
 
 namespace jointid::tests {

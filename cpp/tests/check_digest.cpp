@@ -7,8 +7,8 @@
 
 #include "base/random.hpp"
 #include "check.hpp"
-#include "identify/digest.hpp"
-#include "identify/shape_table.hpp"
+#include "identify/compressed/digest.hpp"
+#include "identify/compressed/shape_table.hpp"
 
 namespace jointid::tests {
 namespace {

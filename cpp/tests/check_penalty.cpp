@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "check.hpp"
-#include "identify/penalty.hpp"
+#include "identify/penalty/penalty.hpp"
 #include "synthetic.hpp"
 
 namespace jointid::tests {

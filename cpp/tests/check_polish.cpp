@@ -7,7 +7,7 @@
 
 #include "base/random.hpp"
 #include "check.hpp"
-#include "identify/penalty.hpp"
+#include "identify/penalty/penalty.hpp"
 #include "reference.hpp"
 #include "search/polish.hpp"
 #include "synthetic.hpp"

@@ -8,7 +8,7 @@
 
 #include "base/random.hpp"
 #include "check.hpp"
-#include "identify/quadrature.hpp"
+#include "identify/balance/quadrature.hpp"
 #include "synthetic.hpp"
 
 namespace jointid::tests {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "check.hpp"
-#include "identify/penalty.hpp"
-#include "identify/separable.hpp"
+#include "identify/penalty/penalty.hpp"
+#include "identify/solve/separable.hpp"
 #include "reference.hpp"
 #include "synthetic.hpp"
 

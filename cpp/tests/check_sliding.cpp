@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "check.hpp"
-#include "identify/separable.hpp"
-#include "identify/sliding_penalty.hpp"
+#include "identify/compressed/sliding_penalty.hpp"
+#include "identify/solve/separable.hpp"
 #include "synthetic.hpp"
 
 namespace jointid::tests {

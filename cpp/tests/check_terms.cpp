@@ -1,7 +1,7 @@
 // Terms: bases and their derivatives, keys and names.
 
 #include "check.hpp"
-#include "identify/terms.hpp"
+#include "identify/balance/terms.hpp"
 
 namespace jointid::tests {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "base/random.hpp"
 #include "check.hpp"
-#include "identify/windows.hpp"
+#include "identify/recording/windows.hpp"
 
 namespace jointid::tests {
 namespace {

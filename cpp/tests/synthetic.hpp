@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "base/random.hpp"
-#include "identify/recording.hpp"
+#include "identify/recording/recording.hpp"
 
 namespace jointid::tests {
 

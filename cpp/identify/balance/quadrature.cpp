@@ -1,0 +1,319 @@
+#include "identify/balance/quadrature.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/clones.hpp"
+
+namespace jointid::identify {
+
+namespace {
+
+constexpr std::size_t kBlock = 2048;  // nodes: two buffers stay in the first-level cache
+
+/// Whether every interval of a window is usable.
+bool whole(const std::vector<std::uint8_t>& usable, const Window& window) {
+  std::uint8_t all = 1;
+  for (auto k = window.begin; k < window.end; ++k) all &= usable[static_cast<std::size_t>(k)];
+  return all != 0;
+}
+
+/// Sum over a window's usable intervals of value(k), k the interval k -> k+1.
+template <class Value>
+void sum_intervals(const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
+                   Eigen::Ref<Eigen::VectorXd> result, Value value) {
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    double sum = 0.0;
+    if (whole(usable, windows[w])) {
+      for (auto k = windows[w].begin; k < windows[w].end; ++k) sum += value(k);
+    } else {
+      for (auto k = windows[w].begin; k < windows[w].end; ++k) {
+        if (usable[static_cast<std::size_t>(k)] != 0) sum += value(k);
+      }
+    }
+    result[static_cast<Eigen::Index>(w)] = sum;
+  }
+}
+
+/// The change of a signal over each window's usable intervals.
+void sum_changes(const RecordingView::Signal& signal, const std::vector<std::uint8_t>& usable,
+                 std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    const auto [begin, end] = windows[w];
+    double sum = 0.0;
+    if (whole(usable, windows[w])) {
+      sum = signal[end] - signal[begin];
+    } else {
+      for (auto k = begin; k < end; ++k) {
+        if (usable[static_cast<std::size_t>(k)] != 0) sum += signal[k + 1] - signal[k];
+      }
+    }
+    result[static_cast<Eigen::Index>(w)] = sum;
+  }
+}
+
+/// 1 or -1 if all velocities of a window have that sign, else 0.
+double common_sign(const RecordingView::Signal& velocity, const Window& window) {
+  Eigen::Index positive = 0;
+  Eigen::Index negative = 0;
+  for (auto k = window.begin; k <= window.end; ++k) {
+    positive += velocity[k] > 0.0 ? 1 : 0;
+    negative += velocity[k] < 0.0 ? 1 : 0;
+  }
+  const Eigen::Index all = window.end - window.begin + 1;
+  return positive == all ? 1.0 : (negative == all ? -1.0 : 0.0);
+}
+
+template <class Sample>
+void trapezoid(const RecordingView& r, const std::vector<std::uint8_t>& usable,
+               std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result, Sample sample) {
+  sum_intervals(usable, windows, result, [&](Eigen::Index k) {
+    return 0.5 * (sample(k) + sample(k + 1)) * (r.time[k + 1] - r.time[k]);
+  });
+}
+
+double sign(double v) {
+  return v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : 0.0);
+}
+
+/// Signs of the velocity at an interval's ends, each times the share of the interval on its side of
+/// a reversal (1 without one): half the interval times these are the ends' weights.
+struct Shares {
+  double before;
+  double after;
+};
+Shares shares(double v0, double v1) {
+  if (!(v0 * v1 < 0.0)) return {sign(v0), sign(v1)};
+  const double before = std::fabs(v0) / (std::fabs(v0) + std::fabs(v1));
+  return {sign(v0) * before, sign(v1) * (1.0 - before)};
+}
+
+/// Coulomb friction of windows none of which is cut or holds a reversal: the time it acts, signed.
+/// False where that is not so.
+bool steady(const Term& term, const RecordingView& r, const std::vector<std::uint8_t>& usable,
+            std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    const double direction = common_sign(r.velocity, windows[w]);
+    if (direction == 0.0 || !whole(usable, windows[w])) return false;
+    const bool acts = term.direction == model::Direction::both ||
+                      (term.direction == model::Direction::positive) == (direction > 0.0);
+    const double time = r.time[windows[w].end] - r.time[windows[w].begin];
+    result[static_cast<Eigen::Index>(w)] = acts ? direction * time : 0.0;
+  }
+  return true;
+}
+
+}  // namespace
+
+void FrictionNodes::clear() {
+  speed.clear();
+  weight.clear();
+  first.assign(1, 0);
+}
+
+void integrate(const Term& term, double gear_ratio, const RecordingView& r,
+               const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
+               Eigen::Ref<Eigen::VectorXd> result) {
+  const double frequency = term.order * (term.harmonic == Harmonic::motor ? gear_ratio : 1.0);
+  switch (term.integral) {
+    case Integral::velocity_change:
+      sum_changes(r.velocity, usable, windows, result);
+      return;
+    case Integral::displacement:
+      sum_changes(r.position, usable, windows, result);
+      return;
+    case Integral::duration:
+      sum_changes(r.time, usable, windows, result);
+      return;
+    case Integral::cosine:
+      trapezoid(r, usable, windows, result,
+                [&](Eigen::Index k) { return base::cos(frequency * r.position[k]); });
+      return;
+    case Integral::sine:
+      trapezoid(r, usable, windows, result,
+                [&](Eigen::Index k) { return base::sin(frequency * r.position[k]); });
+      return;
+    case Integral::sensor:
+      trapezoid(r, usable, windows, result, [&](Eigen::Index k) { return r.sensor[k]; });
+      return;
+    case Integral::load_friction:
+      sum_intervals(usable, windows, result, [&](Eigen::Index k) {
+        const auto [before, after] = shares(r.velocity[k], r.velocity[k + 1]);
+        return 0.5 * (r.time[k + 1] - r.time[k]) *
+               (before * std::fabs(r.torque[k]) + after * std::fabs(r.torque[k + 1]));
+      });
+      return;
+    case Integral::friction:
+      break;
+  }
+  // A few windows at a time: their nodes stay in the cache.
+  constexpr std::size_t kWindows = 64;
+  FrictionNodes nodes;
+  for (std::size_t w = 0; w < windows.size(); w += kWindows) {
+    const auto part = windows.subspan(w, std::min(kWindows, windows.size() - w));
+    const auto rows =
+        result.segment(static_cast<Eigen::Index>(w), static_cast<Eigen::Index>(part.size()));
+    if (term.basis == model::SpeedBasis::one && steady(term, r, usable, part, rows)) continue;
+    nodes.clear();
+    append_nodes(r, usable, part, nodes);
+    integrate_friction(term, nodes_of(term.direction, nodes), nullptr, kValue, nullptr, rows);
+  }
+}
+
+void integrate_torque(const RecordingView& r, const std::vector<std::uint8_t>& usable,
+                      std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
+  if (r.torque_hold == Hold::linear) {
+    trapezoid(r, usable, windows, result, [&](Eigen::Index k) { return r.torque[k]; });
+  } else {
+    sum_intervals(usable, windows, result,
+                  [&](Eigen::Index k) { return r.torque[k] * (r.time[k + 1] - r.time[k]); });
+  }
+}
+
+void sum_torque_steps(const RecordingView& r, const std::vector<std::uint8_t>& usable,
+                      std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result) {
+  sum_changes(r.torque, usable, windows, result);
+}
+
+void append_nodes(const RecordingView& r, const std::vector<std::uint8_t>& usable,
+                  std::span<const Window> windows, FrictionNodes& nodes) {
+  std::vector<double> speeds;
+  std::vector<double> weights;
+  for (const auto& window : windows) {
+    const double direction = common_sign(r.velocity, window);
+    if (direction != 0.0 && whole(usable, window)) {  // the same without a question a sample
+      const auto count = static_cast<std::size_t>(window.end - window.begin);
+      speeds.resize(count + 1);
+      weights.resize(count + 1);
+      double left = 0.0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto k = window.begin + static_cast<Eigen::Index>(i);
+        const double half = 0.5 * (r.time[k + 1] - r.time[k]) * direction;
+        speeds[i] = std::fabs(r.velocity[k]);
+        weights[i] = left + half;
+        left = half;
+      }
+      speeds[count] = std::fabs(r.velocity[window.end]);
+      weights[count] = left;
+      nodes.speed.insert(nodes.speed.end(), speeds.begin(), speeds.end());
+      nodes.weight.insert(nodes.weight.end(), weights.begin(), weights.end());
+      nodes.first.push_back(nodes.speed.size());
+      continue;
+    }
+    double carried = 0.0;  // weight that the previous interval left on this interval's first sample
+    const auto push = [&](double speed, double weight) {
+      if (weight == 0.0) return;
+      nodes.speed.push_back(speed);
+      nodes.weight.push_back(weight);
+    };
+    for (auto k = window.begin; k < window.end; ++k) {
+      const double v0 = r.velocity[k];
+      const double v1 = r.velocity[k + 1];
+      if (usable[static_cast<std::size_t>(k)] == 0) {
+        push(std::fabs(v0), carried);
+        carried = 0.0;
+        continue;
+      }
+      const double half = 0.5 * (r.time[k + 1] - r.time[k]);
+      const auto [before, after] = shares(v0, v1);
+      if (v0 * v1 < 0.0) {  // a node either side of rest, so that each direction keeps its own
+        push(0.0, half * before);
+        push(0.0, half * after);
+      }
+      push(std::fabs(v0), carried + half * before);
+      carried = half * after;
+    }
+    push(std::fabs(r.velocity[window.end]), carried);
+    nodes.first.push_back(nodes.speed.size());
+  }
+}
+
+namespace {
+
+JOINTID_CLONES void stribeck_values(double shape, const double* speed, const double* weight,
+                                    std::size_t count, double* value) {
+  for (std::size_t i = 0; i < count; ++i) {
+    value[i] = weight[i] * model::basis_value(model::SpeedBasis::stribeck, speed[i], &shape);
+  }
+}
+
+JOINTID_CLONES void stribeck_slopes(double shape, const double* speed, const double* weight,
+                                    std::size_t count, double* value) {
+  for (std::size_t i = 0; i < count; ++i) {
+    value[i] = weight[i] * model::basis_slope(model::SpeedBasis::stribeck, speed[i], &shape, 0);
+  }
+}
+
+/// Sums a block's weighted values window by window; `fill` gives them.
+template <class Fill>
+void sum_nodes(const FrictionNodes& nodes, const base::Cancel* cancel,
+               Eigen::Ref<Eigen::VectorXd> column, Fill fill) {
+  std::array<double, kBlock> value;
+  const std::size_t windows = nodes.first.size() - 1;
+  const std::size_t total = nodes.speed.size();
+  std::size_t w = 0;
+  double sum = 0.0;
+  const auto finish = [&](std::size_t reached) {
+    while (w < windows && nodes.first[w + 1] <= reached) {
+      column[static_cast<Eigen::Index>(w)] = sum;
+      sum = 0.0;
+      ++w;
+    }
+  };
+  finish(0);  // windows without a node
+  for (std::size_t begin = 0; begin < total; begin += kBlock) {
+    if (cancel != nullptr) cancel->check();
+    const std::size_t count = std::min(kBlock, total - begin);
+    const double* speed = nodes.speed.data() + begin;
+    const double* weight = nodes.weight.data() + begin;
+    fill(speed, weight, count, value.data());
+    std::size_t i = 0;
+    while (i < count) {
+      const std::size_t stop = std::min(count, nodes.first[w + 1] - begin);
+      for (std::size_t j = i; j < stop; ++j) sum += value[j];
+      i = stop;
+      finish(begin + i);
+    }
+  }
+}
+
+}  // namespace
+
+void integrate_friction(const Term& term, const FrictionNodes& nodes, const double* shapes,
+                        int which, const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) {
+  if (term.basis == model::SpeedBasis::stribeck) {  // spelt out: these loops must vectorise
+    const auto values = which == kValue ? stribeck_values : stribeck_slopes;
+    sum_nodes(nodes, cancel, column,
+              [&](const double* speed, const double* weight, std::size_t count, double* value) {
+                values(shapes[0], speed, weight, count, value);
+              });
+    return;
+  }
+  sum_nodes(nodes, cancel, column,
+            [&](const double* speed, const double* weight, std::size_t count, double* value) {
+              for (std::size_t i = 0; i < count; ++i) {
+                value[i] =
+                    weight[i] * (which == kValue
+                                     ? model::basis_value(term.basis, speed[i], shapes)
+                                     : model::basis_slope(term.basis, speed[i], shapes, which));
+              }
+            });
+}
+
+FrictionNodes nodes_of(model::Direction direction, const FrictionNodes& nodes) {
+  if (direction == model::Direction::both) return nodes;
+  const double wanted = direction == model::Direction::positive ? 1.0 : -1.0;
+  FrictionNodes result;
+  for (std::size_t w = 0; w + 1 < nodes.first.size(); ++w) {
+    for (std::size_t i = nodes.first[w]; i < nodes.first[w + 1]; ++i) {
+      if (nodes.weight[i] * wanted <= 0.0) continue;
+      result.speed.push_back(nodes.speed[i]);
+      result.weight.push_back(nodes.weight[i]);
+    }
+    result.first.push_back(result.speed.size());
+  }
+  return result;
+}
+
+}  // namespace jointid::identify

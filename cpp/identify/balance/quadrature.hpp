@@ -1,0 +1,55 @@
+#pragma once
+// Window integrals of the terms. Friction jumps where the velocity changes sign, so its integral is
+// a weighted sum over nodes: the samples (trapezoid), and in an interval with a reversal the zero
+// crossing of the interpolated velocity.
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "base/cancel.hpp"
+#include "identify/balance/terms.hpp"
+#include "identify/recording/recording.hpp"
+#include "identify/recording/windows.hpp"
+
+namespace jointid::identify {
+
+/// Nodes of all windows in a row: integral over window w of sgn v h(|v|) = sum of weight[i]
+/// h(speed[i]), first[w] <= i < first[w+1]. Samples in unusable intervals have no node; memory is
+/// two doubles a sample.
+struct FrictionNodes {
+  std::vector<double> speed;
+  std::vector<double> weight;
+  std::vector<std::size_t> first{0};
+  void clear();
+};
+
+/// Appends the nodes of a recording's windows.
+void append_nodes(const RecordingView& recording, const std::vector<std::uint8_t>& usable,
+                  std::span<const Window> windows, FrictionNodes& nodes);
+
+/// The nodes at which the joint moves in one direction.
+FrictionNodes nodes_of(model::Direction direction, const FrictionNodes& nodes);
+
+/// One integral a window, for every term without a shape and for the torque. A harmonic of the
+/// motor counts turns in front of the gear.
+void integrate(const Term& term, double gear_ratio, const RecordingView& recording,
+               const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
+               Eigen::Ref<Eigen::VectorXd> result);
+void integrate_torque(const RecordingView& recording, const std::vector<std::uint8_t>& usable,
+                      std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result);
+
+/// How far the torque rises over each window's usable intervals.
+void sum_torque_steps(const RecordingView& recording, const std::vector<std::uint8_t>& usable,
+                      std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result);
+
+/// What integrate_friction fills: the column of a friction term, or its derivative by a shape.
+constexpr int kValue = -1;
+
+/// The friction column of a term for given shapes (`which` = kValue), or its derivative by shape
+/// number `which`. `cancel` is read once a block of nodes; it may be null.
+void integrate_friction(const Term& term, const FrictionNodes& nodes, const double* shapes,
+                        int which, const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column);
+
+}  // namespace jointid::identify

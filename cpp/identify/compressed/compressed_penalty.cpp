@@ -1,0 +1,318 @@
+#include "identify/compressed/compressed_penalty.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "base/clones.hpp"
+
+namespace jointid::identify {
+
+namespace {
+
+constexpr double kTolerance = 1e-14;  // of the shaped columns' squared size
+constexpr int kAttempts = 3;
+constexpr double kDenser = 1.4;
+constexpr int kLineDegree = 11;
+constexpr int kPlaneDegree = 11;
+constexpr std::size_t kWidest = 512;   // functions of a table, and rows
+constexpr Eigen::Index kBatch = 4096;  // candidates between two looks at the clock
+constexpr std::size_t kLanes = ShapeTable::kLanes;
+
+/// What the inner loop needs, as plain numbers.
+struct View {
+  const ShapeTable* table;
+  const double* triangle;  ///< padded rows, column by column; the target last
+  std::size_t rows;
+  std::size_t padded;
+  const Eigen::Index* constant;
+  std::size_t constants;
+  const Eigen::Index* shaped;
+  std::size_t shapeds;
+  const Eigen::Index* order;
+  std::size_t shapes;
+  Eigen::Index coefficients;
+  Eigen::Index gain;  ///< -1: residual torque
+};
+
+inline double penalty_of(const View& v, const double* theta) {
+  std::array<double, kWidest> functions;
+  std::array<double, kWidest> residual;
+  const double* column = v.triangle + v.constants * v.padded;
+  for (std::size_t r = 0; r < v.padded; ++r) residual[r] = column[r];
+  for (std::size_t j = 0; j < v.constants; ++j) {
+    column = v.triangle + j * v.padded;
+    const double c = theta[v.constant[j]];
+    for (std::size_t r = 0; r < v.padded; ++r) residual[r] -= c * column[r];
+  }
+  double remainder = 0.0;
+  if (v.shapeds > 0) {
+    std::array<double, 2> shapes{};
+    for (std::size_t i = 0; i < v.shapes; ++i) shapes[i] = theta[v.coefficients + v.order[i]];
+    v.table->values(shapes.data(), functions.data());
+    const double* product = functions.data() + v.shapeds * v.rows;
+    for (std::size_t j = 0; j < v.shapeds; ++j) {
+      const double s = theta[v.shaped[j]];
+      const double* own = functions.data() + j * v.rows;
+      for (std::size_t r = 0; r < v.rows; ++r) residual[r] -= s * own[r];
+      for (std::size_t i = 0; i < j; ++i) remainder += 2.0 * s * theta[v.shaped[i]] * *product++;
+      remainder += s * s * *product++;
+    }
+  }
+  double sum = remainder > 0.0 ? remainder : 0.0;
+  for (std::size_t r = 0; r < v.rows; ++r) sum += residual[r] * residual[r];
+  if (v.gain >= 0) {
+    const double scale = 1.0 / theta[v.gain];
+    sum *= scale * scale;
+  }
+  return sum;
+}
+
+JOINTID_CLONES void penalties_of(const View& view, const double* theta, Eigen::Index stride,
+                                 Eigen::Index count, double* penalties) {
+  for (Eigen::Index i = 0; i < count; ++i) penalties[i] = penalty_of(view, theta + i * stride);
+}
+
+/// The transposed Cholesky factor of the remainders' inner products, zero where they vanish, and
+/// its derivative when `slope` is given (their derivatives).
+Eigen::MatrixXd root_of(const double* products, Eigen::Index size, const double* slope,
+                        Eigen::MatrixXd* derivative) {
+  const auto square = [&](const double* from) {
+    Eigen::MatrixXd full(size, size);
+    for (Eigen::Index j = 0; j < size; ++j) {
+      for (Eigen::Index i = 0; i <= j; ++i) full(i, j) = full(j, i) = *from++;
+    }
+    return full;
+  };
+  const Eigen::MatrixXd full = square(products);
+  const Eigen::LLT<Eigen::MatrixXd> factor(full);
+  if (derivative != nullptr) derivative->setZero(size, size);
+  if (factor.info() != Eigen::Success || !(full.diagonal().minCoeff() > 0.0)) {
+    return full.diagonal().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  }
+  const Eigen::MatrixXd lower = factor.matrixL();
+  if (slope != nullptr) {
+    // dL = L F(L^-1 dG L^-T), F the lower triangle with half the diagonal.
+    const auto triangle = lower.triangularView<Eigen::Lower>();
+    const Eigen::MatrixXd left = triangle.solve(square(slope));
+    Eigen::MatrixXd both = triangle.solve(left.transpose());
+    both.diagonal() *= 0.5;
+    const Eigen::MatrixXd inner = both.triangularView<Eigen::Lower>();
+    *derivative = (lower * inner).transpose();
+  }
+  return lower.transpose();
+}
+
+}  // namespace
+
+CompressedPenalty::CompressedPenalty(const Penalty& frame)
+    : names_(frame.names()),
+      coefficients_(frame.coefficients()),
+      residual_(frame.residual()),
+      gain_index_(frame.gain_index()) {
+  for (Eigen::Index j = 0; j < coefficients_; ++j) {
+    (frame.is_shaped(j) ? shaped_ : constant_).push_back(j);
+  }
+  rows_ = static_cast<Eigen::Index>(constant_.size()) + 1;
+  if (has_too_many_terms()) reason_ = "the model has too many terms";
+}
+
+CompressedPenalty::CompressedPenalty(const Penalty& penalty, const search::Domain& domain,
+                                     base::Pool& pool)
+    : CompressedPenalty(penalty) {
+  domain.validate();
+  if (domain.size() != penalty.parameters()) {
+    throw std::invalid_argument("domain must have " + std::to_string(penalty.parameters()) +
+                                " parameters, got " + std::to_string(domain.size()));
+  }
+  if (!has_too_many_terms()) build(penalty, domain, pool);
+}
+
+CompressedPenalty::CompressedPenalty(const Penalty& frame, const std::optional<ShapeNodes>& nodes,
+                                     const std::vector<Digest>& digests)
+    : CompressedPenalty(frame) {
+  if (!has_too_many_terms()) assemble(nodes, digests);
+}
+
+bool CompressedPenalty::has_too_many_terms() const {
+  const auto shaped = static_cast<Eigen::Index>(shaped_.size());
+  return static_cast<std::size_t>(rows_ * (shaped + 1) + pairs(shaped)) + 2 * kLanes > kWidest;
+}
+
+void CompressedPenalty::build(const Penalty& penalty, const search::Domain& domain,
+                              base::Pool& pool) {
+  if (shaped_.empty()) {
+    assemble(std::nullopt, digest_all(penalty, {}, pool));
+    return;
+  }
+  const double speed = penalty.peak_speed();
+  double density = 1.0;
+  for (int attempt = 0; attempt < kAttempts && !exact_; ++attempt, density *= kDenser) {
+    const auto nodes = shape_nodes(penalty, domain, speed, density, reason_);
+    if (!nodes) return;
+    assemble(nodes, digest_all(penalty, rates_of(*nodes), pool));
+  }
+}
+
+void CompressedPenalty::assemble(const std::optional<ShapeNodes>& nodes,
+                                 const std::vector<Digest>& digests) {
+  const Digest& whole = digests.front();
+  const auto lanes = static_cast<Eigen::Index>(kLanes);
+  triangle_ = Eigen::MatrixXd::Zero((rows_ + lanes - 1) / lanes * lanes, rows_);
+  triangle_.topRows(rows_) = whole.triangle;
+  target_ = Eigen::VectorXd::Zero(rows_ + static_cast<Eigen::Index>(shaped_.size()));
+  target_.head(rows_) = whole.triangle.col(rows_ - 1);
+  exact_ = true;
+  if (!nodes) return;
+  order_ = nodes->order;
+  Samples samples;
+  std::vector<Eigen::VectorXd> expected;  // at the probes
+  passes_ = 0;
+  for (std::size_t i = 0; i < digests.size(); ++i) {
+    const Eigen::MatrixXd functions = functions_of(digests[i]);
+    passes_ += functions.cols();
+    const Eigen::Index keep =
+        i < nodes->lines.size() ? static_cast<Eigen::Index>(nodes->lines[i].rates.size()) : 0;
+    if (keep > 0) samples.values.emplace_back(functions.leftCols(keep));
+    for (Eigen::Index k = keep; k < functions.cols(); ++k) expected.emplace_back(functions.col(k));
+  }
+  table_ = ShapeTable(nodes->axes, samples, nodes->axes.size() == 1 ? kLineDegree : kPlaneDegree);
+  // The probes tell how far the table is off between the nodes.
+  const auto size = static_cast<Eigen::Index>(shaped_.size()) * rows_;
+  double scale = 1e-300;  // squared size of the shaped columns
+  for (const auto& line : samples.values) {
+    const auto products = line.bottomRows(line.rows() - size).cwiseAbs().colwise().sum();
+    scale = std::max(scale,
+                     line.topRows(size).colwise().squaredNorm().maxCoeff() + products.maxCoeff());
+  }
+  error_ = 0.0;
+  std::vector<double> found(table_.width());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    table_.values(nodes->probes[i].data(), found.data());
+    const Eigen::Map<const Eigen::VectorXd> values(found.data(), expected[i].size());
+    const Eigen::VectorXd difference = (values - expected[i]).cwiseAbs();
+    error_ = std::max({error_, 0.1 * difference.head(size).maxCoeff() / std::sqrt(scale),
+                       difference.tail(difference.size() - size).maxCoeff() / scale});
+  }
+  exact_ = error_ <= kTolerance;
+  std::ostringstream text;
+  text.precision(2);
+  text << "the shapes' functions could not be interpolated to " << kTolerance << ": " << error_
+       << " is left after " << passes_ << " shapes";
+  reason_ = exact_ ? "" : text.str();
+}
+
+void CompressedPenalty::require_inside(const double* shapes) const {
+  for (std::size_t i = 0; i < table_.axes().size(); ++i) {
+    const auto& axis = table_.axes()[i];
+    const double value = shapes[order_[i]];
+    if (value >= axis.lower() && value <= axis.upper()) continue;
+    const auto at = static_cast<std::size_t>(coefficients_ + order_[i]);
+    throw std::invalid_argument(names_[at] + " must lie within the bounds it was compressed for, " +
+                                std::to_string(axis.lower()) + " to " +
+                                std::to_string(axis.upper()) + ", got " + std::to_string(value));
+  }
+}
+
+void CompressedPenalty::columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
+                                const base::Cancel* /*cancel*/) const {
+  result.setZero(target_.size(), coefficients_);
+  for (std::size_t j = 0; j < constant_.size(); ++j) {
+    result.col(constant_[j]).head(rows_) = triangle_.col(static_cast<Eigen::Index>(j)).head(rows_);
+  }
+  if (shaped_.empty()) return;
+  require_inside(shapes.data());
+  std::array<double, 2> own{};
+  for (std::size_t i = 0; i < order_.size(); ++i) own[i] = shapes[order_[i]];
+  std::array<double, kWidest> functions;
+  table_.values(own.data(), functions.data());
+  const Eigen::MatrixXd shaped = shaped_columns(functions.data());
+  for (std::size_t j = 0; j < shaped_.size(); ++j) {
+    result.col(shaped_[j]) = shaped.col(static_cast<Eigen::Index>(j));
+  }
+}
+
+Eigen::MatrixXd CompressedPenalty::shaped_columns(const double* functions) const {
+  const auto count = static_cast<Eigen::Index>(shaped_.size());
+  Eigen::MatrixXd result(rows_ + count, count);
+  result.topRows(rows_) = Eigen::Map<const Eigen::MatrixXd>(functions, rows_, count);
+  result.bottomRows(count) = root_of(functions + rows_ * count, count, nullptr, nullptr);
+  return result;
+}
+
+double CompressedPenalty::operator()(const Eigen::VectorXd& theta,
+                                     const base::Cancel* /*cancel*/) const {
+  check(theta);
+  Eigen::VectorXd penalty(1);
+  base::Pool pool(1);
+  evaluate(theta, penalty, pool);
+  return penalty[0];
+}
+
+void CompressedPenalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                                  Eigen::MatrixXd* jacobian, const base::Cancel* /*cancel*/) const {
+  check(theta);
+  Eigen::MatrixXd all;
+  columns(theta.tail(parameters() - coefficients_), all);
+  residual = target_;
+  residual.noalias() -= all * theta.head(coefficients_);
+  if (jacobian != nullptr) {
+    jacobian->setZero(target_.size(), parameters());
+    jacobian->leftCols(coefficients_) = -all;
+    const auto count = static_cast<Eigen::Index>(shaped_.size());
+    std::array<double, 2> own{};
+    for (std::size_t i = 0; i < order_.size(); ++i) own[i] = theta[coefficients_ + order_[i]];
+    std::array<double, kWidest> functions;
+    std::array<double, kWidest> slopes;
+    if (count > 0) table_.values(own.data(), functions.data());
+    Eigen::VectorXd s(count);
+    for (Eigen::Index j = 0; j < count; ++j) s[j] = theta[shaped_[static_cast<std::size_t>(j)]];
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+      table_.slopes(own.data(), static_cast<int>(i), slopes.data());
+      Eigen::MatrixXd lower;
+      root_of(functions.data() + rows_ * count, count, slopes.data() + rows_ * count, &lower);
+      auto column = jacobian->col(coefficients_ + order_[i]);
+      column.head(rows_) = -Eigen::Map<const Eigen::MatrixXd>(slopes.data(), rows_, count) * s;
+      column.tail(count) = -lower * s;
+    }
+  }
+  if (residual_ == Residual::torque) return;
+  const double scale = 1.0 / theta[gain_index_];
+  residual *= scale;
+  if (jacobian != nullptr) {
+    *jacobian *= scale;
+    jacobian->col(gain_index_) -= scale * residual;
+  }
+}
+
+void CompressedPenalty::evaluate(const Eigen::MatrixXd& candidates, Eigen::VectorXd& penalties,
+                                 base::Pool& pool) const {
+  const View view{&table_,
+                  triangle_.data(),
+                  static_cast<std::size_t>(rows_),
+                  static_cast<std::size_t>(triangle_.rows()),
+                  constant_.data(),
+                  constant_.size(),
+                  shaped_.data(),
+                  shaped_.size(),
+                  order_.data(),
+                  order_.size(),
+                  coefficients_,
+                  residual_ == Residual::sensor ? gain_index_ : -1};
+  penalties.resize(candidates.cols());
+  // So little work a candidate that handing it to threads would cost more.
+  for (Eigen::Index begin = 0; begin < candidates.cols(); begin += kBatch) {
+    if (begin > 0) pool.poll();
+    const Eigen::Index count = std::min(kBatch, candidates.cols() - begin);
+    for (Eigen::Index i = begin; i < begin + count; ++i) {
+      require_inside(candidates.col(i).data() + coefficients_);
+    }
+    penalties_of(view, candidates.col(begin).data(), candidates.rows(), count,
+                 penalties.data() + begin);
+  }
+}
+
+}  // namespace jointid::identify

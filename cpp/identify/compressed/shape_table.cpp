@@ -1,0 +1,251 @@
+#include "identify/compressed/shape_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <utility>
+
+#include "base/clones.hpp"
+#include "base/elementary.hpp"
+
+namespace jointid::identify {
+
+namespace {
+
+constexpr std::size_t kLanes = ShapeTable::kLanes;
+
+// Points side by side, the lanes of a vector, and functions whose sums stay in registers.
+constexpr std::size_t kPoints = 8;
+constexpr std::size_t kFunctions = 4;
+
+/// Some series' values at kPoints points x (also a little outside [-1, 1]). Coefficients lie one
+/// term after the other, `stride` apart, as do the values one point after the other.
+JOINTID_CLONES void series_at(const double* coefficients, std::size_t functions, std::size_t stride,
+                              std::size_t terms, const double* x, double* values) {
+  std::array<std::array<double, kPoints>, kFunctions> sums{};
+  std::array<double, kPoints> before{};
+  std::array<double, kPoints> now{};
+  for (std::size_t l = 0; l < kPoints; ++l) {
+    before[l] = x[l];  // T_-1 = T_1
+    now[l] = 1.0;
+  }
+  for (std::size_t k = 0; k < terms; ++k) {
+    for (std::size_t f = 0; f < kFunctions; ++f) {
+      const double c = f < functions ? coefficients[k * stride + f] : 0.0;
+      for (std::size_t l = 0; l < kPoints; ++l) sums[f][l] += c * now[l];
+    }
+    for (std::size_t l = 0; l < kPoints; ++l) {
+      const double next = 2.0 * x[l] * now[l] - before[l];
+      before[l] = now[l];
+      now[l] = next;
+    }
+  }
+  for (std::size_t f = 0; f < functions; ++f) {
+    for (std::size_t l = 0; l < kPoints; ++l) values[l * stride + f] = sums[f][l];
+  }
+}
+
+/// Values at local Chebyshev points -> coefficients of powers of the local coordinate.
+///
+/// In two steps: through the series, whose rounding stays where it belongs. One matrix for both
+/// would have entries in the thousands that cancel.
+class Powers {
+ public:
+  explicit Powers(Eigen::Index order)
+      : series_(chebyshev_coefficients(Eigen::MatrixXd::Identity(order, order))),
+        powers_(Eigen::MatrixXd::Zero(order, order)) {
+    powers_(0, 0) = 1.0;  // T_k, one a row
+    if (order > 1) powers_(1, 1) = 1.0;
+    for (Eigen::Index k = 2; k < order; ++k) {
+      powers_.row(k).tail(order - 1) = 2.0 * powers_.row(k - 1).head(order - 1);
+      powers_.row(k) -= powers_.row(k - 2);
+    }
+  }
+  template <class Values>
+  [[nodiscard]] Eigen::MatrixXd of(const Values& values) const {
+    const Eigen::MatrixXd series = values * series_;
+    return series * powers_;
+  }
+
+ private:
+  Eigen::MatrixXd series_;
+  Eigen::MatrixXd powers_;
+};
+
+/// Series through values over an axis's whole range (functions x Chebyshev points), at all pieces'
+/// local points: functions x points.
+Eigen::MatrixXd at_pieces(const ShapeAxis& axis, Eigen::Index order,
+                          const Eigen::MatrixXd& values) {
+  const Eigen::MatrixXd coefficients = chebyshev_coefficients(values);
+  const Eigen::VectorXd local = chebyshev_points(order);
+  const Eigen::Index points = axis.pieces() * order;
+  const auto lanes = static_cast<Eigen::Index>(kPoints);
+  const Eigen::Index padded = (points + lanes - 1) / lanes * lanes;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(padded);
+  for (Eigen::Index i = 0; i < points; ++i) {
+    x[i] = axis.position(axis.shape_in(i / order, local[i % order]));
+  }
+  const auto functions = static_cast<std::size_t>(values.rows());
+  Eigen::MatrixXd result(values.rows(), padded);
+  for (Eigen::Index i = 0; i < padded; i += lanes) {
+    for (std::size_t f = 0; f < functions; f += kFunctions) {
+      series_at(coefficients.data() + f, std::min(kFunctions, functions - f), functions,
+                static_cast<std::size_t>(values.cols()), x.data() + i, result.col(i).data() + f);
+    }
+  }
+  result.conservativeResize(Eigen::NoChange, points);
+  return result;
+}
+
+/// Horner's rule over `order` rows of lanes that lie `stride` apart.
+inline void horner(const double* rows, std::size_t order, std::size_t stride, double x,
+                   double* result) {
+  std::array<double, kLanes> sum;
+  const double* row = rows + (order - 1) * stride;
+  for (std::size_t l = 0; l < kLanes; ++l) sum[l] = row[l];
+  for (std::size_t k = 1; k < order; ++k) {
+    row -= stride;
+    for (std::size_t l = 0; l < kLanes; ++l) sum[l] = sum[l] * x + row[l];
+  }
+  for (std::size_t l = 0; l < kLanes; ++l) result[l] = sum[l];
+}
+
+/// The same for the derivative.
+inline void horner_slope(const double* rows, std::size_t order, std::size_t stride, double x,
+                         double* result) {
+  std::array<double, kLanes> sum{};
+  for (std::size_t k = order - 1; k >= 1; --k) {
+    const double* row = rows + k * stride;
+    for (std::size_t l = 0; l < kLanes; ++l) sum[l] = sum[l] * x + static_cast<double>(k) * row[l];
+  }
+  for (std::size_t l = 0; l < kLanes; ++l) result[l] = sum[l];
+}
+
+}  // namespace
+
+Eigen::VectorXd chebyshev_points(Eigen::Index count) {
+  Eigen::VectorXd points(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    points[k] =
+        base::cos(std::numbers::pi * (static_cast<double>(k) + 0.5) / static_cast<double>(count));
+  }
+  return points;
+}
+
+Eigen::MatrixXd chebyshev_coefficients(const Eigen::MatrixXd& values) {
+  const Eigen::Index count = values.cols();
+  // cos(pi j (k + 1/2) / count) repeats itself: one table of its values will do.
+  Eigen::VectorXd cosine(4 * count);
+  for (Eigen::Index i = 0; i < 4 * count; ++i) {
+    cosine[i] =
+        base::cos(std::numbers::pi * static_cast<double>(i) / static_cast<double>(2 * count));
+  }
+  Eigen::MatrixXd transform(count, count);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const double scale = (j == 0 ? 1.0 : 2.0) / static_cast<double>(count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      transform(k, j) = scale * cosine[(j * (2 * k + 1)) % (4 * count)];
+    }
+  }
+  return values * transform;
+}
+
+ShapeTable::ShapeTable(std::vector<ShapeAxis> axes, const Samples& samples, int degree)
+    : axes_(std::move(axes)),
+      functions_(samples.values.front().rows()),
+      width_((static_cast<std::size_t>(functions_) + kLanes - 1) / kLanes * kLanes),
+      order_(static_cast<std::size_t>(degree) + 1),
+      terms_(axes_.size() == 1 ? order_ : order_ * order_) {
+  axes_.size() == 1 ? build_line(samples.values.front()) : build_plane(samples);
+}
+
+void ShapeTable::build_line(const Eigen::MatrixXd& values) {
+  const auto order = static_cast<Eigen::Index>(order_);
+  const Eigen::MatrixXd points = at_pieces(axes_[0], order, values);
+  const Powers powers(order);
+  rows_.assign(static_cast<std::size_t>(axes_[0].pieces()) * terms_ * width_, 0.0);
+  for (std::int64_t piece = 0; piece < axes_[0].pieces(); ++piece) {
+    Eigen::Map<Eigen::MatrixXd> target(
+        rows_.data() + static_cast<std::size_t>(piece) * terms_ * width_,
+        static_cast<Eigen::Index>(width_), order);
+    target.topRows(functions_) = powers.of(points.middleCols(piece * order, order));
+  }
+}
+
+void ShapeTable::build_plane(const Samples& samples) {
+  const auto order = static_cast<Eigen::Index>(order_);
+  const auto outer = static_cast<Eigen::Index>(samples.values.size());
+  const Eigen::Index inner = axes_[1].pieces() * order;
+  // First to the second axis's pieces, at every point of the first: (function, inner) x outer.
+  Eigen::MatrixXd lines(functions_ * inner, outer);
+  for (Eigen::Index k = 0; k < outer; ++k) {
+    lines.col(k) =
+        at_pieces(axes_[1], order, samples.values[static_cast<std::size_t>(k)]).reshaped();
+  }
+  const Eigen::MatrixXd all = at_pieces(axes_[0], order, lines);
+  const Powers powers(order);
+  rows_.assign(static_cast<std::size_t>(axes_[0].pieces() * axes_[1].pieces()) * terms_ * width_,
+               0.0);
+  for (std::int64_t i = 0; i < axes_[0].pieces(); ++i) {
+    // Along the first shape: (function, inner) x powers.
+    const Eigen::MatrixXd first = powers.of(all.middleCols(i * order, order));
+    for (std::int64_t j = 0; j < axes_[1].pieces(); ++j) {
+      double* piece =
+          rows_.data() + static_cast<std::size_t>(i * axes_[1].pieces() + j) * terms_ * width_;
+      for (Eigen::Index a = 0; a < order; ++a) {
+        const Eigen::Map<const Eigen::MatrixXd> local(first.col(a).data() + functions_ * j * order,
+                                                      functions_, order);
+        Eigen::Map<Eigen::MatrixXd> target(piece + a * order * static_cast<Eigen::Index>(width_),
+                                           static_cast<Eigen::Index>(width_), order);
+        target.topRows(functions_) = powers.of(local);
+      }
+    }
+  }
+}
+
+void ShapeTable::values(const double* shapes, double* result) const {
+  const auto first = axes_[0].place(shapes[0]);
+  if (axes_.size() == 1) {
+    const double* rows = row(first.piece);
+    for (std::size_t f = 0; f < width_; f += kLanes) {
+      horner(rows + f, order_, width_, first.local, result + f);
+    }
+    return;
+  }
+  const auto second = axes_[1].place(shapes[1]);
+  const double* rows = row(first.piece * axes_[1].pieces() + second.piece);
+  std::array<double, 32 * kLanes> line;  // powers of the first shape
+  for (std::size_t f = 0; f < width_; f += kLanes) {
+    for (std::size_t a = 0; a < order_; ++a) {
+      horner(rows + a * order_ * width_ + f, order_, width_, second.local,
+             line.data() + a * kLanes);
+    }
+    horner(line.data(), order_, kLanes, first.local, result + f);
+  }
+}
+
+void ShapeTable::slopes(const double* shapes, int which, double* result) const {
+  const auto first = axes_[0].place(shapes[0]);
+  if (axes_.size() == 1) {
+    const double* rows = row(first.piece);
+    for (std::size_t f = 0; f < width_; f += kLanes) {
+      horner_slope(rows + f, order_, width_, first.local, result + f);
+    }
+  } else {
+    const auto second = axes_[1].place(shapes[1]);
+    const double* rows = row(first.piece * axes_[1].pieces() + second.piece);
+    std::array<double, 32 * kLanes> line;
+    for (std::size_t f = 0; f < width_; f += kLanes) {
+      for (std::size_t a = 0; a < order_; ++a) {
+        (which == 1 ? horner_slope : horner)(rows + a * order_ * width_ + f, order_, width_,
+                                             second.local, line.data() + a * kLanes);
+      }
+      (which == 0 ? horner_slope : horner)(line.data(), order_, kLanes, first.local, result + f);
+    }
+  }
+  const auto& axis = axes_[static_cast<std::size_t>(which)];
+  const double slope = axis.slope(axis.place(shapes[which]).piece);
+  for (std::size_t f = 0; f < width_; ++f) result[f] *= slope;
+}
+
+}  // namespace jointid::identify

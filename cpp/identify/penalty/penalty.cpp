@@ -1,0 +1,346 @@
+#include "identify/penalty/penalty.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace jointid::identify {
+
+void Penalty::add_term(const std::string& key) {
+  const Term term = find_term(key);
+  const auto coefficients = static_cast<std::ptrdiff_t>(terms_.size());
+  const auto begin = names_.begin();
+  if (std::find(begin, begin + coefficients, term.name) != begin + coefficients) {
+    throw std::invalid_argument("term '" + term.name + "' is listed twice");
+  }
+  names_.insert(begin + coefficients, term.name);
+  if (term.integral == Integral::sensor) gain_index_ = coefficients;
+  if (!term.shapes.empty()) {
+    Shaped shaped{coefficients, {}, term};
+    for (const auto& shape : term.shapes) {
+      const auto first = names_.begin() + coefficients + 1;
+      const auto found = std::find(first, names_.end(), shape);
+      shaped.shapes.push_back(found - first);
+      if (found == names_.end()) names_.push_back(shape);
+    }
+    shaped_.push_back(std::move(shaped));
+  }
+  terms_.push_back(term);
+}
+
+namespace {
+
+std::vector<std::shared_ptr<const MaskedRecording>> masked(const std::vector<Recording>& recordings,
+                                                           bool mask_standstill) {
+  std::vector<std::shared_ptr<const MaskedRecording>> result;
+  for (const auto& recording : recordings) {
+    recording.validate();
+    result.push_back(std::make_shared<const MaskedRecording>(
+        recording, usable_intervals(recording, mask_standstill)));
+  }
+  return result;
+}
+
+}  // namespace
+
+Penalty::Penalty(std::vector<Recording> recordings, const std::vector<std::string>& terms,
+                 const WindowOptions& options, Residual residual, bool mask_standstill,
+                 double gear_ratio, const std::vector<std::string>& per_recording)
+    : Penalty(masked(recordings, mask_standstill), terms, options, residual, gear_ratio,
+              per_recording) {}
+
+Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms, Residual residual,
+                 double gear_ratio)
+    : residual_(residual) {
+  if (recordings.empty()) throw std::invalid_argument("a penalty needs at least one recording");
+  if (terms.empty()) throw std::invalid_argument("a penalty needs at least one term");
+  if (!std::isfinite(gear_ratio) || gear_ratio == 0.0) {
+    throw std::invalid_argument("gear_ratio must be finite and not 0");
+  }
+  for (const auto& key : terms) add_term(key);
+  if (residual == Residual::sensor && gain_index_ < 0) {
+    throw std::invalid_argument("residual 'sensor' needs the term sensor_gain");
+  }
+  for (const auto& recording : recordings) {
+    if (gain_index_ >= 0 && !recording->recording().has_sensor()) {
+      throw std::invalid_argument("the term sensor_gain needs a recording with a sensor signal");
+    }
+    standing_ += recording->standing();
+    total_ += recording->recording().samples();
+    unusable_ += recording->unusable_count();
+  }
+}
+
+Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms,
+                 const WindowOptions& options, Residual residual, double gear_ratio,
+                 const std::vector<std::string>& per_recording, base::Pool* pool)
+    : Penalty(recordings, terms, residual, gear_ratio) {
+  options.validate();
+  cumulative_ = options.cumulative;
+  cut(recordings, options);
+  integrate_all(recordings, gear_ratio, pool);
+  own_columns(per_recording, recordings.size());
+  if (cumulative_) {
+    accumulate(target_);
+    for (Eigen::Index j = 0; j < columns_.cols(); ++j) accumulate(columns_.col(j));
+  }
+}
+
+void Penalty::cut(const Masked& recordings, WindowOptions wanted) {
+  if (wanted.count > 0) {
+    std::vector<RecordingView> views;
+    for (const auto& recording : recordings) views.push_back(recording->recording());
+    wanted.duration = duration_for(views, wanted.count);
+  }
+  std::vector<double> lengths;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const auto& time = recordings[i]->recording().time;
+    // Each recording by its own noise and rate: a coarse one must not lengthen the windows of a
+    // fine one.
+    const auto choice = choose_window(*recordings[i], parameters(), wanted);
+    const double length = time[time.size() - 1] - time[0];
+    if (choice.duration > length) {
+      throw std::invalid_argument("windows: duration " + std::to_string(choice.duration) +
+                                  " s is longer than the recording, " + std::to_string(length) +
+                                  " s");
+    }
+    choice_.noise_share = std::max(choice_.noise_share, choice.noise_share);
+    choice_.noise_limited = choice_.noise_limited || choice.noise_limited;
+    const auto windows =
+        cut_windows(recordings[i]->recording(), recordings[i]->usable(), choice.duration);
+    windows_.insert(windows_.end(), windows.begin(), windows.end());
+    recording_of_.insert(recording_of_.end(), windows.size(), static_cast<int>(i));
+    for (const auto& window : windows) lengths.push_back(time[window.end] - time[window.begin]);
+  }
+  if (!lengths.empty()) {
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    choice_.duration = *middle;
+  }
+  const auto rows = static_cast<Eigen::Index>(windows_.size());
+  if (rows == 0) {
+    throw std::invalid_argument("the joint stands still or sticks throughout: record motion");
+  }
+  if (rows < parameters()) {
+    throw std::invalid_argument(
+        "windows: " + std::to_string(rows) + " windows with motion cannot determine " +
+        std::to_string(parameters()) + " parameters; use more or shorter windows");
+  }
+}
+
+void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::Pool* pool) {
+  const auto rows = static_cast<Eigen::Index>(windows_.size());
+  columns_.setZero(rows, static_cast<Eigen::Index>(terms_.size()));
+  target_.resize(rows);
+  usable_duration_.resize(rows);
+  struct Block {  // windows of one recording
+    std::size_t begin;
+    std::size_t end;
+  };
+  constexpr std::size_t kWindows = 4096;
+  std::vector<Block> blocks;
+  for (std::size_t w = 0; w < windows_.size();) {
+    std::size_t end = w;
+    while (end < windows_.size() && end - w < kWindows && recording_of_[end] == recording_of_[w])
+      ++end;
+    blocks.push_back({w, end});
+    w = end;
+  }
+  const Term duration = find_term("torque_offset");
+  const base::Cancel* cancel = pool != nullptr ? &pool->cancel() : nullptr;
+  const auto linear = [&](const Block& block) {
+    if (cancel != nullptr) cancel->check();
+    const auto& masked = *recordings[static_cast<std::size_t>(recording_of_[block.begin])];
+    const auto& r = masked.recording();
+    const auto windows = std::span(windows_).subspan(block.begin, block.end - block.begin);
+    const auto first = static_cast<Eigen::Index>(block.begin);
+    const auto count = static_cast<Eigen::Index>(windows.size());
+    integrate_torque(r, masked.usable(), windows, target_.segment(first, count));
+    integrate(duration, gear_ratio, r, masked.usable(), windows,
+              usable_duration_.segment(first, count));
+    for (std::size_t j = 0; j < terms_.size(); ++j) {
+      if (!terms_[j].shapes.empty()) continue;
+      integrate(terms_[j], gear_ratio, r, masked.usable(), windows,
+                columns_.col(static_cast<Eigen::Index>(j)).segment(first, count));
+    }
+  };
+  if (pool == nullptr) {
+    for (const auto& block : blocks) linear(block);
+    collect_nodes(recordings, cancel);
+  } else {  // the nodes are one task, the longest: it goes first
+    pool->for_each(blocks.size() + 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (i == 0) {
+          collect_nodes(recordings, cancel);
+        } else {
+          linear(blocks[i - 1]);
+        }
+      }
+    });
+  }
+}
+
+void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel) {
+  if (shaped_.empty()) return;
+  auto& all = nodes_[0];
+  std::size_t samples = windows_.size();
+  for (const auto& window : windows_)
+    samples += static_cast<std::size_t>(window.end - window.begin);
+  all.speed.reserve(samples + samples / 64 + 64);
+  all.weight.reserve(samples + samples / 64 + 64);
+  all.first.reserve(windows_.size() + 1);
+  constexpr std::size_t kWindows = 4096;  // between two looks at the cancel flag
+  for (std::size_t w = 0; w < windows_.size();) {
+    if (cancel != nullptr) cancel->check();
+    std::size_t end = w;
+    while (end < windows_.size() && end - w < kWindows && recording_of_[end] == recording_of_[w])
+      ++end;
+    const auto& masked = *recordings[static_cast<std::size_t>(recording_of_[w])];
+    append_nodes(masked.recording(), masked.usable(), std::span(windows_).subspan(w, end - w), all);
+    w = end;
+  }
+  bool both = false;
+  for (const auto& shaped : shaped_) {
+    auto& nodes = nodes_[static_cast<std::size_t>(shaped.term.direction)];
+    if (nodes.first.size() == 1) nodes = nodes_of(shaped.term.direction, nodes_[0]);
+    both = both || shaped.term.direction == model::Direction::both;
+  }
+  if (!both) nodes_[0] = {};
+}
+
+void Penalty::own_columns(const std::vector<std::string>& per_recording, std::size_t recordings) {
+  if (recordings < 2) return;
+  for (const auto& name : per_recording) {
+    const auto found = std::find_if(terms_.begin(), terms_.end(),
+                                    [&](const Term& term) { return term.name == name; });
+    if (found == terms_.end()) {
+      throw std::invalid_argument("per_recording: '" + name +
+                                  "' is not a coefficient of the model");
+    }
+    if (!found->shapes.empty() || found->integral == Integral::sensor) {
+      throw std::invalid_argument("per_recording: '" + name +
+                                  "' must be the same in all recordings");
+    }
+    const auto at = static_cast<Eigen::Index>(found - terms_.begin());
+    const auto extra = static_cast<Eigen::Index>(recordings) - 1;
+    const Eigen::Index old = columns_.cols();
+    Eigen::MatrixXd wider = Eigen::MatrixXd::Zero(columns_.rows(), old + extra);
+    wider.leftCols(at) = columns_.leftCols(at);
+    wider.rightCols(old - at - 1) = columns_.rightCols(old - at - 1);
+    for (Eigen::Index row = 0; row < columns_.rows(); ++row) {
+      wider(row, at + recording_of_[static_cast<std::size_t>(row)]) = columns_(row, at);
+    }
+    columns_ = std::move(wider);
+    const Term term = *found;
+    terms_.insert(terms_.begin() + at, static_cast<std::size_t>(extra), term);
+    names_.insert(names_.begin() + at, static_cast<std::size_t>(extra), name);
+    for (std::size_t i = 0; i < recordings; ++i) {
+      names_[static_cast<std::size_t>(at) + i] = name + "[" + std::to_string(i) + "]";
+    }
+    if (gain_index_ > at) gain_index_ += extra;
+    for (auto& shaped : shaped_) {
+      if (shaped.coefficient > at) shaped.coefficient += extra;
+    }
+  }
+}
+
+Penalty Penalty::fragment(const Masked& recordings, const std::vector<std::string>& terms,
+                          double window_duration, Residual residual, double gear_ratio) {
+  Penalty result(recordings, terms, residual, gear_ratio);
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const auto windows =
+        cut_windows(recordings[i]->recording(), recordings[i]->usable(), window_duration);
+    result.windows_.insert(result.windows_.end(), windows.begin(), windows.end());
+    result.recording_of_.insert(result.recording_of_.end(), windows.size(), static_cast<int>(i));
+  }
+  result.choice_.duration = window_duration;
+  result.integrate_all(recordings, gear_ratio, nullptr);
+  return result;
+}
+
+double Penalty::peak_speed() const {
+  double speed = 0.0;
+  for (const auto& shaped : shaped_) {
+    for (const double v : nodes(shaped.term.direction).speed) speed = std::max(speed, v);
+  }
+  return speed;
+}
+
+bool Penalty::is_shaped(Eigen::Index coefficient) const {
+  return std::any_of(shaped_.begin(), shaped_.end(),
+                     [&](const Shaped& shaped) { return shaped.coefficient == coefficient; });
+}
+
+void Penalty::accumulate(Eigen::Ref<Eigen::VectorXd> values) const {
+  for (Eigen::Index row = 1; row < values.size(); ++row) {
+    const auto r = static_cast<std::size_t>(row);
+    if (recording_of_[r] == recording_of_[r - 1]) values[row] += values[row - 1];
+  }
+}
+
+void Penalty::shaped_column(const Shaped& shaped, const double* shapes, int which,
+                            const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) const {
+  std::array<double, 4> own{};
+  for (std::size_t i = 0; i < shaped.shapes.size(); ++i) own[i] = shapes[shaped.shapes[i]];
+  integrate_friction(shaped.term, nodes(shaped.term.direction), own.data(), which, cancel, column);
+  if (cumulative_) accumulate(column);
+}
+
+void Penalty::columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
+                      const base::Cancel* cancel) const {
+  result = columns_;
+  for (const auto& s : shaped_) {
+    shaped_column(s, shapes.data(), kValue, cancel, result.col(s.coefficient));
+  }
+}
+
+double Penalty::operator()(const Eigen::VectorXd& theta, const base::Cancel* cancel) const {
+  Eigen::VectorXd residual;
+  residuals(theta, residual, nullptr, cancel);
+  return residual.squaredNorm();
+}
+
+void Penalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                        Eigen::MatrixXd* jacobian, const base::Cancel* cancel) const {
+  check(theta);
+  const Eigen::Index p = coefficients();
+  if (jacobian != nullptr) {
+    jacobian->setZero(window_count(), parameters());
+    jacobian->leftCols(p) = -columns_;
+  }
+  residual = target_;
+  residual.noalias() -= columns_ * theta.head(p);
+  Eigen::VectorXd column(shaped_.empty() ? 0 : window_count());
+  const double* shapes = theta.data() + p;
+  for (const auto& s : shaped_) {
+    const double coefficient = theta[s.coefficient];
+    shaped_column(s, shapes, kValue, cancel, column);
+    residual.noalias() -= coefficient * column;
+    if (jacobian == nullptr) continue;
+    jacobian->col(s.coefficient) -= column;
+    for (std::size_t i = 0; i < s.shapes.size(); ++i) {
+      shaped_column(s, shapes, static_cast<int>(i), cancel, column);
+      jacobian->col(p + s.shapes[i]) -= coefficient * column;
+    }
+  }
+  if (residual_ == Residual::torque) return;
+  const double scale = 1.0 / theta[gain_index_];
+  residual *= scale;
+  if (jacobian != nullptr) {
+    *jacobian *= scale;
+    jacobian->col(gain_index_) -= scale * residual;
+  }
+}
+
+void Penalty::evaluate(const Eigen::MatrixXd& candidates, Eigen::VectorXd& penalties,
+                       base::Pool& pool) const {
+  penalties.resize(candidates.cols());
+  pool.for_each(
+      static_cast<std::size_t>(candidates.cols()), [&](std::size_t begin, std::size_t end) {
+        for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
+          penalties[i] = (*this)(candidates.col(i), &pool.cancel());
+        }
+      });
+}
+
+}  // namespace jointid::identify

@@ -1,0 +1,120 @@
+#pragma once
+// The integral penalty [4-21 .. 4-24]: the sum of squared window residuals, summed directly over
+// the samples. All coefficients are linear; only shape parameters cost a pass over the samples.
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "identify/balance/quadrature.hpp"
+#include "identify/penalty/penalty_function.hpp"
+
+namespace jointid::identify {
+
+/// Penalty of a parameter vector over one or several recordings.
+///
+/// P(theta) = sum over windows of r^2;  torque: r = integral(tau) - sum_j c_j phi_j(shape); sensor:
+/// that over sensor_gain. Parameters are ordered as `names()`: coefficients in the order given,
+/// then shapes. A coefficient of `per_recording` is one a recording, "name[0]", "name[1]", ...
+/// With cumulative windows r is the running sum of the windows' residuals, within each recording.
+class Penalty final : public PenaltyFunction {
+ public:
+  using Masked = std::vector<std::shared_ptr<const MaskedRecording>>;
+  Penalty(std::vector<Recording> recordings, const std::vector<std::string>& terms,
+          const WindowOptions& windows, Residual residual, bool mask_standstill,
+          double gear_ratio = 1.0, const std::vector<std::string>& per_recording = {});
+  /// The same from recordings whose mask is known; they are not kept. With a pool its workers
+  /// integrate.
+  Penalty(const Masked& recordings, const std::vector<std::string>& terms,
+          const WindowOptions& windows, Residual residual, double gear_ratio = 1.0,
+          const std::vector<std::string>& per_recording = {}, base::Pool* pool = nullptr);
+
+  /// A term whose column depends on shapes.
+  struct Shaped {
+    Eigen::Index coefficient;
+    std::vector<Eigen::Index> shapes;  ///< among the shapes
+    Term term;
+  };
+
+  [[nodiscard]] const std::vector<std::string>& names() const override { return names_; }
+  /// Of a stretch of a recording, on which nothing need be determined: few windows, even none, will
+  /// do.
+  static Penalty fragment(const Masked& recordings, const std::vector<std::string>& terms,
+                          double window_duration, Residual residual, double gear_ratio);
+
+  /// The term of each coefficient.
+  [[nodiscard]] const std::vector<Term>& terms() const { return terms_; }
+  [[nodiscard]] const std::vector<Shaped>& shaped() const { return shaped_; }
+  /// Largest speed that a shaped column is summed over [rad/s or m/s].
+  [[nodiscard]] double peak_speed() const;
+  [[nodiscard]] bool is_shaped(Eigen::Index coefficient) const;
+  [[nodiscard]] Eigen::Index coefficients() const override { return columns_.cols(); }
+  [[nodiscard]] Eigen::Index window_count() const { return target_.size(); }
+  [[nodiscard]] Residual residual() const override { return residual_; }
+  [[nodiscard]] Eigen::Index gain_index() const override { return gain_index_; }
+  [[nodiscard]] bool brief() const override { return false; }
+
+  double operator()(const Eigen::VectorXd& theta,
+                    const base::Cancel* cancel = nullptr) const override;
+  void residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual, Eigen::MatrixXd* jacobian,
+                 const base::Cancel* cancel = nullptr) const override;
+  void evaluate(const Eigen::MatrixXd& candidates, Eigen::VectorXd& penalties,
+                base::Pool& pool) const override;
+  void columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
+               const base::Cancel* cancel = nullptr) const override;
+  /// Integrals of the torque.
+  [[nodiscard]] const Eigen::VectorXd& target() const override { return target_; }
+  /// Columns without the shaped ones, which are zero here.
+  [[nodiscard]] const Eigen::MatrixXd& constant_columns() const { return columns_; }
+  /// What the shaped columns of a direction are sums over.
+  [[nodiscard]] const FrictionNodes& nodes(model::Direction direction) const {
+    return nodes_[static_cast<std::size_t>(direction)];
+  }
+
+  /// What was cut and why, one entry a window; sample numbers are within `recording_of`.
+  [[nodiscard]] const std::vector<Window>& windows() const { return windows_; }
+  [[nodiscard]] const std::vector<int>& recording_of() const { return recording_of_; }
+  [[nodiscard]] const Eigen::VectorXd& usable_duration() const {
+    return usable_duration_;
+  }  ///< [s] a window
+  [[nodiscard]] bool cumulative() const { return cumulative_; }
+  [[nodiscard]] const WindowChoice& window_choice() const { return choice_; }
+  [[nodiscard]] std::int64_t standing_samples() const { return standing_; }
+  [[nodiscard]] std::int64_t unusable_intervals() const { return unusable_; }
+  [[nodiscard]] std::int64_t total_samples() const { return total_; }
+
+ private:
+  void add_term(const std::string& key);
+  friend class PenaltyParts;
+  Penalty(const Masked& recordings, const std::vector<std::string>& terms, Residual residual,
+          double gear_ratio);  ///< terms only; no windows yet
+  void cut(const Masked& recordings, WindowOptions options);
+  void integrate_all(const Masked& recordings, double gear_ratio, base::Pool* pool);
+  void collect_nodes(const Masked& recordings, const base::Cancel* cancel);
+  void own_columns(const std::vector<std::string>& per_recording, std::size_t recordings);
+  /// A shaped term's column, or its derivative by the term's shape number `which`.
+  void shaped_column(const Shaped& shaped, const double* shapes, int which,
+                     const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) const;
+  void accumulate(Eigen::Ref<Eigen::VectorXd> values) const;
+
+  std::vector<std::string> names_;  ///< coefficients, then shapes
+  std::vector<Term> terms_;
+  std::vector<Shaped> shaped_;
+  bool cumulative_ = false;
+  Residual residual_;
+  Eigen::Index gain_index_ = -1;
+  Eigen::MatrixXd columns_;  ///< windows x coefficients; shaped ones stay zero here
+  Eigen::VectorXd target_;
+  std::array<FrictionNodes, 3> nodes_;  ///< by model::Direction, as far as needed
+  std::vector<Window> windows_;
+  std::vector<int> recording_of_;
+  Eigen::VectorXd usable_duration_;
+  WindowChoice choice_;
+  std::int64_t standing_ = 0;
+  std::int64_t unusable_ = 0;
+  std::int64_t total_ = 0;
+};
+
+}  // namespace jointid::identify

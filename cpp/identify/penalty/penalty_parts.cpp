@@ -1,0 +1,70 @@
+#include "identify/penalty/penalty_parts.hpp"
+
+namespace jointid::identify {
+
+namespace {
+
+constexpr std::int64_t kSamples = 8192;  // a part: its columns and nodes stay in the cache
+
+}  // namespace
+
+PenaltyParts::PenaltyParts(const Penalty::Masked& recordings, const std::vector<std::string>& terms,
+                           const WindowOptions& windows, Residual residual, double gear_ratio,
+                           const std::vector<std::string>& per_recording)
+    : recordings_(recordings),
+      gear_ratio_(gear_ratio),
+      per_recording_(per_recording),
+      frame_(recordings, terms, residual, gear_ratio) {
+  windows.validate();
+  frame_.cumulative_ = windows.cumulative;
+  frame_.cut(recordings, windows);
+  windows_.swap(frame_.windows_);
+  recording_of_.swap(frame_.recording_of_);
+  first_.push_back(0);
+  std::int64_t held = 0;
+  for (std::size_t w = 0; w < windows_.size(); ++w) {
+    if (held >= kSamples && !frame_.cumulative_) {
+      first_.push_back(w);
+      held = 0;
+    }
+    held += windows_[w].end - windows_[w].begin;
+  }
+  first_.push_back(windows_.size());
+  Penalty whole = frame_;
+  whole.columns_.setZero(0, static_cast<Eigen::Index>(whole.terms_.size()));
+  whole.own_columns(per_recording, recordings.size());
+  names_ = whole.parameters();
+  coefficients_ = whole.coefficients();
+  if (residual == Residual::sensor) divisor_ = whole.gain_index();
+}
+
+Penalty PenaltyParts::part(std::size_t index) const {
+  Penalty result = frame_;
+  const auto from = static_cast<std::ptrdiff_t>(first_[index]);
+  const auto to = static_cast<std::ptrdiff_t>(first_[index + 1]);
+  result.windows_.assign(windows_.begin() + from, windows_.begin() + to);
+  result.recording_of_.assign(recording_of_.begin() + from, recording_of_.begin() + to);
+  result.integrate_all(recordings_, gear_ratio_, nullptr);
+  result.own_columns(per_recording_, recordings_.size());
+  if (result.cumulative_) {
+    result.accumulate(result.target_);
+    for (Eigen::Index j = 0; j < result.columns_.cols(); ++j)
+      result.accumulate(result.columns_.col(j));
+  }
+  return result;
+}
+
+void for_each(std::size_t count, base::Pool* pool, const std::function<void(std::size_t)>& work) {
+  if (pool == nullptr) {
+    for (std::size_t i = 0; i < count; ++i) work(i);
+    return;
+  }
+  pool->for_each(count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      pool->cancel().check();
+      work(i);
+    }
+  });
+}
+
+}  // namespace jointid::identify

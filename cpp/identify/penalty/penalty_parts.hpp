@@ -1,0 +1,53 @@
+#pragma once
+// A penalty in parts of some thousand samples each: what is summed over all windows once or twice
+// needs no columns of all of them in memory, and its parts go over the threads.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/pool.hpp"
+#include "identify/penalty/penalty.hpp"
+
+namespace jointid::identify {
+
+class PenaltyParts {
+ public:
+  /// As for `Penalty`. Cumulative windows stay one part.
+  PenaltyParts(const Penalty::Masked& recordings, const std::vector<std::string>& terms,
+               const WindowOptions& windows, Residual residual, double gear_ratio,
+               const std::vector<std::string>& per_recording);
+
+  [[nodiscard]] std::size_t count() const { return first_.size() - 1; }
+  [[nodiscard]] Eigen::Index window_count() const {
+    return static_cast<Eigen::Index>(windows_.size());
+  }
+  [[nodiscard]] Eigen::Index parameters() const { return names_; }
+  [[nodiscard]] std::int64_t samples() const { return frame_.total_samples(); }
+  /// Whether the residuals are not linear in this parameter: a shape, or a gain that divides them.
+  [[nodiscard]] bool bends(Eigen::Index parameter) const {
+    return parameter >= coefficients_ || parameter == divisor_;
+  }
+  /// The penalty over the windows of one part.
+  [[nodiscard]] Penalty part(std::size_t index) const;
+  [[nodiscard]] const RecordingView& recording(int index) const {
+    return recordings_[static_cast<std::size_t>(index)]->recording();
+  }
+
+ private:
+  Penalty::Masked recordings_;
+  double gear_ratio_;
+  std::vector<std::string> per_recording_;
+  Penalty frame_;  ///< the terms; no window
+  std::vector<Window> windows_;
+  std::vector<int> recording_of_;
+  Eigen::Index names_ = 0;
+  Eigen::Index coefficients_ = 0;
+  Eigen::Index divisor_ = -1;
+  std::vector<std::size_t> first_;  ///< windows first_[i] .. first_[i + 1] - 1 are part i
+};
+
+/// Calls work(i) for each i < count: by the pool's workers, or one after the other without one.
+void for_each(std::size_t count, base::Pool* pool, const std::function<void(std::size_t)>& work);
+
+}  // namespace jointid::identify

@@ -1,0 +1,118 @@
+#include "identify/solve/elimination.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+#include "search/least_squares.hpp"
+
+namespace jointid::identify {
+
+namespace {
+
+/// Coefficients split into fixed (moved to the target) and free.
+struct Reduced {
+  Eigen::MatrixXd columns;
+  Eigen::VectorXd target;
+  std::vector<Eigen::Index>
+      free;  ///< coefficients, without the gain when that is eliminated with the rest
+};
+
+Reduced reduce(const PenaltyFunction& penalty, const Eigen::MatrixXd& columns,
+               const search::Domain& domain, bool keep_gain) {
+  Reduced result;
+  result.target = penalty.target();
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    if (!keep_gain && j == penalty.gain_index()) continue;
+    if (domain.lower[j] == domain.upper[j]) {
+      result.target.noalias() -= domain.lower[j] * columns.col(j);
+    } else {
+      result.free.push_back(j);
+    }
+  }
+  result.columns.resize(columns.rows(), static_cast<Eigen::Index>(result.free.size()));
+  for (std::size_t i = 0; i < result.free.size(); ++i) {
+    result.columns.col(static_cast<Eigen::Index>(i)) = columns.col(result.free[i]);
+  }
+  return result;
+}
+
+Eigen::VectorXd solve_box(const Reduced& r, const search::Domain& domain,
+                          Eigen::VectorXd coefficients) {
+  const auto n = static_cast<Eigen::Index>(r.free.size());
+  if (n == 0) return coefficients;
+  Eigen::MatrixXd g(2 * n, n);
+  g << Eigen::MatrixXd::Identity(n, n), -Eigen::MatrixXd::Identity(n, n);
+  Eigen::VectorXd h(2 * n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    h[i] = domain.lower[r.free[static_cast<std::size_t>(i)]];
+    h[n + i] = -domain.upper[r.free[static_cast<std::size_t>(i)]];
+  }
+  const auto solution = search::constrained_least_squares(r.columns, r.target, g, h);
+  for (Eigen::Index i = 0; i < n; ++i)
+    coefficients[r.free[static_cast<std::size_t>(i)]] = solution.x[i];
+  return coefficients;
+}
+
+/// Free gain, residual in the sensor's terms: min |target u - columns g - sensor|, u = 1/gain, g =
+/// c u.
+Eigen::VectorXd solve_ratio(const PenaltyFunction& penalty, const Reduced& r,
+                            const Eigen::VectorXd& sensor, const search::Domain& domain,
+                            Eigen::VectorXd coefficients) {
+  const Eigen::Index gain = penalty.gain_index();
+  const auto n = static_cast<Eigen::Index>(r.free.size());
+  const double low = domain.lower[gain];
+  const double high = domain.upper[gain];
+  if (low <= 0.0 && high >= 0.0) {
+    throw std::invalid_argument(
+        "sensor_gain: its bounds must not contain 0 with residual 'sensor', got " +
+        std::to_string(low) + " to " + std::to_string(high));
+  }
+  const double sign = low > 0.0 ? 1.0 : -1.0;
+  Eigen::MatrixXd a(r.target.size(), n + 1);
+  a.leftCols(n) = -r.columns;
+  a.col(n) = r.target;
+  Eigen::MatrixXd g = Eigen::MatrixXd::Zero(2 * n + 2, n + 1);
+  Eigen::VectorXd h = Eigen::VectorXd::Zero(2 * n + 2);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto c = r.free[static_cast<std::size_t>(i)];
+    g(i, i) = sign;
+    g(i, n) = -sign * domain.lower[c];
+    g(n + i, i) = -sign;
+    g(n + i, n) = sign * domain.upper[c];
+  }
+  g(2 * n, n) = 1.0;  // 1/high <= u <= 1/low, also for negative gains
+  h[2 * n] = 1.0 / high;
+  g(2 * n + 1, n) = -1.0;
+  h[2 * n + 1] = -1.0 / low;
+  const auto solution = search::constrained_least_squares(a, sensor, g, h);
+  const double u = solution.x[n];
+  coefficients[gain] = 1.0 / u;
+  for (Eigen::Index i = 0; i < n; ++i)
+    coefficients[r.free[static_cast<std::size_t>(i)]] = solution.x[i] / u;
+  return coefficients;
+}
+
+}  // namespace
+
+Eigen::VectorXd best_coefficients(const PenaltyFunction& penalty, const Eigen::VectorXd& shapes,
+                                  const search::Domain& domain, const base::Cancel* cancel) {
+  Eigen::MatrixXd columns;
+  penalty.columns(shapes, columns, cancel);
+  const Eigen::Index p = penalty.coefficients();
+  const Eigen::Index gain = penalty.gain_index();
+  Eigen::VectorXd start = domain.lower.head(p);
+  const bool ratio =
+      penalty.residual() == Residual::sensor && domain.lower[gain] < domain.upper[gain];
+  Eigen::VectorXd best;
+  if (ratio) {
+    best = solve_ratio(penalty, reduce(penalty, columns, domain, false), columns.col(gain), domain,
+                       start);
+  } else {
+    best = solve_box(reduce(penalty, columns, domain, true), domain, start);
+  }
+  // Rounding may leave a bound by an ulp.
+  return best.cwiseMax(domain.lower.head(p)).cwiseMin(domain.upper.head(p));
+}
+
+}  // namespace jointid::identify

@@ -1,0 +1,20 @@
+#pragma once
+// Exact elimination of the linear parameters under their bounds.
+
+#include <Eigen/Core>
+
+#include "identify/penalty/penalty_function.hpp"
+#include "search/domain.hpp"
+
+namespace jointid::identify {
+
+/// The best coefficients for given shapes, within the domain.
+///
+/// residual torque: bounded least squares. residual sensor: linear in u = 1/gain and g = c/gain,
+/// where the box of each c becomes lower u <= g <= upper u. Throws std::invalid_argument when the
+/// gain's bounds contain zero.
+Eigen::VectorXd best_coefficients(const PenaltyFunction& penalty, const Eigen::VectorXd& shapes,
+                                  const search::Domain& domain,
+                                  const base::Cancel* cancel = nullptr);
+
+}  // namespace jointid::identify

@@ -1,0 +1,146 @@
+#include "identify/solve/refit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+namespace jointid::identify {
+
+namespace {
+
+constexpr int kMostSteps = 60;
+constexpr double kNear = 2e-5;    // standard errors left to go
+constexpr double kEnough = 1e-3;  // of an expected miss; the last step need not be checked then
+constexpr double kFloor = 1e-13;  // damping that never disturbs, and keeps the equations solvable
+constexpr std::int64_t kKept = 1 << 20;  // samples up to which the parts are kept between steps
+
+/// Sums over the windows at one point.
+struct Sums {
+  Eigen::MatrixXd square;    ///< J'J
+  Eigen::VectorXd gradient;  ///< J'r
+  double penalty = 0.0;
+};
+
+class Windows {
+ public:
+  Windows(const PenaltyParts& parts, base::Pool* pool) : parts_(parts), pool_(pool) {
+    if (parts.samples() <= kKept) kept_.resize(parts.count());
+  }
+
+  [[nodiscard]] Sums at(const Eigen::VectorXd& theta) {
+    std::vector<Sums> each(parts_.count());
+    for_each(parts_.count(), pool_, [&](std::size_t i) {
+      Eigen::VectorXd residual;
+      Eigen::MatrixXd jacobian;
+      if (kept_.empty()) {
+        parts_.part(i).residuals(theta, residual, &jacobian);
+      } else {
+        if (kept_[i] == nullptr) kept_[i] = std::make_unique<Penalty>(parts_.part(i));
+        kept_[i]->residuals(theta, residual, &jacobian);
+      }
+      each[i].square.setZero(jacobian.cols(), jacobian.cols());
+      each[i].square.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
+      each[i].gradient = jacobian.transpose() * residual;
+      each[i].penalty = residual.squaredNorm();
+    });
+    Sums all = each[0];
+    for (std::size_t i = 1; i < each.size(); ++i) {  // always in this order: always the same bits
+      all.square += each[i].square;
+      all.gradient += each[i].gradient;
+      all.penalty += each[i].penalty;
+    }
+    all.square = all.square.selfadjointView<Eigen::Lower>();
+    return all;
+  }
+
+ private:
+  const PenaltyParts& parts_;
+  base::Pool* pool_;
+  std::vector<std::unique_ptr<Penalty>> kept_;
+};
+
+/// The damped step over the parameters that may move: free, and not held at a bound.
+Eigen::VectorXd step_from(const Sums& sums, const search::Domain& domain,
+                          const Eigen::VectorXd& theta, double damping) {
+  std::vector<Eigen::Index> moving;
+  for (const auto i : domain.free()) {
+    const bool held = (theta[i] <= domain.lower[i] && sums.gradient[i] >= 0.0) ||
+                      (theta[i] >= domain.upper[i] && sums.gradient[i] <= 0.0);
+    if (!held && sums.square(i, i) > 0.0) moving.push_back(i);
+  }
+  const auto count = static_cast<Eigen::Index>(moving.size());
+  Eigen::MatrixXd system(count, count);
+  Eigen::VectorXd right(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto a = moving[static_cast<std::size_t>(i)];
+    const double size = std::sqrt(sums.square(a, a));
+    right[i] = -sums.gradient[a] / size;
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const auto b = moving[static_cast<std::size_t>(j)];
+      system(i, j) = sums.square(a, b) / (size * std::sqrt(sums.square(b, b)));
+    }
+    system(i, i) = 1.0 + damping;
+  }
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(theta.size());
+  if (count == 0) return step;
+  const Eigen::VectorXd scaled = system.ldlt().solve(right);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto a = moving[static_cast<std::size_t>(i)];
+    step[a] = scaled[i] / std::sqrt(sums.square(a, a));
+  }
+  return step;
+}
+
+/// The largest relative change of what the residuals are not linear in.
+double bend(const PenaltyParts& parts, const Eigen::VectorXd& at, const Eigen::VectorXd& moved) {
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < at.size(); ++i) {
+    if (!parts.bends(i) || moved[i] == 0.0) continue;
+    largest = std::max(largest, std::fabs(moved[i]) /
+                                    std::max(std::fabs(at[i]), std::numeric_limits<double>::min()));
+  }
+  return largest;
+}
+
+}  // namespace
+
+Eigen::VectorXd refit(const PenaltyParts& parts, const search::Domain& domain,
+                      const Eigen::VectorXd& start, base::Pool* pool) {
+  domain.validate();
+  Windows windows(parts, pool);
+  const double freedom = static_cast<double>(
+      std::max<Eigen::Index>(1, parts.window_count() - static_cast<Eigen::Index>(domain.size())));
+  Eigen::VectorXd best = start.cwiseMax(domain.lower).cwiseMin(domain.upper);
+  Sums sums = windows.at(best);
+  double damping = kFloor;
+  double before = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kMostSteps; ++i) {
+    const Eigen::VectorXd step = step_from(sums, domain, best, damping);
+    const Eigen::VectorXd trial = (best + step).cwiseMax(domain.lower).cwiseMin(domain.upper);
+    const Eigen::VectorXd moved = trial - best;
+    const bool cut = trial != best + step;  // by a bound: what is left will move otherwise
+    // In standard errors: the length in the metric of the penalty.
+    const double way = std::sqrt(std::max(0.0, moved.dot(sums.square * moved)) * freedom /
+                                 std::max(sums.penalty, std::numeric_limits<double>::min()));
+    // Each step is shorter by about as much as the one before was; the first one misses by what the
+    // residuals bend over it.
+    const double shrunk = std::isfinite(before) ? way / before : bend(parts, best, moved);
+    const double left = way * std::min(1.0, shrunk);
+    if (way < kNear || (damping == kFloor && !cut && left < 0.1 * kEnough)) return trial;
+    const Sums there = windows.at(trial);
+    if (there.penalty <= sums.penalty * (1.0 + 1e-12)) {
+      best = trial;
+      sums = there;
+      before = way;
+      damping = std::max(kFloor, 0.1 * damping);
+    } else {
+      damping = std::max(1e-4, 10.0 * damping);
+      if (damping > 1e8) break;
+    }
+  }
+  return best;
+}
+
+}  // namespace jointid::identify

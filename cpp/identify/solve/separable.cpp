@@ -1,0 +1,326 @@
+#include "identify/solve/separable.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+#include "search/polish.hpp"
+
+namespace jointid::identify {
+
+namespace {
+
+constexpr int kScan = 64;             // intervals over the domain of a single free shape
+constexpr int kGrid = 16;             // over each of several
+constexpr std::size_t kPolished = 3;  // best points of the grid that are polished
+constexpr double kGolden = 0.6180339887498949;
+constexpr double kNarrow = 1e-9;  // of a scale's range: as near as the lowest point is sought
+
+/// The penalty as a function of the free shapes alone.
+class Eliminated {
+ public:
+  Eliminated(const PenaltyFunction& penalty, const search::Domain& domain, base::Pool& pool)
+      : penalty_(penalty), domain_(domain), pool_(pool) {
+    for (Eigen::Index i = penalty.coefficients(); i < penalty.parameters(); ++i) {
+      if (domain.lower[i] < domain.upper[i]) free_.push_back(i);
+    }
+  }
+
+  [[nodiscard]] const std::vector<Eigen::Index>& free() const { return free_; }
+
+  /// All parameters for given values of the free shapes.
+  [[nodiscard]] Eigen::VectorXd full(const std::vector<double>& shapes) const {
+    Eigen::VectorXd theta = domain_.lower;
+    for (std::size_t i = 0; i < free_.size(); ++i) theta[free_[i]] = shapes[i];
+    const Eigen::Index p = penalty_.coefficients();
+    theta.head(p) =
+        best_coefficients(penalty_, theta.tail(theta.size() - p), domain_, &pool_.cancel());
+    return theta;
+  }
+
+  /// Takes the point if it is no worse.
+  void offer(const Eigen::VectorXd& theta, SeparableResult& result) const {
+    const double value = penalty_(theta, &pool_.cancel());
+    ++result.evaluations;
+    if (result.best.size() > 0 && value > result.penalty) return;
+    result.best = theta;
+    result.penalty = value;
+  }
+
+  /// Penalties at many points, over the threads.
+  [[nodiscard]] std::vector<double> values(const std::vector<std::vector<double>>& points) const {
+    std::vector<double> result(points.size());
+    if (penalty_.brief()) {
+      for (std::size_t i = 0; i < points.size(); ++i) result[i] = penalty_(full(points[i]));
+      return result;
+    }
+    pool_.for_each(points.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        result[i] = penalty_(full(points[i]), &pool_.cancel());
+      }
+    });
+    return result;
+  }
+
+ private:
+  const PenaltyFunction& penalty_;
+  const search::Domain& domain_;
+  base::Pool& pool_;
+  std::vector<Eigen::Index> free_;
+};
+
+/// Steps over a shape's domain that matter equally: the Gaussian decay is felt through s v^2, so
+/// its shape takes a square-root scale; speeds and exponents are felt as they are.
+class Scale {
+ public:
+  Scale(double lower, double upper, bool root)
+      : lower_(lower), upper_(upper), root_(root && lower >= 0.0) {}
+  [[nodiscard]] double share(double shape) const {
+    const auto even = [&](double value) { return root_ ? std::sqrt(value) : value; };
+    return (even(shape) - even(lower_)) / (even(upper_) - even(lower_));
+  }
+  [[nodiscard]] double at(double share) const {
+    if (share <= 0.0) return lower_;  // the bounds to the last bit
+    if (share >= 1.0) return upper_;
+    if (!root_) return lower_ + share * (upper_ - lower_);
+    const double value = std::sqrt(lower_) + share * (std::sqrt(upper_) - std::sqrt(lower_));
+    return std::clamp(value * value, lower_, upper_);
+  }
+
+ private:
+  double lower_;
+  double upper_;
+  bool root_;
+};
+
+/// Shares of a scale's range.
+struct Interval {
+  double left;
+  double right;
+};
+
+/// Penalties at even steps over a scale.
+std::vector<double> scan(const Eliminated& reduced, const Scale& scale, SeparableResult& result) {
+  std::vector<std::vector<double>> points;
+  for (int i = 0; i <= kScan; ++i) points.push_back({scale.at(static_cast<double>(i) / kScan)});
+  result.evaluations += kScan + 1;
+  return reduced.values(points);
+}
+
+/// The scan's best point, between its neighbours.
+Interval lowest(const std::vector<double>& scanned) {
+  const auto best =
+      static_cast<double>(std::min_element(scanned.begin(), scanned.end()) - scanned.begin());
+  return {std::max(0.0, best - 1.0) / kScan, std::min<double>(kScan, best + 1.0) / kScan};
+}
+
+/// Whether the scan falls all the way from a place to its best point: the two are in one valley.
+bool falls_from(const std::vector<double>& scanned, double from) {
+  const double share = std::clamp(from, 0.0, 1.0);
+  const auto best = std::min_element(scanned.begin(), scanned.end());
+  const auto first = scanned.begin() + static_cast<std::ptrdiff_t>(std::floor(share * kScan));
+  const auto last = scanned.begin() + static_cast<std::ptrdiff_t>(std::ceil(share * kScan));
+  if (last <= best) return std::is_sorted(first, best + 1, std::greater<>());
+  if (first >= best) return std::is_sorted(best, last + 1);
+  return true;
+}
+
+/// Parabolas through the last points, golden sections where they fail (Brent 1973, chapter 5).
+void narrow(const Eliminated& reduced, const Scale& scale, Interval interval, base::Pool& pool,
+            SeparableResult& result) {
+  const auto value = [&](double share) {
+    pool.poll();
+    ++result.evaluations;
+    return reduced.values({{scale.at(share)}})[0];
+  };
+  auto [left, right] = interval;
+  struct Point {
+    double share;
+    double value;
+  };
+  const double begin = left + (1.0 - kGolden) * (right - left);
+  Point best{begin, value(begin)};
+  Point second = best;
+  Point third = best;
+  double step = 0.0;
+  double before = 0.0;  // the step before the last
+  for (;;) {
+    const double middle = 0.5 * (left + right);
+    if (std::fabs(best.share - middle) <= 2.0 * kNarrow - 0.5 * (right - left)) break;
+    // The parabola's lowest point is best.share + p / q.
+    const double r = (best.share - second.share) * (best.value - third.value);
+    double q = (best.share - third.share) * (best.value - second.value);
+    double p = (best.share - third.share) * q - (best.share - second.share) * r;
+    q = 2.0 * (q - r);
+    p = q > 0.0 ? -p : p;
+    q = std::fabs(q);
+    if (std::fabs(p) < std::fabs(0.5 * q * before) && p > q * (left - best.share) &&
+        p < q * (right - best.share)) {
+      before = step;
+      step = p / q;
+      const double to = best.share + step;
+      if (to - left < 2.0 * kNarrow || right - to < 2.0 * kNarrow) {
+        step = best.share < middle ? kNarrow : -kNarrow;
+      }
+    } else {
+      before = (best.share < middle ? right : left) - best.share;
+      step = (1.0 - kGolden) * before;
+    }
+    if (std::fabs(step) < kNarrow) step = step > 0.0 ? kNarrow : -kNarrow;
+    const double share = best.share + step;
+    const Point next{share, value(share)};
+    if (next.value <= best.value) {
+      (next.share < best.share ? right : left) = best.share;
+      third = second;
+      second = best;
+      best = next;
+    } else {
+      (next.share < best.share ? left : right) = next.share;
+      if (next.value <= second.value || second.share == best.share) {
+        third = second;
+        second = next;
+      } else if (next.value <= third.value || third.share == best.share ||
+                 third.share == second.share) {
+        third = next;
+      }
+    }
+  }
+  reduced.offer(reduced.full({scale.at(best.share)}), result);
+}
+
+/// The ends, which the narrowing never touches.
+void offer_ends(const Eliminated& reduced, const Scale& scale, SeparableResult& result) {
+  for (const double share : {0.0, 1.0}) reduced.offer(reduced.full({scale.at(share)}), result);
+}
+
+/// A scan, then narrowing about its best.
+void search_line(const Eliminated& reduced, const Scale& scale, base::Pool& pool,
+                 SeparableResult& result) {
+  narrow(reduced, scale, lowest(scan(reduced, scale, result)), pool, result);
+  offer_ends(reduced, scale, result);
+}
+
+/// The valley about the best so far. Widens until its floor is inside, or at the domain's end: the
+/// start may lie on a slope.
+void search_near(const Eliminated& reduced, const Scale& scale, base::Pool& pool,
+                 SeparableResult& result) {
+  for (double reach = 1.0 / kScan;; reach *= 4.0) {
+    const double share = scale.share(result.best[reduced.free()[0]]);
+    const Interval near{std::max(0.0, share - reach), std::min(1.0, share + reach)};
+    narrow(reduced, scale, near, pool, result);
+    const double found = scale.share(result.best[reduced.free()[0]]);
+    const double margin = 0.01 * reach;
+    if ((near.left <= 0.0 || found > near.left + margin) &&
+        (near.right >= 1.0 || found < near.right - margin)) {
+      return;
+    }
+  }
+}
+
+void search_grid(const Eliminated& reduced, const std::vector<Scale>& scales,
+                 const PenaltyFunction& penalty, const search::Domain& domain, base::Pool& pool,
+                 SeparableResult& result) {
+  std::vector<std::vector<double>> points{{}};
+  for (const auto& scale : scales) {
+    std::vector<std::vector<double>> wider;
+    for (const auto& point : points) {
+      for (int i = 0; i <= kGrid; ++i) {
+        wider.push_back(point);
+        wider.back().push_back(scale.at(static_cast<double>(i) / kGrid));
+      }
+    }
+    points = std::move(wider);
+  }
+  const auto values = reduced.values(points);
+  result.evaluations += static_cast<int>(points.size());
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return values[a] != values[b] ? values[a] < values[b] : a < b;
+  });
+  const auto residuals = [&](const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                             Eigen::MatrixXd* jacobian) {
+    penalty.residuals(theta, residual, jacobian, &pool.cancel());
+  };
+  for (std::size_t i = 0; i < std::min(kPolished, order.size()); ++i) {
+    const Eigen::VectorXd start = reduced.full(points[order[i]]);
+    reduced.offer(start, result);
+    reduced.offer(search::polish(residuals, domain, start, pool).best, result);
+  }
+}
+
+}  // namespace
+
+namespace {
+
+void require_size(const PenaltyFunction& penalty, const search::Domain& domain) {
+  domain.validate();
+  if (domain.size() == penalty.parameters()) return;
+  throw std::invalid_argument("domain must have " + std::to_string(penalty.parameters()) +
+                              " parameters, got " + std::to_string(domain.size()));
+}
+
+std::vector<Scale> scales_of(const PenaltyFunction& penalty, const search::Domain& domain,
+                             const Eliminated& reduced) {
+  std::vector<Scale> scales;
+  for (const auto i : reduced.free()) {
+    const bool root = penalty.names()[static_cast<std::size_t>(i)] == "stribeck";
+    scales.emplace_back(domain.lower[i], domain.upper[i], root);
+  }
+  return scales;
+}
+
+}  // namespace
+
+SeparableResult minimise_separable(const PenaltyFunction& penalty, const search::Domain& domain,
+                                   base::Pool& pool) {
+  require_size(penalty, domain);
+  const Eliminated reduced(penalty, domain, pool);
+  const auto scales = scales_of(penalty, domain, reduced);
+  SeparableResult result;
+  if (scales.empty()) {
+    reduced.offer(reduced.full({}), result);
+  } else if (scales.size() == 1) {
+    search_line(reduced, scales[0], pool, result);
+  } else {
+    search_grid(reduced, scales, penalty, domain, pool, result);
+  }
+  return result;
+}
+
+SeparableResult refine_separable(const PenaltyFunction& penalty, const search::Domain& domain,
+                                 const Eigen::VectorXd& start, base::Pool& pool, bool everywhere) {
+  require_size(penalty, domain);
+  const Eliminated reduced(penalty, domain, pool);
+  const auto scales = scales_of(penalty, domain, reduced);
+  SeparableResult result;
+  reduced.offer(start.cwiseMax(domain.lower).cwiseMin(domain.upper), result);
+  if (scales.empty()) {
+    reduced.offer(reduced.full({}), result);
+    return result;
+  }
+  if (scales.size() > 1) {
+    const auto residuals = [&](const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                               Eigen::MatrixXd* jacobian) {
+      penalty.residuals(theta, residual, jacobian, &pool.cancel());
+    };
+    reduced.offer(search::polish(residuals, domain, result.best, pool).best, result);
+    if (everywhere) search_grid(reduced, scales, penalty, domain, pool, result);
+    return result;
+  }
+  if (!everywhere) {
+    search_near(reduced, scales[0], pool, result);
+    return result;
+  }
+  const double share = scales[0].share(result.best[reduced.free()[0]]);
+  const auto scanned = scan(reduced, scales[0], result);
+  if (!falls_from(scanned, share)) search_near(reduced, scales[0], pool, result);
+  narrow(reduced, scales[0], lowest(scanned), pool, result);
+  offer_ends(reduced, scales[0], result);
+  return result;
+}
+
+}  // namespace jointid::identify
