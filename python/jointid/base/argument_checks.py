@@ -11,14 +11,14 @@ from jointid.base.errors import InputError
 def require_path(what: str, value: object) -> Path:
     """Return a file's name as a path, or refuse it."""
     if not isinstance(value, str | os.PathLike) or not isinstance(os.fspath(value), str):
-        raise InputError(f"{what} is {shown(value)}; the name of a file is expected")
+        raise InputError("the name of a file is expected", argument=what, value=value)
     return Path(value)
 
 
 def require_mapping(what: str, value: object, example: str) -> Mapping[Any, Any]:
     """Return a mapping, or refuse what is none; `example` shows a right one."""
     if not isinstance(value, Mapping):
-        raise InputError(f"{what} is {shown(value)}; a mapping is expected, e.g. {example}")
+        raise InputError(f"a mapping is expected, e.g. {example}", argument=what, value=value)
     return value
 
 
@@ -26,16 +26,7 @@ def require_kind(what: str, value: object, *kinds: type) -> None:
     """Refuse what is none of these."""
     if not isinstance(value, kinds):
         names = " or ".join(kind.__name__ for kind in kinds)
-        raise InputError(f"{what} is {shown(value)}; {_article(names)} is expected")
-
-
-def shown(value: object) -> str:
-    """A value in a message: plain ones as they are, of others their type."""
-    if value is None or isinstance(value, str | bool | int | float | list | tuple | dict):
-        text = repr(value)
-        if len(text) <= 60:
-            return text
-    return _article(type(value).__name__)
+        raise InputError(f"{_article(names)} is expected", argument=what, value=value)
 
 
 def _article(noun: str) -> str:

@@ -1,5 +1,128 @@
-"""The one exception for bad input."""
+"""The one exception for bad input: a value, which each face words."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from jointid.base.advice import Action
+
+
+class _NotGiven:
+    """No value was given: None may be one."""
+
+    def __repr__(self) -> str:
+        return "NOT_GIVEN"
+
+    def __reduce__(self) -> str:
+        return "NOT_GIVEN"
+
+    def __bool__(self) -> bool:
+        return False
+
+
+NOT_GIVEN: Any = _NotGiven()
 
 
 class InputError(ValueError):
-    """Input that cannot be used: one sentence says what is wrong, where, what would be right."""
+    """Input that cannot be used: what is wrong, where, and what would be right.
+
+    Parameters
+    ----------
+    reason : str
+        Why it cannot be used, or what is expected, in a phrase without the syntax of any face.
+    argument : str
+        Name of the argument, field, key or column concerned. Default: none can be named.
+    value : object
+        What it was. Default: nothing to show.
+    place : str
+        Where it stands: file, row, table. Default: in the call.
+    remedy : str, Action or tuple of these
+        What to do, if the reason does not say it. Default: nothing.
+
+    Attributes
+    ----------
+    reason, argument, value, place, remedy
+        As given; `remedy` is a tuple.
+
+    Examples
+    --------
+    >>> str(InputError("known are ga, separable, random", argument="method", value="genetic"))
+    "method is 'genetic': known are ga, separable, random"
+    """
+
+    def __init__(
+        self,
+        reason: str,
+        *,
+        argument: str = "",
+        value: object = NOT_GIVEN,
+        place: str = "",
+        remedy: str | Action | tuple[str | Action, ...] = (),
+    ) -> None:
+        super().__init__(reason)
+        self.reason = reason
+        self.argument = argument
+        self.value = value
+        self.place = place
+        self.remedy = remedy if isinstance(remedy, tuple) else (remedy,)
+
+    def at(self, place: str) -> InputError:
+        """Return the same error with its place in front of the one it has.
+
+        Parameters
+        ----------
+        place : str
+            A file, a row, a table; joined to what stands inside it by a colon.
+        """
+        inner = f": {self.place}" if self.place else ""
+        return type(self)(
+            self.reason,
+            argument=self.argument,
+            value=self.value,
+            place=f"{place}{inner}",
+            remedy=self.remedy,
+        )
+
+    def __str__(self) -> str:
+        """The sentence that Python shows."""
+        place = f"{self.place}: " if self.place else ""
+        subject = self.argument
+        if self.value is not NOT_GIVEN:
+            subject = f"{subject or 'this'} is {shown(self.value)}"
+        sentence = f"{subject}: {self.reason}" if subject else self.reason
+        remedies = " or ".join(str(each) for each in self.remedy)
+        return f"{place}{sentence}" + (f"; {remedies}" if remedies else "")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _rebuilt, (
+            type(self),
+            self.reason,
+            self.argument,
+            self.value,
+            self.place,
+            self.remedy,
+        )
+
+
+def _rebuilt(
+    kind: type[InputError],
+    reason: str,
+    argument: str,
+    value: object,
+    place: str,
+    remedy: tuple[str | Action, ...],
+) -> InputError:
+    return kind(reason, argument=argument, value=value, place=place, remedy=remedy)
+
+
+def shown(value: object) -> str:
+    """Return a value for a message: a short plain one as Python writes it, of others their type."""
+    if value is None or isinstance(value, str | bool | int | float | list | tuple | dict):
+        try:
+            text = repr(value)
+        except (RecursionError, ValueError):  # nested too deeply; an integer of too many digits
+            text = ""
+        if text and len(text) <= 60:
+            return text
+    name = type(value).__name__
+    return f"{'an' if name[0] in 'AEIOaeio' else 'a'} {name}"

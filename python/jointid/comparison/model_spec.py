@@ -9,8 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from jointid import _core
-from jointid.base.argument_checks import shown
-from jointid.base.errors import InputError
+from jointid.base.errors import InputError, shown
 from jointid.identification.identification import identify
 
 # What a comparison sets for all models alike, or what steers a run: no part of a model.

@@ -18,13 +18,16 @@ class FieldError(InputError):
     """
 
     def __init__(self, owner: str, field: str, sentence: str) -> None:
-        super().__init__(owner, field, sentence)  # all in args: survives pickling
+        super().__init__(sentence, argument=field, place=owner)
         self.owner = owner
         self.field = field
         self.sentence = sentence
 
     def __str__(self) -> str:
         return f"{self.owner}: {self.field} {self.sentence}"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.owner, self.field, self.sentence)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

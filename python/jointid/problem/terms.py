@@ -4,8 +4,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from jointid import _core
-from jointid.base.argument_checks import shown
-from jointid.base.errors import InputError
+from jointid.base.errors import InputError, shown
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import order_list
 from jointid.recording.recording import Recording

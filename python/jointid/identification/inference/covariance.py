@@ -84,7 +84,7 @@ def parameter_covariance(
     The variance of each parameter is the larger of the classical one and of Newey and West's
     sandwich, prewhitened: residuals of a model that is not perfect drift slowly, and the classical one
     flatters the estimate then. Coverage is tested in
-    tests/test_covariance.py. Directions the data leave free get an infinite variance.
+    tests/identification/test_covariance.py. Directions the data leave free get an infinite variance.
     """
     rows, count = jacobian.shape
     if count == 0:  # every parameter is fixed or ended on a bound

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
 from peers.contest import Contest, Expired, Objective, Reached, make_contest, prove_same
 from peers.peer import Peer, timed
 from store import Store

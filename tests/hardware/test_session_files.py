@@ -12,7 +12,7 @@ import jointid as jid
 from jointid.hardware import Bench, ElmoDrive, EmulatedBus, Session, emulated_devices
 from jointid.hardware.session.session import SessionStoppedError
 
-EXAMPLE = Path(__file__).parent.parent / "examples" / "hardware" / "joint.toml"
+EXAMPLE = Path(__file__).parents[2] / "examples" / "hardware" / "joint.toml"
 
 
 def ran(output: Path) -> jid.Recording:

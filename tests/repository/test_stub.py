@@ -10,7 +10,7 @@ import pytest
 
 from jointid import _core
 
-STUB = Path(__file__).resolve().parent.parent / "python" / "jointid" / "_core.pyi"
+STUB = Path(__file__).resolve().parents[2] / "python" / "jointid" / "_core.pyi"
 
 
 def names_in(body: list[ast.stmt]) -> set[str]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from bits import CASES
 
-TABLE = json.loads(Path(__file__).with_name("bits.json").read_text(encoding="utf-8"))
+TABLE = json.loads((Path(__file__).parents[1] / "bits.json").read_text(encoding="utf-8"))
 
 
 def test_the_table_and_the_cases_are_the_same() -> None:

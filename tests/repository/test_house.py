@@ -3,9 +3,9 @@
 from pathlib import Path
 
 import pytest
-from house import GROUPS, HEAVY, ROOMS, check
+from house_rules import GROUPS, HEAVY, ROOMS, check
 
-REPOSITORY = Path(__file__).resolve().parent.parent
+REPOSITORY = Path(__file__).resolve().parents[2]
 
 
 def test_the_house_is_in_order() -> None:
@@ -134,7 +134,7 @@ def test_a_forbidden_include_is_found(tmp_path: Path, file: str, line: str, comp
         ("cli/command_line.py", "from jointid.hardware import bus", "with the module"),
         ("__init__.py", "from . import hardware", "with the module"),
         ("sweeping.py", "", "module 'sweeping' is unknown"),
-        ("recording.py", "from .sweeping import sweep", "unknown to tests/house.py"),
+        ("recording.py", "from .sweeping import sweep", "unknown to tests/house_rules.py"),
         ("recording.py", "class recording: pass", "bears the name"),
         ("recording.py", "#\n" * 400, "lines, the longest allowed is 400"),
     ],

@@ -129,7 +129,7 @@ def _includes(path: Path, repository: Path) -> Iterator[str]:
     root = repository / "cpp"
     room = path.relative_to(root).parts[0]
     if room not in ROOMS:
-        yield f"room '{room}' is unknown: enter it in ROOMS of tests/house.py with what it may use"
+        yield f"room '{room}' is unknown: enter it in ROOMS of tests/house_rules.py with what it may use"
         return
     text = re.sub(r"/\*.*?\*/|//[^\n]*", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
     for quote, name in re.findall(
@@ -161,7 +161,7 @@ def _imports(path: Path, repository: Path) -> Iterator[str]:
     module = ".".join(path.relative_to(package).with_suffix("").parts)
     name = _group(module)
     if name is None:
-        yield f"module '{module}' is unknown: enter it in GROUPS of tests/house.py"
+        yield f"module '{module}' is unknown: enter it in GROUPS of tests/house_rules.py"
         return
     tree = ast.parse(path.read_text(encoding="utf-8"))
     for node in tree.body:
@@ -181,7 +181,7 @@ def _imports(path: Path, repository: Path) -> Iterator[str]:
         other = target.partition(".")[2] or "__init__"
         group = _group(other)
         if group is None:
-            yield f"line {line} imports jointid.{other}, which is unknown to tests/house.py"
+            yield f"line {line} imports jointid.{other}, which is unknown to tests/house_rules.py"
         elif group != name and group not in GROUPS[name].may_use:
             allowed = ", ".join(sorted(GROUPS[name].may_use)) or "none"
             yield f"line {line} imports jointid.{other} ({group}): {name} may use {allowed}"

@@ -13,7 +13,7 @@ import pytest
 
 from jointid.hardware.session.interruptions import Interruptions
 
-CHILD = Path(__file__).with_name("interrupted_session.py")
+CHILD = Path(__file__).parents[1] / "interrupted_session.py"
 ZERO, OFF = "5443008000000000", "4d4f000000000000"
 PERIOD = 2e-3
 

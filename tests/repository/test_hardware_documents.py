@@ -15,7 +15,7 @@ from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.options import SessionOptions
 from jointid.hardware.session.realtime import RealTimeOptions
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 TEXT = (ROOT / "docs" / "hardware.md").read_text(encoding="utf-8")
 # Given by another table, or tables themselves.
 ELSEWHERE = {"torque": ElmoOptions, "bitrate": ElmoOptions, "resolution": SessionOptions}

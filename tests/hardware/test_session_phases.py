@@ -13,7 +13,7 @@ from jointid.hardware.elmo.torque_source import AnalogInput
 from jointid.hardware.session.drive import DriveEnd, DriveFaultError
 from jointid.hardware.session.session import SessionStoppedError
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
 from fault_cases import BEGIN, PERIOD, EmulatedSession
 
 

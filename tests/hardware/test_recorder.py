@@ -30,7 +30,7 @@ from jointid.hardware.session.appended_file import AppendedFile
 from jointid.hardware.session.recorder import Recorder
 from jointid.joint.joint_file import joint_document
 
-CHILD = Path(__file__).with_name("killed_session.py")
+CHILD = Path(__file__).parents[1] / "killed_session.py"
 PATIENCE = 60.0  # [s] for what takes a fraction of one
 # Of rows that may be missing, by their age when the program was killed. The promise is 50 ms: the recorder
 # writes every 20 ms. This machine stands still for longer now and then, hence ten times as much.

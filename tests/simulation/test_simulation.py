@@ -191,7 +191,7 @@ def test_asymmetric_and_general_models_reach_their_friction() -> None:
     np.testing.assert_allclose(friction[moving], map_[moving], rtol=1e-12)
 
 
-SIMULATED = Path(__file__).resolve().parents[2] / "shared" / "data" / "simulated"
+SIMULATED = Path(__file__).resolve().parents[3] / "shared" / "data" / "simulated"
 NARROW = jid.Trajectory.thesis(math.radians(20.0), cycle=3.0, duration=6.0)
 
 

@@ -12,7 +12,7 @@ from jointid.hardware.elmo.torque_source import AnalogInput, SyncedConverter
 from jointid.hardware.emulated.bench import true_joint
 from jointid.hardware.emulated.bus import EmulatedBus
 
-EXAMPLE = Path(__file__).parent.parent / "examples" / "hardware" / "joint.toml"
+EXAMPLE = Path(__file__).parents[2] / "examples" / "hardware" / "joint.toml"
 TEXT = EXAMPLE.read_text(encoding="utf-8")
 
 

@@ -10,7 +10,7 @@ import pytest
 import jointid as jid
 from jointid.cli.demo import data_folder
 
-README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
+README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 
 
@@ -49,7 +49,7 @@ def test_its_blocks_run_one_after_the_other(
     well_excited: jid.Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pyplot = pytest.importorskip("matplotlib.pyplot")
-    (tmp_path / "examples").symlink_to(Path(__file__).parent.parent / "examples")
+    (tmp_path / "examples").symlink_to(Path(__file__).parents[2] / "examples")
     monkeypatch.chdir(tmp_path)
     run = well_excited
     assert run.torque is not None

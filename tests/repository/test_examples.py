@@ -9,7 +9,7 @@ import pytest
 
 matplotlib.use("Agg")
 
-EXAMPLES = sorted((Path(__file__).resolve().parents[1] / "examples").glob("[0-9]*.py"))
+EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples").glob("[0-9]*.py"))
 
 
 def _module(path: Path) -> ModuleType:

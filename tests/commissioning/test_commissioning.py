@@ -11,7 +11,7 @@ from jointid.cli.command_line import main
 from jointid.commissioning import Commissioning, commission
 from jointid.hardware.bench.bench import Bench
 
-EXAMPLE = Path(__file__).parent.parent / "examples" / "hardware" / "joint.toml"
+EXAMPLE = Path(__file__).parents[2] / "examples" / "hardware" / "joint.toml"
 
 
 @pytest.fixture(scope="module")

@@ -46,12 +46,12 @@ def test_mappings(run: jid.Recording, wrong: Any) -> None:
         ("parameters", lambda: jid.sweep(run, JOINT, grid={"parameters": {"a": wrong}})),
         ("truth", lambda: jid.sweep(run, JOINT, grid=GRID, truth=wrong)),
     ):
-        assert told(call).startswith(f"{name} is {shown}; a mapping"), name
+        assert told(call).startswith(f"{name} is {shown}: a mapping"), name
 
 
 def test_parameters_as_a_list_of_a_grid(run: jid.Recording) -> None:
     assert told(lambda: jid.sweep(run, JOINT, grid={"parameters": [1]})).startswith(
-        "parameters is 1; a mapping"
+        "parameters is 1: a mapping"
     )
 
 
@@ -80,7 +80,7 @@ def test_names_of_files(run: jid.Recording, estimate: jid.Estimate, wrong: Any) 
         lambda: save_report(estimate, wrong),
         lambda: jid.Study.load(wrong),
     ):
-        assert told(call) == f"path is {wrong!r}; the name of a file is expected".replace(
+        assert told(call) == f"path is {wrong!r}: the name of a file is expected".replace(
             repr(b"run.csv"), "a bytes"
         )
 
@@ -88,15 +88,15 @@ def test_names_of_files(run: jid.Recording, estimate: jid.Estimate, wrong: Any) 
 @pytest.mark.parametrize("name", ["checkpoint", "resume"])
 def test_names_of_a_searchs_files(run: jid.Recording, name: str) -> None:
     given: dict[str, Any] = {name: 5}
-    assert told(lambda: jid.identify(run, JOINT, **given)).startswith(f"{name} is 5; the name")
+    assert told(lambda: jid.identify(run, JOINT, **given)).startswith(f"{name} is 5: the name")
 
 
 def test_one_for_the_other(run: jid.Recording, estimate: jid.Estimate) -> None:
     wrong: Any = run
     swapped: Any = estimate
-    assert told(lambda: jid.control_estimates(wrong)) == "joint is a Recording; a Joint is expected"
+    assert told(lambda: jid.control_estimates(wrong)) == "joint is a Recording: a Joint is expected"
     assert told(lambda: jid.plot.friction_map(swapped, wrong)) == (
-        "recording is an Estimate; a Recording is expected"
+        "recording is an Estimate: a Recording is expected"
     )
     for call in (
         lambda: jid.plot.friction_map(run, wrong),

@@ -11,7 +11,7 @@ import pytest
 
 matplotlib.use("Agg")
 
-FOLDER = Path(__file__).resolve().parents[1] / "examples" / "thesis"
+FOLDER = Path(__file__).resolve().parents[2] / "examples" / "thesis"
 
 
 class Table:

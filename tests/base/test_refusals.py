@@ -19,7 +19,7 @@ from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.session import Session, SessionOptions
 from jointid.hardware.session.stop import SessionRefusedError
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
 from fault_cases import EmulatedSession
 
 Prepare = Callable[[EmulatedSession], object]

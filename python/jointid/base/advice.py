@@ -1,0 +1,65 @@
+"""What to do about a finding or an error, as data that each face words and a program can obey."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any, Literal, get_args
+
+Kind = Literal["call", "record", "inspect"]
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """One thing to do.
+
+    Parameters
+    ----------
+    kind : {"call", "record", "inspect"}
+        "call": call again with other arguments, which a program can do. "record": record other motion.
+        "inspect": look at the hardware, the logger or the file.
+    arguments : mapping of str to object
+        Of a call: the arguments to change, by name, e.g. ``{"model": "stribeck"}``,
+        ``{"columns": {"velocity": None}}``, ``{"parameters": {"viscous": 12.0}}``. Default: none.
+    text : str
+        Of "record" and "inspect": what, in a phrase without the syntax of any face. Of a call: what for,
+        if that needs to be said. Default: nothing.
+    function : str
+        Of a call: which one: "identify" (default), "load", "compare_models", "sweep", "simulate" or
+        "Joint" (arguments are then fields of the joint).
+
+    Examples
+    --------
+    >>> str(Action("call", {"columns": {"velocity": None}}, function="load"))
+    "load with columns={'velocity': None}"
+    >>> str(Action("record", text="slow motion through zero speed"))
+    'record slow motion through zero speed'
+    """
+
+    kind: Kind
+    arguments: Mapping[str, Any] = field(default_factory=dict)
+    text: str = ""
+    function: str = "identify"
+
+    def __post_init__(self) -> None:
+        if self.kind not in get_args(Kind):
+            raise ValueError(f"an action is one of {', '.join(get_args(Kind))}, got {self.kind!r}")
+        if self.kind == "call" and not self.arguments:
+            raise ValueError("an action of kind 'call' needs arguments")
+        object.__setattr__(self, "arguments", MappingProxyType(dict(self.arguments)))
+
+    def __str__(self) -> str:
+        """The action as a person at a Python prompt would write it."""
+        if self.kind != "call":
+            return f"{self.kind} {self.text}".rstrip()
+        shown = ", ".join(f"{name}={value!r}" for name, value in self.arguments.items())
+        purpose = f" ({self.text})" if self.text else ""
+        return f"{_VERB.get(self.function, self.function)} with {shown}{purpose}"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # A read-only mapping cannot be pickled.
+        return type(self), (self.kind, dict(self.arguments), self.text, self.function)
+
+
+_VERB = {"compare_models": "compare", "Joint": "set the joint"}

@@ -1,0 +1,81 @@
+"""A finding: what the data or the fit show, how grave it is, why, and what to do; a value that each face words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any, Literal, get_args
+
+from jointid.base.advice import Action
+
+Severity = Literal["info", "warning", "blocking"]
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """One number that supports a finding.
+
+    Attributes
+    ----------
+    value : float
+    unit : str
+        "" for a pure number; a share is a pure number, 0.05 for 5 %.
+    """
+
+    value: float
+    unit: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Finding:
+    """What the data or the fit show.
+
+    Attributes
+    ----------
+    code : str
+        Stable name, e.g. "undetermined"; `docs/findings.md` lists them.
+    severity : {"info", "warning", "blocking"}
+        Whether it is worth knowing, may bias values, or makes the values unusable.
+    parameters : tuple of str
+        Concerned parameters.
+    evidence : mapping of str to Measured
+        The numbers it rests on, by name.
+    cause : str
+        What was seen and its probable cause, in a sentence without the syntax of any face.
+    advice : tuple of Action
+        What to do; the first that can be done helps.
+    """
+
+    code: str
+    severity: Severity = "warning"
+    parameters: tuple[str, ...] = ()
+    evidence: Mapping[str, Measured] = field(default_factory=dict)
+    cause: str
+    advice: tuple[Action, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.severity not in get_args(Severity):
+            raise ValueError(f"a severity is one of {', '.join(get_args(Severity))}")
+        object.__setattr__(self, "evidence", MappingProxyType(dict(self.evidence)))
+
+    def __str__(self) -> str:
+        """The sentence that Python shows."""
+        advice = " or ".join(str(action) for action in self.advice)
+        return f"{self.cause}; {advice}" if advice else self.cause
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # A read-only mapping cannot be pickled.
+        values = {
+            "code": self.code,
+            "severity": self.severity,
+            "parameters": self.parameters,
+            "evidence": dict(self.evidence),
+            "cause": self.cause,
+            "advice": self.advice,
+        }
+        return _rebuilt, (values,)
+
+
+def _rebuilt(values: dict[str, Any]) -> Finding:
+    return Finding(**values)
