@@ -107,7 +107,7 @@ def test_emps_prefers_the_asymmetric_model(shared_data: object) -> None:
 
 def test_ripple_is_preferred_where_there_is_one(shared_data: object) -> None:
     recording = jid.load(f"{shared_data}/simulated/rippled.csv.gz")
-    models = ("stribeck", ("stribeck", {"ripple": (2,)}), "stribeck:ripple=2,4")
+    models = ("stribeck", {"name": "stribeck", "ripple": (2,)}, "stribeck:ripple=2,4")
     found = jid.compare_models(recording, jid.thesis_joint(), models=models, folds=4)
     assert found.winner == "stribeck:ripple=2"
     assert row(found, "stribeck").score > 5 * row(found, found.winner).score
@@ -133,7 +133,7 @@ def made_up(
 ) -> ComparedModel:
     return ComparedModel(
         model=model,
-        spec=jid.Model.parse(model),
+        spec=jid.Model(),
         parameters=parameters,
         score=score,
         stderr=stderr,
@@ -326,22 +326,22 @@ def compare(**options: object) -> Callable[[], object]:
 @pytest.mark.parametrize(
     ("call", "told"),
     [
-        (compare(models=()), "models is empty"),
-        (compare(models=("stribeck", "stribeck")), "'stribeck' twice"),
+        (compare(models=()), "at least one"),
+        (compare(models=("stribeck", "stribeck")), "it is given twice"),
         (compare(models=("magic",)), "known are coulomb_viscous"),
-        (compare(models=(3,)), "models holds 3"),
-        (compare(models=(("stribeck", 3),)), "a pair"),
-        (compare(models=("stribeck:magic",)), "option 'magic' is not known"),
-        (compare(models=("stribeck:seed=3",)), "option 'seed' is not known"),
-        (compare(models=("stribeck:",)), "is no option"),
-        (compare(models=("stribeck:ripple=",)), "is no option"),
-        (compare(models=("",)), "name is expected"),
+        (compare(models=(3,)), "model is 3: "),
+        (compare(models=(("stribeck", 3),)), "a mapping of its fields is expected"),
+        (compare(models=("stribeck:magic",)), "model: magic: a model has no such option"),
+        (compare(models=("stribeck:seed=3",)), "model: seed: a model has no such option"),
+        (compare(models=("stribeck:",)), "write name:option"),
+        (compare(models=("stribeck:ripple=",)), "write name:option"),
+        (compare(models=("",)), "needs a name"),
         (compare(folds=1), "folds is 1"),
         (compare(folds=True), "folds is True"),
         (compare(folds=2.5), "folds is 2.5"),
         (compare(folds=100_000), "use fewer folds"),
-        (compare(method="magic"), "separable"),
-        (compare(parameters={"magic": 1.0}), "'magic' is no parameter"),
+        (compare(search="magic"), "separable"),
+        (compare(parameters={"magic": 1.0}), "magic: there is no such parameter"),
         (lambda: jid.compare_models([]), "got none"),
         (lambda: jid.compare_models([simulated(0), 3]), "recording 1"),  # type: ignore[list-item]
     ],

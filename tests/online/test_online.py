@@ -133,12 +133,12 @@ def test_standing_still_gives_no_estimate_and_no_error() -> None:
 @pytest.mark.parametrize(
     ("changes", "told"),
     [
-        ({"window": 0.0}, "window must be above 0"),
-        ({"update": float("nan")}, "update must be above 0"),
-        ({"window": 1.0}, "window must be at least four times update"),
+        ({"window": 0.0}, "window is 0.0: a duration above 0"),
+        ({"update": float("nan")}, "update is nan: a duration above 0"),
+        ({"window": 1.0}, "window is 1.0: at least four times update"),
         ({"model": "stribeck_general"}, "two shapes"),
-        ({"joint": "joint.toml"}, "joint must be a Joint"),
-        ({"callback": 3}, "callback must be callable"),
+        ({"joint": "joint.toml"}, "a Joint is expected"),
+        ({"callback": 3}, "callback is 3: a function"),
     ],
 )
 def test_refuses_settings(changes: dict[str, object], told: str) -> None:

@@ -202,13 +202,13 @@ NARROW = jid.Trajectory.thesis(math.radians(20.0), cycle=3.0, duration=6.0)
     [
         ("well_excited", False, {"torque_noise": 0.2}, 1e-3, {}),
         ("poorly_excited", True, {"torque_noise": 0.2}, 1e-3, {}),
-        ("rippled", False, {"torque_noise": 0.5, "ripple": 2.6}, 1e-3, {"ripple": (2,)}),
+        ("rippled", False, {"torque_noise": 0.5, "ripple": 2.6}, 1e-3, {"model": ":ripple=2"}),
         (
             "realistic",
             False,
             {"torque_noise": 0.5, "ripple": 2.6, "encoder_counts": 8000, "velocity": "difference"},
             2e-3,
-            {"ripple": (2,)},
+            {"model": ":ripple=2"},
         ),
     ],
 )

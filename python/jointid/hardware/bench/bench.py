@@ -137,4 +137,4 @@ def joint_with_truth(joint: Joint, truth: Mapping[str, float]) -> Joint:
     orders = tuple(
         order for order in joint.model.resolved.ripple if f"ripple_sin_{order:g}" in truth
     )
-    return joint.replace(ripple=orders, parameters=dict(truth))
+    return joint.replace(model=joint.model.replace(ripple=orders), parameters=dict(truth))
