@@ -1,13 +1,14 @@
 """The house's rules, and the checker that reads imports and includes and finds what breaks them.
 
-A new room or module is entered in `ROOMS` or `GROUPS` on purpose: what is unknown is refused.
+A new room or module is entered in `ROOMS` or `FOLDERS` on purpose: what is unknown is refused.
 """
 
 import ast
 import re
+import statistics
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 LONGEST = 400  # lines of a file
@@ -25,74 +26,98 @@ ROOMS: dict[str, set[str]] = {
 }
 PRINTING = {"iostream", "cstdio", "stdio.h", "print"}
 
-# --- Python: the modules of each group, the groups and the packages it may use. ---
+# --- Python: the folders of jointid, those each may use (itself always), and the packages. ---
 
 
 @dataclass(frozen=True, kw_only=True)
-class Group:
-    """Modules under one rule; a name that ends in `.` stands for a whole subpackage."""
+class Folder:
+    """What the modules of a folder may import: other folders (`_core` always) and packages."""
 
-    modules: set[str]
     may_use: set[str]
-    packages: set[str]
+    packages: set[str] = field(default_factory=set)
 
 
-GROUPS: dict[str, Group] = {
-    "core": Group(modules={"_core"}, may_use=set(), packages=set()),
-    "recording": Group(
-        modules={"base.", "recording.", "joint."},
-        may_use={"core"},
-        packages={"numpy", "scipy", "pandas", "pyarrow", "tomlkit"},
-    ),
-    "simulation": Group(modules={"simulation."}, may_use={"core", "recording"}, packages={"numpy"}),
-    "analysis": Group(
-        modules={"problem.", "identification.", "estimate.", "comparison.", "online."},
-        may_use={"core", "recording"},
-        packages={"numpy", "scipy", "pandas"},
-    ),
-    "study": Group(
-        modules={"study."},
-        may_use={"core", "recording", "simulation", "analysis"},
-        packages={"numpy", "pandas", "pyarrow"},
-    ),
-    "presentation": Group(
-        modules={"plot.", "report."},
-        may_use={"core", "recording", "simulation", "analysis", "study"},
-        packages={"numpy", "matplotlib"},
-    ),
-    # A program of its own that a session starts, so that drawing takes none of the loop's time.
-    "live window": Group(
-        modules={"hardware.live.window"},
-        may_use={"hardware"},
-        packages={"matplotlib"},
-    ),
-    "hardware": Group(
-        modules={"hardware."},
-        may_use={"core", "recording", "simulation"},
-        packages={"numpy", "can", "canopen"},
-    ),
-    "commissioning": Group(
-        modules={"commissioning."},
-        may_use={"core", "recording", "simulation", "analysis", "hardware"},
+_DATA = {"base", "recording", "joint"}
+_FOUND = {*_DATA, "problem", "estimate"}
+_SOUGHT = {*_FOUND, "identification", "identification/search"}
+
+FOLDERS: dict[str, Folder] = {
+    "base": Folder(may_use=set()),
+    "recording": Folder(may_use={"base"}, packages={"numpy", "pandas"}),
+    "recording/readers": Folder(may_use={"base", "recording"}, packages={"numpy", "pyarrow"}),
+    "joint": Folder(may_use={"base", "recording"}, packages={"numpy", "tomlkit"}),
+    "problem": Folder(may_use=_DATA, packages={"numpy"}),
+    "estimate": Folder(may_use={*_DATA, "problem"}, packages={"numpy", "scipy"}),
+    "identification": Folder(
+        may_use={*_SOUGHT, "identification/inference", "identification/warnings"},
         packages={"numpy"},
     ),
-    "face": Group(
-        modules={"__init__"},
-        may_use={
-            *("core", "recording", "simulation", "analysis", "study", "presentation"),
-            *("hardware", "commissioning"),
-        },
-        packages=set(),
+    "identification/search": Folder(may_use=_FOUND, packages={"numpy", "scipy"}),
+    "identification/inference": Folder(
+        may_use={*_FOUND, "identification/search"}, packages={"numpy", "scipy"}
     ),
-    "command line": Group(
-        modules={"__main__", "cli."},
+    "identification/warnings": Folder(
+        may_use={*_FOUND, "identification/inference"}, packages={"numpy"}
+    ),
+    "comparison": Folder(may_use=_SOUGHT, packages={"numpy"}),
+    "online": Folder(may_use={*_SOUGHT, "identification/inference"}, packages={"numpy"}),
+    "simulation": Folder(may_use=_DATA, packages={"numpy"}),
+    "study": Folder(may_use={*_SOUGHT, "simulation"}, packages={"numpy", "pandas", "pyarrow"}),
+    "plot": Folder(
+        may_use={*_DATA, "simulation", "estimate", "study", "problem"},
+        packages={"numpy", "matplotlib"},
+    ),
+    "report": Folder(may_use={*_FOUND, "plot"}, packages={"numpy", "matplotlib"}),
+    "hardware/session": Folder(may_use={*_DATA, "simulation"}, packages={"numpy"}),
+    "hardware/can": Folder(may_use={"base"}, packages={"can"}),
+    "hardware/live": Folder(may_use={"base", "hardware/session"}, packages={"numpy", "matplotlib"}),
+    "hardware/elmo": Folder(
         may_use={
-            *("core", "recording", "simulation", "analysis", "study", "presentation"),
-            *("hardware", "commissioning", "face", "command line"),
+            *(*_DATA, "recording/readers", "simulation"),
+            *("hardware/session", "hardware/can"),
+        },
+        packages={"numpy", "can"},
+    ),
+    "hardware/bench": Folder(
+        may_use={*_DATA, "recording/readers", "simulation", "hardware/session", "hardware/can"},
+        packages={"numpy", "can"},
+    ),
+    "hardware/emulated": Folder(
+        may_use={
+            *(*_DATA, "simulation"),
+            *("hardware/bench", "hardware/session", "hardware/can", "hardware/elmo"),
+        },
+        packages={"numpy", "can"},
+    ),
+    "hardware": Folder(
+        may_use={
+            *("hardware/session", "hardware/can", "hardware/live", "hardware/bench"),
+            *("hardware/elmo", "hardware/emulated"),
+        },
+    ),
+    "commissioning": Folder(
+        may_use={*_SOUGHT, "simulation", "hardware/session", "hardware/bench"}, packages={"numpy"}
+    ),
+    "cli": Folder(
+        may_use={
+            *(*_SOUGHT, "recording/readers", "comparison", "simulation", "study", "plot", "report"),
+            *("hardware/session", "hardware/can", "hardware/live", "hardware/bench"),
+            *("commissioning", "identification/warnings", ""),
         },
         packages={"numpy", "matplotlib"},
     ),
+    # The face of the package: its own folder is the top one.
+    "": Folder(
+        may_use={
+            *(*_SOUGHT, "recording/readers", "comparison", "online", "simulation", "study"),
+            *("plot", "report", "hardware", "commissioning", "cli"),
+        },
+    ),
 }
+TOP = {"__init__", "__main__"}
+# These bring python-can, a window, or a motor: imported by name, when asked for.
+ASKED_FOR = {"hardware", "commissioning"}
+MEDIAN = 130  # lines of a Python file, at most
 # Slow to load, or of use to few: imported inside the function that needs it (hardware aside).
 HEAVY = {"scipy", "pandas", "pyarrow", "matplotlib", "can", "canopen", "tomlkit"}
 
@@ -114,7 +139,82 @@ def check(repository: Path) -> list[str]:
         found += [f"{place}: {what}" for what in _names_and_length(path)]
         rules = _includes if path.suffix in {".cpp", ".hpp"} else _imports
         found += [f"{place}: {what}" for what in rules(path, repository)]
+    return found + _circles(repository / "python" / "jointid") + _median(python)
+
+
+def _median(python: list[Path]) -> list[str]:
+    lengths = [len(path.read_text(encoding="utf-8").splitlines()) for path in python]
+    median = statistics.median(lengths) if lengths else 0
+    return [f"python/jointid: half of its files have more than {MEDIAN} lines"] * (median > MEDIAN)
+
+
+def module_graph(package: Path) -> dict[str, set[str]]:
+    """Return what each module of a package imports of it, in functions too, but for the type checker."""
+    names = {_module(path, package): path for path in sorted(package.rglob("*.py"))}
+    known = {name.removesuffix(".__init__") for name in names}
+    graph: dict[str, set[str]] = {}
+    for module, path in names.items():
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        own = module.removesuffix(".__init__")
+        graph[own] = set()
+        for _, target, _ in _imported(tree, module, package, typing=False):
+            inner = target.partition(".")[2]
+            if f"{inner}.__init__" in names:
+                inner = f"{inner}.__init__"
+            inner = inner.removesuffix(".__init__")
+            if target.startswith("jointid.") and inner in known:
+                graph[own].add(inner)
+        graph[own].discard(own)
+    return graph
+
+
+def _circles(package: Path) -> list[str]:
+    """Circles of imports that cross two folders: between modules, and between folders."""
+    graph = module_graph(package)
+    folder = {
+        m: _folder(m if (package / m.replace(".", "/")).is_dir() else m.rpartition(".")[0])
+        for m in graph
+    }
+    found = [
+        f"python/jointid: {', '.join(sorted(circle))} import each other across folders"
+        for circle in _components(graph)
+        if len({folder[module] for module in circle}) > 1
+    ]
+    folders: dict[str, set[str]] = {}
+    for module, targets in graph.items():
+        if folder[module]:  # the face imports everything
+            inside = folders.setdefault(folder[module], set())
+            inside |= {folder[t] for t in targets if folder[t] and folder[t] != folder[module]}
+    found += [
+        f"python/jointid: folders {', '.join(sorted(circle))} import each other"
+        for circle in _components(folders)
+    ]
     return found
+
+
+def _folder(module: str) -> str:
+    return module.replace(".", "/")
+
+
+def _components(graph: dict[str, set[str]]) -> list[set[str]]:
+    """Sets of nodes that reach each other: what remains when everything without a circle is taken away."""
+    reach = {node: set(targets) for node, targets in graph.items()}
+    for middle in reach:
+        for node in reach:
+            if middle in reach[node]:
+                reach[node] |= reach[middle]
+    seen: set[str] = set()
+    found = []
+    for node in reach:
+        if node in reach[node] and node not in seen:
+            circle = {node} | {other for other in reach[node] if node in reach.get(other, set())}
+            seen |= circle
+            found.append(circle)
+    return found
+
+
+def _module(path: Path, package: Path) -> str:
+    return ".".join(path.relative_to(package).with_suffix("").parts)
 
 
 def _names_and_length(path: Path) -> Iterator[str]:
@@ -158,11 +258,14 @@ def _includes(path: Path, repository: Path) -> Iterator[str]:
 
 def _imports(path: Path, repository: Path) -> Iterator[str]:
     package = repository / "python" / "jointid"
-    module = ".".join(path.relative_to(package).with_suffix("").parts)
-    name = _group(module)
-    if name is None:
-        yield f"module '{module}' is unknown: enter it in GROUPS of tests/house_rules.py"
+    module = _module(path, package)
+    name = path.parent.relative_to(package).as_posix().removeprefix(".")
+    if name not in FOLDERS:
+        yield f"folder '{name}' is unknown: enter it in FOLDERS of tests/house_rules.py"
         return
+    if not name and path.stem not in TOP:
+        yield f"module '{module}' stands at the top: give it a folder"
+    rules = FOLDERS[name]
     tree = ast.parse(path.read_text(encoding="utf-8"))
     for node in tree.body:
         named = isinstance(node, ast.FunctionDef | ast.ClassDef) and node.name
@@ -170,46 +273,52 @@ def _imports(path: Path, repository: Path) -> Iterator[str]:
             yield f"bears the name of what it defines, '{named}': from the package only one is seen"
     for line, target, inside in _imported(tree, module, package):
         root = target.split(".")[0]
-        light = name in ("hardware", "commissioning") or inside  # loaded when asked for
+        light = inside or name.split("/")[0] in ASKED_FOR  # loaded when asked for
         if root != "jointid":
-            if root not in sys.stdlib_module_names and root not in GROUPS[name].packages:
-                allowed = ", ".join(sorted(GROUPS[name].packages)) or "none"
-                yield f"line {line} imports {root}: packages allowed in {name}: {allowed}"
+            if root not in sys.stdlib_module_names and root not in rules.packages:
+                allowed = ", ".join(sorted(rules.packages)) or "none"
+                yield f"line {line} imports {root}: packages allowed in {name or 'the face'}: {allowed}"
             elif root in HEAVY and not light:
                 yield f"line {line} imports {root} with the module: do it in the function"
             continue
-        other = target.partition(".")[2] or "__init__"
-        group = _group(other)
-        if group is None:
+        other = target.partition(".")[2]
+        if other == "_core":
+            continue
+        inner = package.joinpath(*other.split("."))
+        used = _folder(other if inner.is_dir() else other.rpartition(".")[0])
+        if used not in FOLDERS or not (inner.is_dir() or inner.with_suffix(".py").exists()):
             yield f"line {line} imports jointid.{other}, which is unknown to tests/house_rules.py"
-        elif group != name and group not in GROUPS[name].may_use:
-            allowed = ", ".join(sorted(GROUPS[name].may_use)) or "none"
-            yield f"line {line} imports jointid.{other} ({group}): {name} may use {allowed}"
-        elif group == "hardware" and not light:
+        elif used != name and used not in rules.may_use:
+            allowed = ", ".join(sorted(rules.may_use - {""})) or "no other folder"
+            yield f"line {line} imports jointid.{other} ({used or 'face'}): {name} may use {allowed}"
+        elif used.split("/")[0] in ASKED_FOR and not light:
             yield f"line {line} imports jointid.{other} with the module: do it in the function"
 
 
-def _group(module: str) -> str | None:
-    for name, group in GROUPS.items():
-        if module in group.modules or f"{module.split('.')[0]}." in group.modules:
-            return name
-    return None
+def _imported(
+    tree: ast.Module, module: str, package: Path, *, typing: bool = True
+) -> Iterator[tuple[int, str, bool]]:
+    """Yield line, full module name, and whether loading the module leaves it alone.
 
-
-def _imported(tree: ast.Module, module: str, package: Path) -> Iterator[tuple[int, str, bool]]:
-    """Yield line, full module name, and whether loading the module leaves it alone."""
-    late = set()  # inside functions, or only for the type checker
+    With `typing`, also what is imported for the type checker alone.
+    """
+    late: set[int] = set()  # inside functions, or only for the type checker
+    skipped: set[int] = set()
     for node in ast.walk(tree):
         function = isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
-        typing = isinstance(node, ast.If) and ast.unparse(node.test) in {
+        checked = isinstance(node, ast.If) and ast.unparse(node.test) in {
             "TYPE_CHECKING",
             "typing.TYPE_CHECKING",
         }
         if function:
             late |= set(map(id, ast.walk(node)))
-        elif typing and isinstance(node, ast.If):
-            late |= {id(inner) for statement in node.body for inner in ast.walk(statement)}
+        elif checked and isinstance(node, ast.If):
+            inner = {id(each) for statement in node.body for each in ast.walk(statement)}
+            late |= inner
+            skipped |= set() if typing else inner
     for node in ast.walk(tree):
+        if id(node) in skipped:
+            continue
         if isinstance(node, ast.Import):
             for alias in node.names:
                 yield node.lineno, alias.name, id(node) in late
@@ -222,8 +331,8 @@ def _imported(tree: ast.Module, module: str, package: Path) -> Iterator[tuple[in
                 base = ".".join([*parents, *([node.module] if node.module else [])])
             for alias in node.names:
                 full = f"{base}.{alias.name}"
-                inner = package.joinpath(*full.split(".")[1:])
+                place = package.joinpath(*full.split(".")[1:])
                 is_module = full.startswith("jointid.") and (
-                    inner.is_dir() or inner.with_suffix(".py").exists() or alias.name == "_core"
+                    place.is_dir() or place.with_suffix(".py").exists() or alias.name == "_core"
                 )
                 yield node.lineno, full if is_module else base, id(node) in late
