@@ -130,3 +130,10 @@ def test_the_citation_names_this_version_and_the_thesis() -> None:
 def test_the_thesis_is_cited_in_full_once() -> None:
     whole = " ".join("\n".join(read(page) for page in PAGES).split())
     assert whole.count("Ryerson University") == 1
+
+
+def test_each_decision_has_a_date() -> None:
+    decisions = [part for part in read("docs/decisions.md").split("\n\n") if part.startswith("**")]
+    assert len(decisions) >= 50
+    for decision in decisions:
+        assert re.search(r"\*20\d\d-\d\d-\d\d\.\*", decision), decision[:60]
