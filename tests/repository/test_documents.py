@@ -15,7 +15,8 @@ import jointid as jid
 from jointid.cli import main
 from jointid.cli.demo import data_folder
 
-PAGES = ["README.md", "CONTRIBUTING.md", *(f"docs/{p.name}" for p in (ROOT / "docs").glob("*.md"))]
+PAGES = ["README.md", "CONTRIBUTING.md", "examples/README.md"]
+PAGES += [f"docs/{path.name}" for path in (ROOT / "docs").glob("*.md")]
 COMMANDS = [
     line
     for page in ("README.md", "docs/command_line.md")
@@ -150,3 +151,8 @@ def test_contributing_lists_every_folder_of_the_code() -> None:
 def test_the_house_is_drawn_in_ten_lines() -> None:
     picture = blocks(read("CONTRIBUTING.md"), "")[0]
     assert len(picture.splitlines()) == 10
+
+
+def test_every_example_is_listed() -> None:
+    listed = re.findall(r"^\| `(\w+\.py)` \|", read("examples/README.md"), re.MULTILINE)
+    assert listed == sorted(path.name for path in (ROOT / "examples").glob("*.py"))
