@@ -25,8 +25,11 @@ SMOOTH = {"inertia": 0.8, "coulomb": 3.0, "viscous": 5.0, "torque_offset": 0.4}
 def search_seeds(seeds: int) -> list[str]:
     """Spread over the genetic algorithm's seeds, on one recording."""
     recording = jid.load(data_folder() / "well_excited.csv.gz")
-    exact = jid.identify(recording, jid.thesis_joint(), method="separable")
-    found = [jid.identify(recording, jid.thesis_joint(), seed=seed) for seed in range(seeds)]
+    exact = jid.identify(recording, jid.thesis_joint(), search="separable")
+    found = [
+        jid.identify(recording, jid.thesis_joint(), search=jid.Search(seed=seed))
+        for seed in range(seeds)
+    ]
     reached = sum(e.penalty <= exact.penalty * (1 + 1e-6) for e in found)
     lines = [
         f"\n`well_excited`, {seeds} seeds of the search: {reached} reach the separable optimum within 1e-6.\n",
@@ -60,7 +63,7 @@ def smooth_recording(seed: int) -> jid.Recording:
 
 def noise_seeds(seeds: int) -> list[str]:
     """Spread and coverage over recordings with other noise and other motion."""
-    found = [jid.identify(smooth_recording(seed), method="separable") for seed in range(seeds)]
+    found = [jid.identify(smooth_recording(seed), search="separable") for seed in range(seeds)]
     lines = [
         f"\n{seeds} recordings of a joint without a sensor (torque noise 0.3 N·m), no options given:\n",
         "| parameter | truth | bias | spread | 95 % interval contains the truth |",

@@ -24,7 +24,7 @@ BEHIND = 0.1  # [s] of NumPy before each repeat: caches are cold, the other proc
 def once(contest: Contest, windows: int | None) -> dict[str, float]:
     """Seconds of each step of a default `identify()`."""
     options = _core.GaOptions()
-    search = Search(method="ga", options=options, seed=0, threads=0, callback=None)
+    search = Search(ga=options)
     marks = [time.perf_counter()]
     prepared = prepare(contest.recording, contest.joint, windows=windows)
     marks.append(time.perf_counter())

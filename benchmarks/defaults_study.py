@@ -5,6 +5,7 @@ ranges with which the polish ends: what the genetic algorithm and the local poli
 """
 
 import argparse
+from typing import Any
 
 import jointid as jid
 from jointid import _core
@@ -19,13 +20,12 @@ CLOSE = 1e-6
 
 
 def problem(
-    recording: jid.Recording, joint: jid.Joint | None, **model: object
+    recording: jid.Recording, joint: jid.Joint | None, **model: Any
 ) -> tuple[_core.Penalty, SearchDomain]:
     """The penalty and its domain as `identify` makes them."""
-    wanted: dict[str, object] = dict.fromkeys(
-        ("model", "residual", "asymmetric", "ripple", "harmonics", "load_friction")
-    )
-    request = Request(**{**wanted, "per_recording": (), **model})  # type: ignore[arg-type]
+    residual = model.pop("residual", None)
+    name = model.pop("model", None)
+    request = Request(model=jid.Model(name, **model), residual=residual)
     choice = choose_terms((recording,), joint, request)
     whole = Problem(
         recordings=(recording,), joint=joint, choice=choice, torque_hold=None, mask_standstill=True

@@ -54,7 +54,9 @@ def main(names: list[str], seeds: int) -> None:
                 ]
                 for estimate in (
                     jid.identify(
-                        recording, jid.thesis_joint(), method=method, ga=options, seed=seed
+                        recording,
+                        jid.thesis_joint(),
+                        search=jid.Search(method, ga=options, seed=seed),
                     )
                     for seed in range(seeds)
                 )

@@ -81,7 +81,7 @@ def accuracy(trials: int) -> list[str]:
             "ga": PRESETS,
         },
         trials=trials,
-        seed=1000,
+        search=jid.Search(seed=1000),
     )
     lines = []
     for sensors, (limit, stribeck_limit) in WANTED.items():
@@ -137,8 +137,8 @@ def ring(trials: int) -> list[str]:
                     }
                 },
                 trials=trials,
-                seed=2000,
                 tracking=True,
+                search=jid.Search(seed=2000),
             )
             for number, cell in enumerate(study.cells):
                 mine = [row.tracking for row in study.rows if row.cell == number]
@@ -166,7 +166,9 @@ def grid() -> list[str]:
     seconds = []
     for _ in range(3):
         began = time.perf_counter()
-        study = jid.sweep(recording, known_joint(), grid=sizes, trials=10, ga="thesis")
+        study = jid.sweep(
+            recording, known_joint(), grid=sizes, trials=10, search=jid.Search(ga="thesis")
+        )
         summary = study.summary()
         laws = [base.controller.replace(**_assumed(cell.mean)) for cell in summary.cells]
         runs = base.simulate(0, controllers=laws, recordings=False)

@@ -14,15 +14,18 @@ def soak_identification(minutes: float) -> bool:
     """Identify the same recording for so long; whether nothing leaks and no result changes."""
     recording = jid.load(data_folder() / "well_excited.csv.gz")
     options = jid.GaOptions(generations=20)
-    first = jid.identify(recording, jid.thesis_joint(), ga=options).penalty
+    first = jid.identify(recording, jid.thesis_joint(), search=jid.Search(ga=options)).penalty
     for _ in range(20):  # allocators settle
-        jid.identify(recording, jid.thesis_joint(), ga=options)
+        jid.identify(recording, jid.thesis_joint(), search=jid.Search(ga=options))
     before = resident(), count("task"), count("fd")
     ends = time.monotonic() + 60.0 * minutes
     rounds = changed = 0
     while time.monotonic() < ends:
         rounds += 1
-        changed += jid.identify(recording, jid.thesis_joint(), ga=options).penalty != first
+        changed += (
+            jid.identify(recording, jid.thesis_joint(), search=jid.Search(ga=options)).penalty
+            != first
+        )
     after = resident(), count("task"), count("fd")
     grown = after[0] - before[0]
     print(

@@ -74,7 +74,9 @@ def _simulated(**options: Any) -> jid.SimulatedRecording:
 def _sweep() -> dict[str, str]:
     small = jid.GaOptions(population=10, generations=5)
     grid = {"windows": [100, 200]}
-    study = jid.sweep(_thesis(), jid.thesis_joint(), grid=grid, trials=2, ga=small)
+    study = jid.sweep(
+        _thesis(), jid.thesis_joint(), grid=grid, trials=2, search=jid.Search(ga=small)
+    )
     return {
         f"{row.cell} {row.trial} {name}": value.hex()
         for row in study.rows
@@ -111,38 +113,41 @@ def _halves(recording: jid.Recording) -> list[jid.Recording]:
 
 
 CASES: dict[str, Callable[[], dict[str, str]]] = {
-    "thesis joint": lambda: _identify(_thesis(), jid.thesis_joint(), seed=1),
+    "thesis joint": lambda: _identify(_thesis(), jid.thesis_joint(), search=jid.Search(seed=1)),
     "thesis joint, torque": lambda: _identify(_thesis(), jid.thesis_joint(), residual="torque"),
     "thesis joint, two shapes": lambda: _identify(
         _thesis(), jid.thesis_joint(), model="stribeck_general"
     ),
-    "thesis joint, separable": lambda: _identify(_thesis(), jid.thesis_joint(), method="separable"),
+    "thesis joint, separable": lambda: _identify(_thesis(), jid.thesis_joint(), search="separable"),
     "thesis joint, random": lambda: _identify(
         _thesis(),
         jid.thesis_joint(),
-        method="random",
-        ga=jid.GaOptions(population=20, generations=10),
-        seed=3,
+        search=jid.Search("random", ga=jid.GaOptions(population=20, generations=10), seed=3),
     ),
     "thesis joint, thesis preset": lambda: _identify(
         _thesis(),
         jid.thesis_joint(),
-        ga=jid.GaOptions.thesis().replace(population=20, generations=30),
+        search=jid.Search(ga=jid.GaOptions.thesis().replace(population=20, generations=30)),
     ),
-    "thesis joint, ripple": lambda: _identify(_thesis(), jid.thesis_joint(), ripple=(2, 4)),
+    "thesis joint, ripple": lambda: _identify(
+        _thesis(), jid.thesis_joint(), model=jid.Model(ripple=(2, 4))
+    ),
     "thesis joint, cumulative": lambda: _identify(
         _thesis(), jid.thesis_joint(), windows="cumulative"
     ),
     "thesis joint, two recordings": lambda: _identify(
-        _halves(_thesis()), jid.thesis_joint(), per_recording=("sensor_offset",), threads=2
+        _halves(_thesis()),
+        jid.thesis_joint(),
+        model=jid.Model(per_recording=("sensor_offset",)),
+        search=jid.Search(threads=2),
     ),
     "kuka": lambda: _identify(*_kuka()),
     "kuka, asymmetric": lambda: _identify(
-        _kuka()[0], _kuka()[1].replace(torque_offset=False), asymmetric=True
+        _kuka()[0], _kuka()[1].replace(torque_offset=False), model=jid.Model(asymmetric=True)
     ),
     "kuka, stribeck": lambda: _identify(*_kuka(), model="stribeck"),
     "kuka, load friction and harmonics": lambda: _identify(
-        *_kuka(), load_friction=True, harmonics=(2, 3)
+        *_kuka(), model=jid.Model(harmonics=(2, 3), load_friction=True)
     ),
     "kuka, no joint": lambda: _identify(_kuka_at_the_motor()),
     "comparison": _comparison,

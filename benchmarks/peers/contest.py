@@ -103,10 +103,7 @@ def problem_of(
     recording: jid.Recording, joint: jid.Joint, windows: int | None
 ) -> tuple[Problem, _core.Penalty]:
     """The problem and its direct penalty as `identify` makes them."""
-    nothing: dict[str, None] = dict.fromkeys(
-        ("model", "residual", "asymmetric", "ripple", "harmonics", "load_friction")
-    )
-    choice = choose_terms((recording,), joint, Request(per_recording=(), **nothing))
+    choice = choose_terms((recording,), joint, Request())
     problem = Problem(
         recordings=(recording,), joint=joint, choice=choice, torque_hold=None, mask_standstill=True
     )

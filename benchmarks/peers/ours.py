@@ -18,7 +18,7 @@ def whole_identify(method: str, windows: int | None) -> Solve:
     def solve(objective: Objective, seed: int) -> None:
         contest = objective.contest
         estimate = jid.identify(
-            contest.recording, contest.joint, method=method, windows=windows, seed=seed
+            contest.recording, contest.joint, windows=windows, search=jid.Search(method, seed=seed)
         )
         found = estimate.convergence
         objective.evaluations += int(found.evaluations[-1]) if found is not None else 0
@@ -37,7 +37,7 @@ _OPTIMA: dict[int | None, float] = {}
 def own_optimum(contest: Contest, windows: int | None) -> float:
     """The optimal penalty over other windows; found once, in the untimed first round."""
     if windows not in _OPTIMA:
-        best = jid.identify(contest.recording, contest.joint, method="separable", windows=windows)
+        best = jid.identify(contest.recording, contest.joint, windows=windows, search="separable")
         _OPTIMA[windows] = best.penalty
     return _OPTIMA[windows]
 

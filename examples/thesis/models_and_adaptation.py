@@ -10,10 +10,10 @@ import jointid as jid
 def draw(gallery: Gallery) -> None:
     """Draw both."""
     stribeck = hanging_joint().with_parameters(TRUTH)
-    plain = jid.Joint(friction="coulomb_viscous", inertia=1.0).with_parameters(
+    plain = jid.Joint(inertia=1.0, model=jid.Model("coulomb_viscous")).with_parameters(
         {name: TRUTH[name] for name in ("coulomb", "viscous")}
     )
-    general = jid.Joint(friction="stribeck_general", inertia=1.0).with_parameters(
+    general = jid.Joint(inertia=1.0, model=jid.Model("stribeck_general")).with_parameters(
         {
             **{name: TRUTH[name] for name in ("coulomb", "static", "viscous")},
             "stribeck_velocity": 0.1,
@@ -35,7 +35,9 @@ def draw(gallery: Gallery) -> None:
 
     seen: list[jid.Generation] = []
     options = jid.GaOptions.thesis().replace(generations=30 if gallery.quick else 300)
-    jid.identify(first_recording(), hanging_joint(), ga=options, callback=seen.append)
+    jid.identify(
+        first_recording(), hanging_joint(), search=jid.Search(ga=options, callback=seen.append)
+    )
     with gallery.picture("3-2_dynamic_adaptation") as axes:
         jid.plot.adaptation(options, seen, axes)
         titled(axes, "GaOptions.thesis(): diversity is mean / max of the fitness")

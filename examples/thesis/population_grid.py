@@ -61,8 +61,8 @@ def run_grid(
         first_recording(),
         hanging_joint(),
         grid={"ga.population": populations, "ga.generations": generations},
-        ga=options,
         trials=trials,
+        search=jid.Search(ga=options),
     )
     cells: Cells = {}
     for number, (labels, summary) in enumerate(

@@ -16,7 +16,8 @@ ENCODER = jid.Sensors(encoder_counts=8000, velocity="counts", torque_noise=0.5)
 
 def rippled_joint(amplitude: float) -> jid.Joint:
     """A gear whose torque ripples with the motor's angle."""
-    joint = hanging_joint().replace(ripple=(2,))
+    joint = hanging_joint()
+    joint = joint.replace(model=joint.model.replace(ripple=(2,)))
     return joint.with_parameters({**TRUTH, "ripple_sin_2": amplitude, "ripple_cos_2": 0.0})
 
 
@@ -98,7 +99,7 @@ def draw(gallery: Gallery) -> None:
     _maps(gallery, open_loop(RIPPLE, size=54.0, rate=0.25), ", five times faster")
     for name, run in loops.items():
         plain = jid.identify(run, hanging_joint())
-        modelled = jid.identify(run, hanging_joint(), ripple=(2,))
+        modelled = jid.identify(run, hanging_joint(), model=jid.Model(ripple=(2,)))
         for how, estimate in (("without", plain), ("with", modelled)):
             worst = max(map(abs, errors(found(estimate)).values()))
             what = f"{name} loop, identified {how} ripple=(2,): worst parameter off by"

@@ -36,7 +36,7 @@ def draw(gallery: Gallery) -> None:
         wrong = [errors(found(_identify(run, joint, count))) for run in runs]
         for name in TRUTH:
             size[name].append(float(np.sqrt(np.mean([error[name] ** 2 for error in wrong]))))
-    chosen = jid.identify(runs[0], joint, method="separable").residuals.windows
+    chosen = jid.identify(runs[0], joint, search="separable").residuals.windows
     with gallery.picture("window_count") as axes:
         for number, name in enumerate(TRUTH):
             look = jid.plot.line_style(number)
@@ -57,4 +57,4 @@ def draw(gallery: Gallery) -> None:
 
 
 def _identify(run: jid.Recording, joint: jid.Joint, count: int) -> jid.Estimate:
-    return jid.identify(run, joint, method="separable", windows=count)
+    return jid.identify(run, joint, windows=count, search="separable")

@@ -33,14 +33,16 @@ from jointid._core import (
     Sensors,
     WindowOptions,
 )
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.comparison.comparison import compare_models
-from jointid.comparison.model_spec import ModelSpec
 from jointid.comparison.result import Comparison
 from jointid.estimate.estimate import Estimate
 from jointid.identification.identification import identify
+from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.joint.link import Limits, Link
+from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
 from jointid.joint.thesis import thesis_joint
 from jointid.online.online_estimate import OnlineEstimate
@@ -63,6 +65,7 @@ if TYPE_CHECKING:
 __version__ = _core.__version__
 
 __all__ = [
+    "Action",
     "AdaptiveRobust",
     "Bristle",
     "Comparison",
@@ -75,7 +78,7 @@ __all__ = [
     "Limits",
     "Link",
     "LugreObserver",
-    "ModelSpec",
+    "Model",
     "OnlineEstimate",
     "OnlineIdentifier",
     "OpenLoop",
@@ -84,6 +87,7 @@ __all__ = [
     "Pid",
     "Recording",
     "Scenario",
+    "Search",
     "Sensors",
     "SimulatedBatch",
     "SimulatedRecording",

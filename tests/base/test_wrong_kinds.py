@@ -88,7 +88,9 @@ def test_names_of_files(run: jid.Recording, estimate: jid.Estimate, wrong: Any) 
 @pytest.mark.parametrize("name", ["checkpoint", "resume"])
 def test_names_of_a_searchs_files(run: jid.Recording, name: str) -> None:
     given: dict[str, Any] = {name: 5}
-    assert told(lambda: jid.identify(run, JOINT, **given)).startswith(f"{name} is 5: the name")
+    assert told(lambda: jid.identify(run, JOINT, search=jid.Search(**given))).startswith(
+        f"{name} is 5: the name"
+    )
 
 
 def test_one_for_the_other(run: jid.Recording, estimate: jid.Estimate) -> None:
@@ -116,12 +118,12 @@ def test_one_for_the_other(run: jid.Recording, estimate: jid.Estimate) -> None:
 
 @pytest.mark.parametrize("wrong", ["sensor_offset", 5])
 def test_per_recording_is_a_list(run: jid.Recording, wrong: Any) -> None:
-    sentence = told(lambda: jid.identify([run, run], JOINT, per_recording=wrong))
+    sentence = told(lambda: jid.identify([run, run], JOINT, model=jid.Model(per_recording=wrong)))
     assert sentence == (
-        f"per_recording is {wrong!r}; a list of names like ('sensor_offset',) is expected"
+        f"per_recording is {wrong!r}: a list of coefficients like [sensor_offset] is expected"
     )
 
 
 def test_an_unknown_truth_is_not_passed_over(run: jid.Recording) -> None:
     sentence = told(lambda: jid.sweep(run, JOINT, grid=GRID, trials=1, truth={"colomb": 3.0}))
-    assert sentence == "truth: 'colomb' is no parameter; did you mean 'coulomb'?"
+    assert sentence == "truth: colomb: there is no such parameter; did you mean 'coulomb'?"

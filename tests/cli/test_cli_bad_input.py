@@ -127,7 +127,7 @@ assert len(BAD) >= 40
 @pytest.fixture(scope="module")
 def estimate_text() -> str:
     joint = jid.Joint.load(KR300_JOINT)
-    return jid.identify(jid.load(KR300), joint, method="separable").to_json()
+    return jid.identify(jid.load(KR300), joint, search="separable").to_json()
 
 
 @pytest.fixture

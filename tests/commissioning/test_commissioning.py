@@ -54,7 +54,9 @@ def test_the_same_seed_gives_the_same_bits(ring: Commissioning) -> None:
 def test_a_session_is_no_simulation_but_close_to_it(ring: Commissioning) -> None:
     """The joint is moved by frames that take their time: errors differ, but by little."""
     bench = Bench.load(EXAMPLE)
-    truth = bench.joint.replace(ripple=(), parameters=dict(ring.truth))
+    truth = bench.joint.replace(
+        parameters=dict(ring.truth), model=bench.joint.model.replace(ripple=())
+    )
     simulated = jid.simulate(
         truth,
         ring.runs[0].controller,

@@ -13,7 +13,6 @@ from jointid.cli.demo import data_folder
 from jointid.cli.progress import ComparisonProgress
 from jointid.comparison.comparison import ComparisonStep
 from jointid.comparison.held_out import folds_by_block, folds_by_recording
-from jointid.comparison.model_spec import ModelSpec
 from jointid.comparison.parsimony import judge
 from jointid.comparison.result import ComparedModel
 
@@ -134,7 +133,7 @@ def made_up(
 ) -> ComparedModel:
     return ComparedModel(
         model=model,
-        spec=ModelSpec(model),
+        spec=jid.Model.parse(model),
         parameters=parameters,
         score=score,
         stderr=stderr,
@@ -182,7 +181,7 @@ def test_an_ineligible_model_neither_wins_nor_sets_the_mark() -> None:
 def test_blocks_cover_every_window_once_and_training_never_sees_them(
     well_excited: jid.Recording,
 ) -> None:
-    windows = jid.identify(well_excited, jid.thesis_joint(), method="separable").windows
+    windows = jid.identify(well_excited, jid.thesis_joint(), search="separable").windows
     folds = folds_by_block(well_excited, windows, 7)
     seen = np.zeros(len(windows.start), dtype=int)
     sizes = []
@@ -252,7 +251,7 @@ def test_a_default_model_that_is_one_with_the_sensors_offset_is_left_out(
 
 
 def test_an_asymmetric_model_takes_the_joints_offset_along() -> None:
-    joint = jid.Joint(torque_offset=True, asymmetric=True, friction="stribeck")
+    joint = jid.Joint(torque_offset=True, model=jid.Model("stribeck", asymmetric=True))
     models = ("coulomb_viscous", "coulomb_viscous:asymmetric")
     found = jid.compare_models(simulated(3), joint, models=models)
     plain, asymmetric = found.rows
@@ -263,7 +262,10 @@ def test_an_asymmetric_model_takes_the_joints_offset_along() -> None:
 
 def test_same_bits_again(comparison: jid.Comparison, well_excited: jid.Recording) -> None:
     again = jid.compare_models(
-        well_excited, jid.thesis_joint(), models=("coulomb_viscous", "stribeck"), threads=1
+        well_excited,
+        jid.thesis_joint(),
+        models=("coulomb_viscous", "stribeck"),
+        search=jid.Search(threads=1),
     )
     assert [entry.fold_scores for entry in again.rows] == [
         entry.fold_scores for entry in comparison.rows

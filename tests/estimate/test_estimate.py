@@ -17,14 +17,16 @@ matplotlib.use("Agg")
 @pytest.fixture(scope="module")
 def estimate() -> jid.Estimate:
     recording = jid.load(data_folder() / "well_excited.csv.gz")
-    return jid.identify(recording, jid.thesis_joint(), ga=jid.GaOptions(generations=30))
+    return jid.identify(
+        recording, jid.thesis_joint(), search=jid.Search(ga=jid.GaOptions(generations=30))
+    )
 
 
 @pytest.fixture(scope="module")
 def robot() -> jid.Estimate:
     recording = jid.load(data_folder() / "kr300_joint1.csv.gz")
     joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
-    return jid.identify(recording, joint, method="separable")
+    return jid.identify(recording, joint, search="separable")
 
 
 def test_json_holds_everything(estimate: jid.Estimate) -> None:
@@ -84,7 +86,7 @@ def test_friction_band_is_the_interval_of_a_single_parameter(estimate: jid.Estim
     # Far above the Stribeck velocity, df/dviscous = v dominates once coulomb is fixed.
     recording = jid.load(data_folder() / "well_excited.csv.gz")
     fixed = {name: p.value for name, p in estimate.parameters.items() if name != "viscous"}
-    single = jid.identify(recording, jid.thesis_joint(), parameters=fixed, method="separable")
+    single = jid.identify(recording, jid.thesis_joint(), parameters=fixed, search="separable")
     curve = single.friction(2.0)
     interval = single.parameters["viscous"].interval
     assert interval is not None
@@ -102,7 +104,7 @@ def test_saving_into_a_joint_file_keeps_what_was_there(robot: jid.Estimate, tmp_
     assert joint.gear_ratio == 256.86
     assert path.read_text().startswith("# Joint 1 of a KUKA")
     recording = jid.load(data_folder() / "kr300_joint1.csv.gz")
-    again = jid.identify(recording, joint, method="separable")
+    again = jid.identify(recording, joint, search="separable")
     assert again.parameters["viscous"].value == pytest.approx(
         robot.parameters["viscous"].value, rel=1e-9
     )
@@ -125,7 +127,7 @@ def test_joint_of_an_estimate_without_a_joint_identifies_again() -> None:
     torque = 0.5 * acceleration + 2.0 * np.sign(velocity) + 3.0 * velocity - 0.7
     recording = jid.Recording(time=time, position=position, velocity=velocity, torque=torque)
     first = jid.identify(recording)
-    second = jid.identify(recording, first.joint, method="separable")
+    second = jid.identify(recording, first.joint, search="separable")
     for name, truth in {
         "inertia": 0.5,
         "coulomb": 2.0,

@@ -134,9 +134,9 @@ def test_a_joint_without_a_session_is_no_bench(tmp_path: Path) -> None:
 
 def test_the_emulated_gear_ripples_when_the_truth_says_so(tmp_path: Path) -> None:
     plain = true_joint(Bench.load(EXAMPLE))
-    assert plain.ripple == ()
+    assert plain.model.resolved.ripple == ()
     truth = "sensor_offset = 15.0\nripple_sin_2 = 2.6\nripple_cos_2 = 0.5"
     rippled = true_joint(Bench.load(written(tmp_path, "sensor_offset = 15.0", truth)))
-    assert rippled.ripple == (2,)
+    assert rippled.model.ripple == (2.0,)
     assert rippled.parameters["ripple_sin_2"].value == 2.6
     assert rippled.parameters["ripple_cos_2"].value == 0.5

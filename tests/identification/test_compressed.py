@@ -50,15 +50,8 @@ def made(recording: jid.Recording, case: Case) -> tuple[_core.Penalty, SearchDom
             velocity=recording.velocity,
             torque=recording.torque,
         )
-    request = Request(
-        model=case.model,
-        residual=case.residual,
-        asymmetric=case.asymmetric,
-        ripple=case.ripple or None,
-        harmonics=None,
-        load_friction=None,
-        per_recording=(),
-    )
+    model = jid.Model(case.model, asymmetric=case.asymmetric, ripple=case.ripple or None)
+    request = Request(model=model, residual=case.residual)
     choice = choose_terms((recording,), joint, request)
     problem = Problem(
         recordings=(recording,),

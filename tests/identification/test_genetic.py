@@ -278,14 +278,14 @@ def test_identify_takes_the_presets(repo: Path) -> None:
     recording = jid.load(repo / "examples" / "data" / "well_excited.csv.gz")
     for preset in (jid.GaOptions.thesis(), jid.GaOptions.thesis_code()):
         options = preset.replace(population=20, generations=10)
-        estimate = jid.identify(recording, jid.thesis_joint(), ga=options)
+        estimate = jid.identify(recording, jid.thesis_joint(), search=jid.Search(ga=options))
         assert estimate.settings["ga"] == options.asdict()
 
 
 def test_identify_resumes_a_killed_search_to_the_same_bits(tmp_path: Path) -> None:
     recording = jid.load(data_folder() / "well_excited.csv.gz")
     options = jid.GaOptions(population=20, generations=120)
-    whole = jid.identify(recording, jid.thesis_joint(), ga=options, seed=5)
+    whole = jid.identify(recording, jid.thesis_joint(), search=jid.Search(ga=options, seed=5))
     path = tmp_path / "search.state"
 
     def give_up(generation: jid.Generation) -> None:
@@ -294,9 +294,13 @@ def test_identify_resumes_a_killed_search_to_the_same_bits(tmp_path: Path) -> No
 
     with pytest.raises(RuntimeError, match="killed"):
         jid.identify(
-            recording, jid.thesis_joint(), ga=options, seed=5, checkpoint=path, callback=give_up
+            recording,
+            jid.thesis_joint(),
+            search=jid.Search(ga=options, seed=5, callback=give_up, checkpoint=path),
         )
-    resumed = jid.identify(recording, jid.thesis_joint(), ga=options, seed=5, resume=path)
+    resumed = jid.identify(
+        recording, jid.thesis_joint(), search=jid.Search(ga=options, seed=5, resume=path)
+    )
     assert {n: p.value for n, p in resumed.parameters.items()} == {
         n: p.value for n, p in whole.parameters.items()
     }
@@ -304,17 +308,19 @@ def test_identify_resumes_a_killed_search_to_the_same_bits(tmp_path: Path) -> No
     assert resumed.convergence is not None
     assert np.array_equal(whole.convergence.mean, resumed.convergence.mean)
     with pytest.raises(jid.InputError, match="seed"):
-        jid.identify(recording, jid.thesis_joint(), ga=options, seed=6, resume=path)
+        jid.identify(
+            recording, jid.thesis_joint(), search=jid.Search(ga=options, seed=6, resume=path)
+        )
     path.write_bytes(b"nonsense")
     with pytest.raises(jid.InputError, match=r"search\.state"):
-        jid.identify(recording, jid.thesis_joint(), ga=options, resume=path)
+        jid.identify(recording, jid.thesis_joint(), search=jid.Search(ga=options, resume=path))
 
 
 def test_random_search_is_worse_for_the_same_budget() -> None:
     recording = jid.load(data_folder() / "well_excited.csv.gz")
     options = jid.GaOptions(population=60, generations=150, polish=False)
     random, genetic = (
-        jid.identify(recording, jid.thesis_joint(), ga=options, method=method)
+        jid.identify(recording, jid.thesis_joint(), search=jid.Search(method, ga=options))
         for method in ("random", "ga")
     )
     assert random.convergence is not None

@@ -26,7 +26,7 @@ def warned(estimate: jid.Estimate, code: str) -> Warned:
 
 
 def separable(recording: jid.Recording, joint: jid.Joint | None = None) -> jid.Estimate:
-    return jid.identify(recording, joint or jid.thesis_joint(), method="separable")
+    return jid.identify(recording, joint or jid.thesis_joint(), search="separable")
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +41,7 @@ def simulated(folder: Path, name: str) -> jid.Recording:
 @pytest.mark.parametrize("residual", ["sensor", "torque"])
 def test_a_good_recording_is_silent(well_excited: jid.Recording, residual: str) -> None:
     joint = jid.thesis_joint()
-    estimate = jid.identify(well_excited, joint, residual=residual, method="separable")
+    estimate = jid.identify(well_excited, joint, residual=residual, search="separable")
     assert estimate.warnings == ()
 
 
@@ -185,8 +185,8 @@ def test_the_errors_that_a_warning_states_are_those_of_the_table(
 @pytest.mark.parametrize("gravity", ["none", "free"])
 def test_an_inertia_that_noise_hides_is_named(shared_data: Path, name: str, gravity: str) -> None:
     recording = jid.load(shared_data / "ak80" / f"{name}.csv")
-    joint = jid.Joint(gravity="free") if gravity == "free" else None
-    estimate = jid.identify(recording, joint, method="separable")
+    joint = jid.Joint(model=jid.Model(gravity="free")) if gravity == "free" else None
+    estimate = jid.identify(recording, joint, search="separable")
     assert "inertia" in warned(estimate, "undetermined").parameters
 
 
@@ -215,9 +215,9 @@ def test_a_backward_difference_is_noticed(shared_data: Path) -> None:
 
 def test_emps_is_not_alarmed_without_need(shared_data: Path) -> None:
     recording = jid.load(shared_data / "emps" / "emps_train.csv.gz")
-    plain = jid.identify(recording, method="separable")
+    plain = jid.identify(recording, search="separable")
     assert codes(plain) <= {"structured_residual"}
-    rich = jid.identify(recording, model="stribeck", method="separable")
+    rich = jid.identify(recording, model="stribeck", search="separable")
     assert "coulomb_viscous" in warned(rich, "model_too_rich").message
 
 
@@ -225,7 +225,7 @@ def test_stribeck_is_too_rich_for_the_kr300() -> None:
     recording = jid.load(data_folder() / "kr300_joint1.csv.gz")
     joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
     assert "model_too_rich" not in codes(separable(recording, joint))
-    rich = jid.identify(recording, joint, model="stribeck", method="separable")
+    rich = jid.identify(recording, joint, model="stribeck", search="separable")
     assert "model_too_rich" in codes(rich)
 
 

@@ -27,14 +27,14 @@ def well_excited() -> jid.Recording:
 
 @pytest.fixture(scope="module")
 def separable(well_excited: jid.Recording) -> jid.Estimate:
-    return jid.identify(well_excited, jid.thesis_joint(), method="separable")
+    return jid.identify(well_excited, jid.thesis_joint(), search="separable")
 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_simulated_joint_is_recovered(
     well_excited: jid.Recording, separable: jid.Estimate, seed: int
 ) -> None:
-    estimate = jid.identify(well_excited, jid.thesis_joint(), seed=seed)
+    estimate = jid.identify(well_excited, jid.thesis_joint(), search=jid.Search(seed=seed))
     for name, truth in TRUTH.items():
         tolerance = 0.01 if name == "stribeck" else 0.005
         assert estimate.parameters[name].value == pytest.approx(truth, rel=tolerance), name
@@ -51,7 +51,10 @@ def test_two_shapes_converge_to_the_separable_optimum(
 ) -> None:
     found, exact = (
         jid.identify(
-            well_excited, jid.thesis_joint(), model="stribeck_general", method=method, seed=seed
+            well_excited,
+            jid.thesis_joint(),
+            model="stribeck_general",
+            search=jid.Search(method, seed=seed),
         )
         for method in ("ga", "separable")
     )
@@ -71,7 +74,9 @@ def test_truth_lies_in_the_intervals(separable: jid.Estimate) -> None:
 def test_same_bits_for_any_number_of_threads(well_excited: jid.Recording) -> None:
     short = jid.GaOptions(population=20, generations=15)
     found = [
-        jid.identify(well_excited, jid.thesis_joint(), ga=short, seed=3, threads=threads)
+        jid.identify(
+            well_excited, jid.thesis_joint(), search=jid.Search(ga=short, seed=3, threads=threads)
+        )
         for threads in (1, 2, 7)
     ]
     for other in found[1:]:
@@ -85,7 +90,9 @@ def test_same_bits_for_any_number_of_threads(well_excited: jid.Recording) -> Non
 def test_another_seed_searches_elsewhere(well_excited: jid.Recording) -> None:
     short = jid.GaOptions(population=20, generations=5, polish=False)
     one, two = (
-        jid.identify(well_excited, jid.thesis_joint(), ga=short, seed=seed).penalty
+        jid.identify(
+            well_excited, jid.thesis_joint(), search=jid.Search(ga=short, seed=seed)
+        ).penalty
         for seed in (1, 2)
     )
     assert one != two
@@ -141,22 +148,22 @@ def test_emps_without_any_option(shared_data: Path) -> None:
 
 def test_stribeck_on_emps_is_told_to_be_too_rich(shared_data: Path) -> None:
     recording = jid.load(shared_data / "emps" / "emps_train.csv.gz")
-    estimate = jid.identify(recording, model="stribeck", method="separable")
+    estimate = jid.identify(recording, model="stribeck", search="separable")
     assert "model_too_rich" in {warning.code for warning in estimate.warnings}
 
 
 def test_noisy_velocity_is_told(shared_data: Path) -> None:
     estimate = jid.identify(
-        jid.load(shared_data / "ak80" / "ak80_swing_up.csv"), method="separable"
+        jid.load(shared_data / "ak80" / "ak80_swing_up.csv"), search="separable"
     )
     assert "noisy_velocity" in {warning.code for warning in estimate.warnings}
 
 
 def test_poor_excitation_shows_in_the_standard_errors(shared_data: Path) -> None:
     recording = jid.load(shared_data / "simulated" / "poorly_excited.csv.gz")
-    estimate = jid.identify(recording, jid.thesis_joint(), method="separable")
+    estimate = jid.identify(recording, jid.thesis_joint(), search="separable")
     well = jid.load(shared_data / "simulated" / "well_excited.csv.gz")
-    reference = jid.identify(well, jid.thesis_joint(), method="separable")
+    reference = jid.identify(well, jid.thesis_joint(), search="separable")
     errors = [
         (e.parameters["sensor_gain"].stderr or 0.0) / e.parameters["sensor_gain"].value
         for e in (estimate, reference)
@@ -166,7 +173,7 @@ def test_poor_excitation_shows_in_the_standard_errors(shared_data: Path) -> None
 
 def test_fixed_and_freed_parameters(well_excited: jid.Recording, separable: jid.Estimate) -> None:
     joint = jid.thesis_joint()
-    fixed = jid.identify(well_excited, joint, parameters={"viscous": 20.0}, method="separable")
+    fixed = jid.identify(well_excited, joint, parameters={"viscous": 20.0}, search="separable")
     assert fixed.parameters["viscous"].value == 20.0
     assert fixed.parameters["viscous"].stderr is None
     assert fixed.penalty >= separable.penalty
@@ -174,27 +181,27 @@ def test_fixed_and_freed_parameters(well_excited: jid.Recording, separable: jid.
         well_excited,
         joint,
         parameters={"inertia": {"vary": True, "min": 1.0, "max": 5.0}},
-        method="separable",
+        search="separable",
     )
     assert freed.parameters["inertia"].value == pytest.approx(2.472e-4 * 101**2, rel=0.01)
     assert freed.penalty <= separable.penalty
 
 
 def test_torque_residual_with_a_sensor(well_excited: jid.Recording) -> None:
-    estimate = jid.identify(well_excited, jid.thesis_joint(), residual="torque", method="separable")
+    estimate = jid.identify(well_excited, jid.thesis_joint(), residual="torque", search="separable")
     for name, truth in TRUTH.items():
         assert estimate.parameters[name].value == pytest.approx(truth, rel=0.02), name
 
 
 def test_bounds_hold(well_excited: jid.Recording) -> None:
     estimate = jid.identify(
-        well_excited, jid.thesis_joint(), parameters={"coulomb": {"max": 22.0}}, seed=1
-    )
-    exact = jid.identify(
         well_excited,
         jid.thesis_joint(),
         parameters={"coulomb": {"max": 22.0}},
-        method="separable",
+        search=jid.Search(seed=1),
+    )
+    exact = jid.identify(
+        well_excited, jid.thesis_joint(), parameters={"coulomb": {"max": 22.0}}, search="separable"
     )
     assert estimate.parameters["coulomb"].value == pytest.approx(22.0, rel=1e-9)
     assert estimate.parameters["coulomb"].at_bound == "max"
@@ -204,7 +211,7 @@ def test_bounds_hold(well_excited: jid.Recording) -> None:
 
 def test_several_recordings_share_the_parameters(well_excited: jid.Recording) -> None:
     halves = [well_excited.crop(0.0, 6.0), well_excited.crop(6.0, 12.0)]
-    estimate = jid.identify(halves, jid.thesis_joint(), method="separable")
+    estimate = jid.identify(halves, jid.thesis_joint(), search="separable")
     assert set(estimate.windows.recording) == {0, 1}
     for name, truth in TRUTH.items():
         assert estimate.parameters[name].value == pytest.approx(truth, rel=0.01), name
@@ -217,7 +224,9 @@ def test_callback_sees_each_generation_and_can_stop(well_excited: jid.Recording)
         seen.append(generation.number)
         return generation.number == 5
 
-    estimate = jid.identify(well_excited, jid.thesis_joint(), callback=stop_at_five)
+    estimate = jid.identify(
+        well_excited, jid.thesis_joint(), search=jid.Search(callback=stop_at_five)
+    )
     assert seen == list(range(6))
     assert estimate.status == "stopped"
     assert "stopped" in {warning.code for warning in estimate.warnings}
@@ -228,12 +237,12 @@ def test_an_exception_in_the_callback_arrives(well_excited: jid.Recording) -> No
         raise LookupError(f"at {generation.number}")
 
     with pytest.raises(LookupError, match="at 0"):
-        jid.identify(well_excited, jid.thesis_joint(), callback=fail)
+        jid.identify(well_excited, jid.thesis_joint(), search=jid.Search(callback=fail))
 
 
 def test_prediction_of_the_other_half(well_excited: jid.Recording) -> None:
     first, second = well_excited.crop(0.0, 6.0), well_excited.crop(6.0, 12.0)
-    prediction = jid.identify(first, jid.thesis_joint(), method="separable").predict(second)
+    prediction = jid.identify(first, jid.thesis_joint(), search="separable").predict(second)
     assert prediction.r_squared > 0.999
     assert prediction.relative < 0.01
     assert prediction.windows.start.min() >= 6.0

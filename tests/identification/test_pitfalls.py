@@ -31,7 +31,7 @@ def test_very_wide_bounds_hold_nothing() -> None:
 @pytest.mark.parametrize("method", ["ga", "separable"])
 def test_reversed_torque_is_told_and_no_crash(method: str) -> None:
     joint = jid.Joint(torque_offset=False)
-    estimate = jid.identify(moving(0.1, sign=-1.0), joint, method=method)
+    estimate = jid.identify(moving(0.1, sign=-1.0), joint, search=method)
     assert {p.at_bound for p in estimate.parameters.values()} == {"min"}
     assert "at_bound" in {warning.code for warning in estimate.warnings}
     assert "poor_fit" in {warning.code for warning in estimate.warnings}
@@ -61,13 +61,13 @@ def test_white_noise_explains_nothing() -> None:
 def test_a_search_without_polish_says_that_it_just_ended() -> None:
     well = jid.load(data_folder() / "well_excited.csv.gz")
     rough = jid.GaOptions(population=20, generations=3, polish=False)
-    estimate = jid.identify(well, jid.thesis_joint(), ga=rough)
+    estimate = jid.identify(well, jid.thesis_joint(), search=jid.Search(ga=rough))
     assert estimate.status == "stopped"
     assert "stopped" in {warning.code for warning in estimate.warnings}
 
 
 def test_as_many_windows_as_parameters_know_no_error() -> None:
-    estimate = jid.identify(moving(0.1), windows=4, method="separable")
+    estimate = jid.identify(moving(0.1), windows=4, search="separable")
     assert estimate.residuals.windows == 4
     assert all(p.stderr == np.inf for p in estimate.parameters.values())
     assert "undetermined" in {warning.code for warning in estimate.warnings}
@@ -76,9 +76,8 @@ def test_as_many_windows_as_parameters_know_no_error() -> None:
 def test_numpy_whole_numbers_are_whole_numbers() -> None:
     estimate = jid.identify(
         moving(),
-        seed=np.int64(3),  # type: ignore[arg-type]
-        threads=np.int32(1),  # type: ignore[arg-type]
         windows=np.int64(100),  # type: ignore[arg-type]
+        search=jid.Search(seed=np.int64(3), threads=np.int32(1)),  # type: ignore[arg-type]
     )
     assert '"seed": 3' in estimate.to_json()
 
@@ -115,7 +114,7 @@ def test_what_is_no_recording_is_refused(recordings: object) -> None:
 
 
 def test_prediction_asks_for_the_same_kind() -> None:
-    estimate = jid.identify(moving(), method="separable")
+    estimate = jid.identify(moving(), search="separable")
     base = moving()
     axis = jid.Recording(
         time=base.time,
@@ -131,7 +130,7 @@ def test_prediction_asks_for_the_same_kind() -> None:
 def test_bounds_free_a_known_inertia_and_the_joint_learns_it() -> None:
     joint = jid.Joint(rotor_inertia=0.008, gear_ratio=10.0)  # 0.8 at the output, truly 0.5
     free = {"inertia": {"min": 0.1, "max": 2.0}}
-    estimate = jid.identify(moving(), joint, parameters=free, method="separable")
+    estimate = jid.identify(moving(), joint, parameters=free, search="separable")
     assert estimate.parameters["inertia"].value == pytest.approx(0.5, rel=0.01)
     assert estimate.joint.reflected_inertia == estimate.parameters["inertia"].value
 
@@ -150,5 +149,5 @@ def test_an_estimate_is_not_saved_over_a_folder(tmp_path: Path) -> None:
     from jointid.report.html import save_report
 
     with pytest.raises(IsADirectoryError, match="folder"):
-        save_report(jid.identify(moving(), method="separable"), tmp_path)
+        save_report(jid.identify(moving(), search="separable"), tmp_path)
     assert list(tmp_path.iterdir()) == []

@@ -19,6 +19,7 @@ from jointid.base.errors import InputError
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_document, joint_from_document
 from jointid.joint.link import Limits, Link
+from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
 from jointid.joint.thesis import thesis_joint
 
@@ -84,12 +85,13 @@ def joints(draw: st.DrawFn) -> Joint:
         torque_constant=draw(optional(POSITIVE)),
         torque_hold=draw(st.sampled_from((None, "zoh", "linear"))),
         sensor=draw(st.booleans()),
-        friction=draw(st.sampled_from(_core.model_names())),
-        gravity=draw(st.sampled_from(ways)),
         torque_offset=draw(st.sampled_from((None, False, True))),
         link=link,
         parameters=draw(parameters()),
         limits=draw(LIMITS),
+        model=Model(
+            draw(st.sampled_from(_core.model_names())), gravity=draw(st.sampled_from(ways))
+        ),
     )
 
 
@@ -100,7 +102,7 @@ def test_the_thesis_joint() -> None:
     joint = thesis_joint()
     assert joint.reflected_inertia == pytest.approx(2.472e-4 * 101**2, rel=1e-15)
     assert (joint.rotor_inertia, joint.gear_ratio, joint.torque_constant) == (2.472e-4, 101, 0.198)
-    assert (joint.friction, joint.gravity, joint.sensor) == ("stribeck", "none", True)
+    assert (joint.model.name, joint.model.gravity, joint.sensor) == ("stribeck", "none", True)
     assert (joint.torque_hold, joint.inertia, joint.torque_offset) == ("zoh", None, None)
     assert joint.limits == Limits(torque=160.0, current=8.0)
     assert joint.link == Link(mass=3.0, centre_of_mass=0.25, inertia=0.25, gravity=9.817)
@@ -146,7 +148,9 @@ def test_replace() -> None:
     joint = thesis_joint().replace(gear_ratio=50, sensor=False)
     assert joint != thesis_joint()
     assert joint.reflected_inertia == pytest.approx(2.472e-4 * 2500)
-    with pytest.raises(InputError, match=r"'gear_ration' is no field; did you mean 'gear_ratio'"):
+    with pytest.raises(
+        InputError, match=r"gear_ration: a joint has no such field; did you mean 'gear_ratio'"
+    ):
         joint.replace(gear_ration=3)
     with pytest.raises(InputError, match="joint 'thesis joint': gear_ratio is 0"):
         joint.replace(gear_ratio=0)
@@ -169,12 +173,12 @@ def test_with_parameters_sets_values_and_nothing_else() -> None:
 @pytest.mark.parametrize(
     ("values", "said"),
     [
-        ({"coulomb": 50.1}, "parameter 'coulomb': value is 50.1, above max 50.0"),
-        ({"sensor_offset": -31}, "value is -31.0, below min -30.0"),
+        ({"coulomb": 50.1}, "parameter 'coulomb': value is 50.1: this is above max 50.0"),
+        ({"sensor_offset": -31}, "value is -31.0: this is below min -30.0"),
         ({"coulomb": math.nan}, "value is nan"),
-        ({"coulomb": None}, "value is None; a number"),
+        ({"coulomb": None}, "value is None: a number"),
         ({"coulomb": {"value": 1.0}}, "a number is expected"),
-        ({"colomb": 1.0}, "'colomb' is no parameter; did you mean 'coulomb'?"),
+        ({"colomb": 1.0}, "colomb: there is no such parameter; did you mean 'coulomb'?"),
     ],
 )
 def test_with_parameters_refuses(values: Any, said: str) -> None:
@@ -213,9 +217,9 @@ def test_output_torque_from_each_signal() -> None:
 
 
 def test_output_torque_says_what_is_missing() -> None:
-    with pytest.raises(InputError, match="no signal 'torque', 'motor_torque' or 'current'"):
+    with pytest.raises(InputError, match="no signal torque, motor_torque or current"):
         Joint(torque_constant=1.0).output_torque(signals())
-    with pytest.raises(InputError, match=r"joint 'elbow' has no torque_constant.*N·m/A"):
+    with pytest.raises(InputError, match=r"joint 'elbow': torque_constant: .*N·m/A"):
         Joint(name="elbow", gear_ratio=3).output_torque(signals(current=np.ones(3)))
 
 
@@ -253,7 +257,7 @@ def test_a_file_takes_another_joint(
 
 COMMENTED = """\
 # Elbow of the left arm.
-schema = 1   # of this file
+schema = 2   # of this file
 name = "elbow"
 
 # From the data sheet.
@@ -416,7 +420,7 @@ def test_a_crash_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert [entry.name for entry in tmp_path.iterdir()] == ["joint.toml"]
 
 
-@pytest.mark.parametrize("text", ["[tool.ruff]\nline-length = 100\n", "a = \n", "schema = 2\n"])
+@pytest.mark.parametrize("text", ["[tool.ruff]\nline-length = 100\n", "a = \n", "schema = 3\n"])
 def test_what_is_no_joint_file_is_not_overwritten(tmp_path: Path, text: str) -> None:
     path = tmp_path / "pyproject.toml"
     path.write_text(text)
@@ -435,51 +439,81 @@ def test_a_folder_that_is_missing_is_named(tmp_path: Path) -> None:
 
 # Joint file (behind `schema = 1`), and what the sentence says behind the file's name.
 BAD = [
-    ("[drive]\ngear_ration = 3", "[drive] 'gear_ration' is unknown; did you mean 'gear_ratio'?"),
-    ("[drive]\nqqq = 3", "[drive] 'qqq' is unknown; known are inertia, rotor_inertia"),
-    ("gear_ratio = 3", "'gear_ratio' does not belong here, but in [drive]"),
-    ("[drive]\nfriction = 'stribeck'", "[drive] 'friction' does not belong here, but in [model]"),
-    ("[drives]", "'drives' is unknown; did you mean 'drive'?"),
-    ("drive = 3", "drive is 3; a table [drive] is expected"),
-    ("[[link]]", "link is [{}]; a table [link] is expected"),
-    ("name = 3", "name is 3; a text is expected"),
-    ("kind = 'prismtic'", "kind is 'prismtic', which is unknown; did you mean 'prismatic'?"),
-    ("[drive]\ngear_ratio = '101'", "[drive] gear_ratio is '101'; a number is expected"),
-    ("[drive]\ngear_ratio = true", "[drive] gear_ratio is True; a number is expected"),
-    ("[drive]\ngear_ratio = 0", "[drive] gear_ratio is 0; 1 stands for a joint without a gear"),
-    ("[drive]\ngear_ratio = nan", "[drive] gear_ratio is nan; a finite number is expected"),
-    ("[drive]\ninertia = -2.5", "[drive] inertia is -2.5; more than 0 is expected"),
-    ("[drive]\nrotor_inertia = 0", "[drive] rotor_inertia is 0.0; more than 0 is expected"),
-    ("[drive]\ntorque_constant = inf", "[drive] torque_constant is inf; a finite number"),
+    (
+        "[drive]\ngear_ration = 3",
+        "[drive]: gear_ration: there is no such key; did you mean 'gear_ratio'?",
+    ),
+    ("[drive]\nqqq = 3", "[drive]: qqq: there is no such key; known are inertia, rotor_inertia"),
+    ("gear_ratio = 3", "gear_ratio: it does not belong here, but in [drive]"),
+    (
+        "[drive]\nfriction = 'stribeck'",
+        "[drive]: friction: it does not belong here, but in [model]",
+    ),
+    ("[drives]", "drives: there is no such key; did you mean 'drive'?"),
+    ("drive = 3", "drive is 3: a table [drive] is expected"),
+    ("[[link]]", "link is [{}]: a table [link] is expected"),
+    ("name = 3", "name is 3: a text is expected"),
+    ("kind = 'prismtic'", "kind is 'prismtic': it is unknown; did you mean 'prismatic'?"),
+    ("[drive]\ngear_ratio = '101'", "[drive]: gear_ratio is '101': a number is expected"),
+    ("[drive]\ngear_ratio = true", "[drive]: gear_ratio is True: a number is expected"),
+    ("[drive]\ngear_ratio = 0", "[drive]: gear_ratio is 0: 1 stands for a joint without a gear"),
+    ("[drive]\ngear_ratio = nan", "[drive]: gear_ratio is nan: a finite number is expected"),
+    ("[drive]\ninertia = -2.5", "[drive]: inertia is -2.5: more than 0 is expected"),
+    ("[drive]\nrotor_inertia = 0", "[drive]: rotor_inertia is 0.0: more than 0 is expected"),
+    ("[drive]\ntorque_constant = inf", "[drive]: torque_constant is inf: a finite number"),
     (
         "[drive]\ninertia = 2.6\nrotor_inertia = 2.472e-4\ngear_ratio = 101",
-        "[drive] inertia is 2.6, but gear_ratio² · rotor_inertia is 2.52169; give only one",
+        "[drive]: inertia is 2.6: but gear_ratio² · rotor_inertia is 2.52169; give only one",
     ),
-    ("[drive]\nrotor_inertia = 1e300\ngear_ratio = 1e9", "[drive] rotor_inertia cannot be used"),
-    ("[drive]\ntorque_hold = 'zero'", "[drive] torque_hold is 'zero', which is unknown; known are"),
-    ("[model]\nfriction = 'stribek'", "[model] friction is 'stribek', which is unknown; did you"),
-    ("[model]\nfriction = 'xyz'", "[model] friction is 'xyz', which is unknown; known are coulomb"),
-    ("[model]\ngravity = 'known'", "[model] gravity is 'known', but there is no link"),
-    ("[model]\ngravity = true", "[model] gravity is True, which is unknown; known are none, known"),
-    ("kind = 'prismatic'\n[model]\ngravity = 'free'", "[model] gravity is 'free' on a prismatic"),
-    ("[model]\ntorque_offset = 'yes'", "[model] torque_offset is 'yes'; true or false is expected"),
-    ("[sensor]\npresent = 1", "[sensor] present is 1; true or false is expected"),
-    ("[sensor]\ngain = 1", "[sensor] 'gain' is unknown; known are present"),
-    ("[link]\nmass = 3.0", "[link] has no centre_of_mass"),
-    ("[link]\nmass = -3\ncentre_of_mass = 1", "[link] mass is -3.0; 0 or more is expected"),
-    ("[link]\nmass = 3\ncentre_of_mass = 1\nangle = 'up'", "[link] angle is 'up'; a number"),
-    ("[parameters.coulom]", "[parameters] 'coulom' is no parameter; did you mean 'coulomb'?"),
-    ("[parameters]\ncoulomb = 'big'", "[parameters] coulomb is 'big'; a number (it fixes"),
-    ("[parameters]\ncoulomb = nan", "[parameters] coulomb is nan; a finite number"),
-    ("[parameters.coulomb]\nmaxi = 3", "[parameters.coulomb] 'maxi' is no field; did you mean"),
-    ("[parameters.coulomb]\nmin = 5\nmax = 3", "[parameters.coulomb] min is 5.0, above max 3.0"),
-    ("[parameters.coulomb]\nvalue = 5\nmax = 3", "[parameters.coulomb] value is 5.0, above max"),
-    ("[parameters.coulomb]\nvary = false", "[parameters.coulomb] vary is False, but there is no"),
-    ("[parameters.coulomb]\nvary = 'no'", "[parameters.coulomb] vary is 'no'; true or false"),
-    ("[limits]\nposition = [1.2, -1.2]", "[limits] position is [1.2, -1.2]; the lower limit comes"),
-    ("[limits]\nposition = 1.2", "[limits] position is 1.2; [lowest, highest] is expected"),
-    ("[limits]\nposition = [0, 'a']", "[limits] position is 'a'; a number is expected"),
-    ("[limits]\ntorque = -160", "[limits] torque is -160.0; more than 0 is expected"),
+    (
+        "[drive]\nrotor_inertia = 1e300\ngear_ratio = 1e9",
+        "[drive]: rotor_inertia is 1e+300: it cannot be used",
+    ),
+    ("[drive]\ntorque_hold = 'zero'", "[drive]: torque_hold is 'zero': it is unknown; known are"),
+    ("[model]\nfriction = 'stribek'", "[model]: name is 'stribek': it is unknown; did you"),
+    ("[model]\nfriction = 'xyz'", "[model]: name is 'xyz': it is unknown; known are coulomb"),
+    ("[model]\ngravity = 'known'", "[model]: gravity is 'known': there is no link"),
+    ("[model]\ngravity = true", "[model]: gravity is True: it is unknown; known are none, known"),
+    (
+        "kind = 'prismatic'\n[model]\ngravity = 'free'",
+        "[model]: gravity is 'free': the weight on a prismatic",
+    ),
+    (
+        "[model]\ntorque_offset = 'yes'",
+        "[model]: torque_offset is 'yes': true or false is expected",
+    ),
+    ("[sensor]\npresent = 1", "[sensor]: present is 1: true or false is expected"),
+    ("[sensor]\ngain = 1", "[sensor]: gain: there is no such key; known are present"),
+    ("[link]\nmass = 3.0", "[link]: centre_of_mass: it is missing"),
+    ("[link]\nmass = -3\ncentre_of_mass = 1", "[link]: mass is -3.0: 0 or more is expected"),
+    ("[link]\nmass = 3\ncentre_of_mass = 1\nangle = 'up'", "[link]: angle is 'up': a number"),
+    (
+        "[parameters.coulom]",
+        "[parameters]: coulom: there is no such parameter; did you mean 'coulomb'?",
+    ),
+    ("[parameters]\ncoulomb = 'big'", "[parameters]: coulomb is 'big': a number (it fixes"),
+    ("[parameters]\ncoulomb = nan", "[parameters]: coulomb is nan: a finite number"),
+    (
+        "[parameters.coulomb]\nmaxi = 3",
+        "[parameters.coulomb]: maxi: a parameter has no such field; did you mean",
+    ),
+    (
+        "[parameters.coulomb]\nmin = 5\nmax = 3",
+        "[parameters.coulomb]: min is 5.0: this is above max 3.0",
+    ),
+    (
+        "[parameters.coulomb]\nvalue = 5\nmax = 3",
+        "[parameters.coulomb]: value is 5.0: this is above max",
+    ),
+    ("[parameters.coulomb]\nvary = false", "[parameters.coulomb]: vary is False: there is no"),
+    ("[parameters.coulomb]\nvary = 'no'", "[parameters.coulomb]: vary is 'no': true or false"),
+    (
+        "[limits]\nposition = [1.2, -1.2]",
+        "[limits]: position is [1.2, -1.2]: the lower limit comes",
+    ),
+    ("[limits]\nposition = 1.2", "[limits]: position is 1.2: [lowest, highest] is expected"),
+    ("[limits]\nposition = [0, 'a']", "[limits]: position is 'a': a number is expected"),
+    ("[limits]\ntorque = -160", "[limits]: torque is -160.0: more than 0 is expected"),
     ("schema = 1", ", line 2: not TOML: Cannot overwrite a value"),
     ("\n[drive\ngear_ratio = 101", ", line 3: not TOML: Expected ']'"),
     ("[drive]\ngear_ratio = ", ", line 3: not TOML: Invalid value"),
@@ -510,11 +544,11 @@ def test_a_file_that_cannot_be_used(tmp_path: Path, text: str, said: str) -> Non
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        (b"", "schema is missing; write schema = 1"),
-        (b"schema = 2", "schema is 2, this jointid reads up to 1; update jointid"),
-        (b"schema = 0", "schema is 0; schema = 1 is expected"),
-        (b"schema = true", "schema is True; schema = 1 is expected"),
-        (b"schema = '1'", "schema is '1'; schema = 1 is expected"),
+        (b"", "schema: it is missing; write schema = 2"),
+        (b"schema = 3", "schema is 3: this jointid reads up to 2; update jointid"),
+        (b"schema = 0", "schema is 0: 2 is expected"),
+        (b"schema = true", "schema is True: 2 is expected"),
+        (b"schema = '1'", "schema is '1': 2 is expected"),
         (b"schema = 1\n# caf\xe9", ", line 2: this is no text in UTF-8"),
         (b"PK\x03\x04\x00", ", line 1: not TOML"),
     ],

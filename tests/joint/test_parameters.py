@@ -54,20 +54,20 @@ def test_bounds_belong_to_the_range() -> None:
 @pytest.mark.parametrize(
     ("fields", "said"),
     [
-        ({"name": "coulom"}, "'coulom' is no parameter; did you mean 'coulomb'?"),
-        ({"name": "zzz"}, "'zzz' is no parameter; known are inertia, coulomb"),
-        ({"value": float("nan")}, "value is nan; a finite number"),
-        ({"min": float("-inf")}, "min is -inf; a finite number"),
-        ({"max": 10**400}, "max is inf; a finite number"),
-        ({"value": "25"}, "value is '25'; a number"),
-        ({"value": True}, "value is True; a number"),
-        ({"value": 1j}, "value is 1j; a number"),
-        ({"min": 3.0, "max": 2.0}, "min is 3.0, above max 2.0"),
-        ({"value": 1.0, "min": 2.0}, "value is 1.0, below min 2.0"),
-        ({"value": 3.0, "max": 2.0}, "value is 3.0, above max 2.0"),
-        ({"vary": False}, "vary is False, but there is no value"),
-        ({"value": 1.0, "vary": 0}, "vary is 0; true or false"),
-        ({"vary": None}, "vary is None; true or false"),
+        ({"name": "coulom"}, "coulom: there is no such parameter; did you mean 'coulomb'?"),
+        ({"name": "zzz"}, "zzz: there is no such parameter; known are inertia, coulomb"),
+        ({"value": float("nan")}, "value is nan: a finite number"),
+        ({"min": float("-inf")}, "min is -inf: a finite number"),
+        ({"max": 10**400}, "max is inf: a finite number"),
+        ({"value": "25"}, "value is '25': a number"),
+        ({"value": True}, "value is True: a number"),
+        ({"value": 1j}, "value is a complex: a number"),
+        ({"min": 3.0, "max": 2.0}, "min is 3.0: this is above max 2.0"),
+        ({"value": 1.0, "min": 2.0}, "value is 1.0: this is below min 2.0"),
+        ({"value": 3.0, "max": 2.0}, "value is 3.0: this is above max 2.0"),
+        ({"vary": False}, "vary is False: there is no value"),
+        ({"value": 1.0, "vary": 0}, "vary is 0: true or false"),
+        ({"vary": None}, "vary is None: true or false"),
     ],
 )
 def test_a_parameter_that_cannot_be(fields: dict[str, Any], said: str) -> None:
@@ -94,16 +94,22 @@ def test_a_table_takes_numbers_mappings_and_parameters() -> None:
 @pytest.mark.parametrize(
     ("entries", "said"),
     [
-        ({"viscos": 1.0}, "parameters: 'viscos' is no parameter; did you mean 'viscous'?"),
-        ({5: 1.0}, "parameters: 5 is no parameter"),
-        ({"viscous": {"maximum": 1.0}}, "parameter 'viscous': 'maximum' is no field"),
-        ({"viscous": {"Max": 1.0}}, "'Max' is no field; did you mean 'max'?"),
-        ({"viscous": {"name": "viscous"}}, "'name' is no field"),
-        ({"viscous": "fixed"}, "parameters: viscous is 'fixed'; a number (it fixes"),
-        ({"viscous": None}, "parameters: viscous is None; a number"),
-        ({"viscous": False}, "parameters: viscous is False; a number"),
-        ({"viscous": float("inf")}, "parameters: viscous is inf; a finite number"),
-        ({"viscous": Parameter(name="static")}, "'viscous' holds the parameter 'static'"),
+        (
+            {"viscos": 1.0},
+            "parameters: viscos: there is no such parameter; did you mean 'viscous'?",
+        ),
+        ({5: 1.0}, "parameters: 5: there is no such parameter"),
+        (
+            {"viscous": {"maximum": 1.0}},
+            "parameter 'viscous': maximum: a parameter has no such field",
+        ),
+        ({"viscous": {"Max": 1.0}}, "Max: a parameter has no such field; did you mean 'max'?"),
+        ({"viscous": {"name": "viscous"}}, "name: a parameter has no such field"),
+        ({"viscous": "fixed"}, "parameters: viscous is 'fixed': a number (it fixes"),
+        ({"viscous": None}, "parameters: viscous is None: a number"),
+        ({"viscous": False}, "parameters: viscous is False: a number"),
+        ({"viscous": float("inf")}, "parameters: viscous is inf: a finite number"),
+        ({"viscous": Parameter(name="static")}, "viscous: it holds the parameter 'static'"),
         ([("viscous", 1.0)], "a mapping from names"),
     ],
 )
@@ -162,9 +168,9 @@ def test_a_fixed_parameter_is_freed() -> None:
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (12.0, "value is 12.0, above max 9.0"),
-        ({"min": 6.0}, "value is 5.0, below min 6.0"),
-        ({"value": None, "vary": False}, "vary is False, but there is no value"),
+        (12.0, "value is 12.0: this is above max 9.0"),
+        ({"min": 6.0}, "value is 5.0: this is below min 6.0"),
+        ({"value": None, "vary": False}, "vary is False: there is no value"),
     ],
 )
 def test_a_change_that_does_not_fit(change: Any, said: str) -> None:

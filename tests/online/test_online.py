@@ -20,7 +20,7 @@ def excited() -> jid.Recording:
 
 
 def test_agrees_with_the_whole_recording(excited: jid.Recording) -> None:
-    whole = jid.identify(excited, jid.thesis_joint(), method="separable")
+    whole = jid.identify(excited, jid.thesis_joint(), search="separable")
     with jid.OnlineIdentifier(
         jid.thesis_joint(), window=12.0, windows=whole.residuals.window_duration
     ) as identifier:
@@ -63,15 +63,7 @@ def test_holds_no_more_than_its_window(excited: jid.Recording) -> None:
         joint=jid.thesis_joint(),
         window=3.0,
         update=0.5,
-        request=Request(
-            model=None,
-            residual=None,
-            asymmetric=None,
-            ripple=None,
-            harmonics=None,
-            load_friction=None,
-            per_recording=(),
-        ),
+        request=Request(),
         parameters=None,
         windows=None,
         torque_hold=None,

@@ -77,7 +77,9 @@ def test_sensitivity_reaches_beyond_the_bounds() -> None:
 def test_convergence_claims_no_polish_that_was_not(run: jid.SimulatedRecording) -> None:
     options = jid.GaOptions(population=20, generations=5)
     for polish, told in ((True, "after the polish"), (False, "the answer, not polished")):
-        estimate = jid.identify(run, thesis_joint(), ga=options.replace(polish=polish))
+        estimate = jid.identify(
+            run, thesis_joint(), search=jid.Search(ga=options.replace(polish=polish))
+        )
         assert _legend(jid.plot.convergence(estimate))[-1] == told
 
 
@@ -116,7 +118,7 @@ def test_subtracting_the_sensor_leaves_friction_and_drive(run: jid.SimulatedReco
 def test_adaptation_draws_the_law_that_acts(run: jid.SimulatedRecording) -> None:
     seen: list[jid.Generation] = []
     options = jid.GaOptions.thesis().replace(population=20, generations=40)
-    jid.identify(run, thesis_joint(), ga=options, callback=seen.append)
+    jid.identify(run, thesis_joint(), search=jid.Search(ga=options, callback=seen.append))
     axes = jid.plot.adaptation(options, seen)
     for law, points in ((0, 1), (2, 3)):
         corner, probability = (

@@ -1,6 +1,7 @@
 """Richer terms: directions apart, ripple, harmonics, load, exponent; several recordings; collinear terms refused."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -67,13 +68,13 @@ def test_directions_apart() -> None:
         "viscous_positive": 4.0,
         "viscous_negative": 5.0,
     }
-    estimate = jid.identify(smooth(truth), asymmetric=True)
+    estimate = jid.identify(smooth(truth), model=jid.Model(asymmetric=True))
     check(estimate, truth)
     assert "torque_offset" not in estimate.parameters
     assert "torque_offset" in estimate.report()  # with a word
     curve = estimate.friction([-1.0, 1.0])
     np.testing.assert_allclose(curve.torque, [-8.0, 6.0], rtol=0.01)
-    again = jid.identify(smooth(truth), estimate.joint, method="separable")
+    again = jid.identify(smooth(truth), estimate.joint, search="separable")
     check(again, truth)
 
 
@@ -86,7 +87,7 @@ def test_published_asymmetric_fit(shared_data: Path) -> None:
         "coulomb_negative": 20.6277,
     }
     recording = jid.load(shared_data / "emps" / "emps_train.csv.gz")
-    estimate = jid.identify(recording, asymmetric=True)
+    estimate = jid.identify(recording, model=jid.Model(asymmetric=True))
     for name, value in published.items():
         assert estimate.parameters[name].value == pytest.approx(value, rel=0.02), name
 
@@ -99,8 +100,10 @@ def test_published_asymmetric_fit_from_matlab(shared_data: Path) -> None:
         scale={"torque": 35.150652},
         kind="prismatic",
     )
-    matlab = jid.identify(recording, asymmetric=True, method="separable")
-    csv = jid.identify(jid.load(folder / "emps_train.csv.gz"), asymmetric=True, method="separable")
+    matlab = jid.identify(recording, model=jid.Model(asymmetric=True), search="separable")
+    csv = jid.identify(
+        jid.load(folder / "emps_train.csv.gz"), model=jid.Model(asymmetric=True), search="separable"
+    )
     for name in ("inertia", "viscous_positive", "coulomb_negative"):
         assert matlab.parameters[name].value == pytest.approx(csv.parameters[name].value, rel=1e-4)
     assert matlab.parameters["viscous_positive"].value == pytest.approx(166.7061, rel=0.02)
@@ -118,15 +121,15 @@ def test_harmonics_and_ripple() -> None:
         "ripple_sin_2": 0.4,
     }
     joint = jid.Joint(gear_ratio=7.0)
-    estimate = jid.identify(smooth(truth, 7.0), joint, harmonics=(3,), ripple=(2,))
+    estimate = jid.identify(smooth(truth, 7.0), joint, model=jid.Model(ripple=(2,), harmonics=(3,)))
     check(estimate, truth)
-    assert estimate.joint.ripple == (2.0,)
-    assert estimate.joint.harmonics == (3.0,)
+    assert estimate.joint.model.ripple == (2.0,)
+    assert estimate.joint.model.harmonics == (3.0,)
 
 
 def test_ripple_of_a_strain_wave_sensor(shared_data: Path) -> None:
     recording = jid.load(shared_data / "simulated" / "rippled.csv.gz")
-    estimate = jid.identify(recording, jid.thesis_joint(), ripple=(2,))
+    estimate = jid.identify(recording, jid.thesis_joint(), model=jid.Model(ripple=(2,)))
     value = {name: p.value for name, p in estimate.parameters.items()}
     assert value["sensor_gain"] == pytest.approx(2.4, rel=0.003)
     assert value["static"] == pytest.approx(20.0, rel=0.01)
@@ -138,14 +141,14 @@ def test_ripple_of_a_strain_wave_sensor(shared_data: Path) -> None:
 
 def test_cost_of_ignoring_the_ripple(shared_data: Path) -> None:
     recording = jid.load(shared_data / "simulated" / "rippled.csv.gz")
-    estimate = jid.identify(recording, jid.thesis_joint(), method="separable")
+    estimate = jid.identify(recording, jid.thesis_joint(), search="separable")
     assert 0.01 < 1 - estimate.parameters["sensor_gain"].value / 2.4 < 0.04
     assert 0.03 < estimate.parameters["static"].value / 20.0 - 1 < 0.09
 
 
 def test_realistic_sensing(shared_data: Path) -> None:
     raw = jid.load(shared_data / "simulated" / "realistic.csv.gz", columns={"velocity": None})
-    estimate = jid.identify(raw, jid.thesis_joint(), ripple=(2,))
+    estimate = jid.identify(raw, jid.thesis_joint(), model=jid.Model(ripple=(2,)))
     for name, truth in TRUTH.items():
         tolerance = 0.05 if name == "stribeck" else 0.02
         assert estimate.parameters[name].value == pytest.approx(truth, rel=tolerance), name
@@ -157,8 +160,7 @@ def test_general_exponent_finds_the_gaussian(well_excited: jid.Recording, method
         well_excited,
         jid.thesis_joint(),
         model="stribeck_general",
-        method=method,
-        ga=jid.GaOptions(population=40, generations=60),
+        search=jid.Search(method, ga=jid.GaOptions(population=40, generations=60)),
     )
     check(
         estimate,
@@ -178,7 +180,7 @@ def test_load_friction_is_found_where_it_is() -> None:
         velocity=base.velocity,
         torque=base.torque / (1 - factor),
     )
-    estimate = jid.identify(loaded, load_friction=True, method="separable")
+    estimate = jid.identify(loaded, model=jid.Model(load_friction=True), search="separable")
     assert estimate.parameters["load_friction"].value == pytest.approx(0.1, rel=0.06)
     assert estimate.parameters["coulomb"].value == pytest.approx(2.0, rel=0.03)
 
@@ -189,7 +191,7 @@ def test_offset_of_each_recording() -> None:
         smooth({**base, "torque_offset": offset}, seed=seed)
         for seed, offset in enumerate((0.5, -0.9))
     ]
-    estimate = jid.identify(runs, per_recording=("torque_offset",))
+    estimate = jid.identify(runs, model=jid.Model(per_recording=("torque_offset",)))
     check(estimate, {**base, "torque_offset[0]": 0.5, "torque_offset[1]": -0.9})
     shared = jid.identify(runs)
     assert shared.penalty > 10 * estimate.penalty
@@ -198,7 +200,7 @@ def test_offset_of_each_recording() -> None:
 
 def test_cumulative_windows_are_the_running_integral(well_excited: jid.Recording) -> None:
     estimate = jid.identify(
-        well_excited, jid.thesis_joint(), windows="cumulative", method="separable"
+        well_excited, jid.thesis_joint(), windows="cumulative", search="separable"
     )
     assert estimate.residuals.windows > 11000
     assert not {"noisy_velocity", "structured_residual"} & {w.code for w in estimate.warnings}
@@ -221,7 +223,7 @@ def test_the_sensors_zero_and_polarity_are_arbitrary(
         torque_hold="zoh",
     )
     estimate = jid.identify(
-        recording, model="stribeck", parameters={"inertia": THESIS_INERTIA}, method="separable"
+        recording, model="stribeck", parameters={"inertia": THESIS_INERTIA}, search="separable"
     )
     assert estimate.parameters["sensor_gain"].value == pytest.approx(sign * 2.4, rel=0.01)
     assert estimate.parameters["coulomb"].value == pytest.approx(25.0, rel=0.01)
@@ -237,28 +239,32 @@ REFUSED = {
     "ripple without a gear": ({"ripple": (2,)}, None, "gear_ratio"),
     "ripple twice": ({"ripple": (2, 2)}, jid.Joint(gear_ratio=9.0), "different orders"),
     "ripple that is none": ({"ripple": 2}, jid.Joint(gear_ratio=9.0), "orders"),
-    "first harmonic is gravity": ({"harmonics": (1,)}, jid.Joint(gravity="free"), "gravity"),
-    "shape per recording": ({"per_recording": ("viscosity",)}, None, "viscosity"),
+    "first harmonic is gravity": (
+        {"harmonics": (1,)},
+        jid.Joint(model=jid.Model(gravity="free")),
+        "gravity",
+    ),
+    "shape per recording": ({"per_recording": ("viscosity",)}, None, "coefficients"),
 }
 
 
 @pytest.mark.parametrize(("options", "joint", "told"), REFUSED.values(), ids=REFUSED.keys())
 def test_what_cannot_be_told_apart_is_refused(
-    options: dict[str, object], joint: jid.Joint | None, told: str
+    options: dict[str, Any], joint: jid.Joint | None, told: str
 ) -> None:
     recording = smooth({"inertia": 0.8, "coulomb": 2.0, "viscous": 4.0})
     with pytest.raises(jid.InputError, match=told):
-        jid.identify([recording, recording], joint, **options)  # type: ignore[arg-type]
+        jid.identify([recording, recording], joint, model=options)
 
 
 def test_asymmetric_with_a_free_sensor_offset_is_refused(well_excited: jid.Recording) -> None:
     with pytest.raises(jid.InputError, match="sensor_offset"):
-        jid.identify(well_excited, jid.thesis_joint(), asymmetric=True)
+        jid.identify(well_excited, jid.thesis_joint(), model=jid.Model(asymmetric=True))
     fixed = jid.identify(
         well_excited,
         jid.thesis_joint(),
-        asymmetric=True,
         parameters={"sensor_offset": 15.0},
-        method="separable",
+        model=jid.Model(asymmetric=True),
+        search="separable",
     )
     check(fixed, {"coulomb_positive": 25.0, "coulomb_negative": 25.0, "sensor_gain": 2.4})

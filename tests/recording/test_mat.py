@@ -233,7 +233,7 @@ def test_emps_identifies_alike_from_both_files(shared_data: Path) -> None:
         time=text.time, position=made.position, torque=made.torque, kind="prismatic"
     )
     expected, same_clock, own_clock = (
-        jid.identify(recording, method="separable").parameters
+        jid.identify(recording, search="separable").parameters
         for recording in (text, stamped, made)
     )
     for name, parameter in expected.items():

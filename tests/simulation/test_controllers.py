@@ -195,9 +195,7 @@ def test_control_estimates_are_the_parameters() -> None:
     joint = thesis_joint().with_parameters(TRUTH)
     assert jid.control_estimates(joint) == {**TRUTH, "inertia": pytest.approx(INERTIA)}
     bare = jid.Joint(
-        inertia=2.0,
-        asymmetric=True,
-        link=jid.Link(mass=1.0, centre_of_mass=0.5),
+        inertia=2.0, link=jid.Link(mass=1.0, centre_of_mass=0.5), model=jid.Model(asymmetric=True)
     ).with_parameters(
         {
             "coulomb_positive": 4.0,
@@ -216,7 +214,7 @@ def test_control_estimates_are_the_parameters() -> None:
         "sensor_offset": 0.0,
     }
     with pytest.raises(jid.InputError, match="'stribeck_general'"):
-        jid.control_estimates(bare.replace(friction="stribeck_general"))
+        jid.control_estimates(bare.replace(model=bare.model.replace(name="stribeck_general")))
 
 
 def test_unknown_words_are_refused() -> None:

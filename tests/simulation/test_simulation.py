@@ -129,13 +129,13 @@ def test_friction_never_adds_energy(
 ) -> None:
     free = jid.Joint(
         inertia=inertia,
-        friction="stribeck",
         parameters={
             "coulomb": coulomb,  # type: ignore[dict-item]
             "static": static,  # type: ignore[dict-item]
             "stribeck": stribeck,  # type: ignore[dict-item]
             "viscous": viscous,  # type: ignore[dict-item]
         },
+        model=jid.Model("stribeck"),
     )
     step = 1e-3
     run = jid.simulate(
@@ -170,7 +170,9 @@ def test_dahl_and_lugre_hold_like_a_spring_and_slide_like_the_static_model(
 
 
 def test_asymmetric_and_general_models_reach_their_friction() -> None:
-    joint = jid.Joint(inertia=1.0, friction="stribeck_general", asymmetric=True).with_parameters(
+    joint = jid.Joint(
+        inertia=1.0, model=jid.Model("stribeck_general", asymmetric=True)
+    ).with_parameters(
         {
             "coulomb_positive": 5.0,
             "coulomb_negative": 8.0,
@@ -241,7 +243,7 @@ def test_an_independent_simulator_says_the_same(
         jid.Sensors(**sensors),
         control_period=period,
     )
-    study = jid.sweep(scenario, thesis_joint(), trials=20, stderr=True, **options)
+    study = jid.sweep(scenario, thesis_joint(), trials=20, standard_errors=True, **options)
     for parameter, true in TRUTH.items():
         values = study.column(parameter)
         their = other.parameters[parameter]
@@ -265,7 +267,7 @@ def test_commands_that_jump_at_a_reversal_deceive_nobody(
     scenario = jid.Scenario(
         joint, law, well_excited(), jid.Sensors(torque_noise=0.5), control_period=period
     )
-    study = jid.sweep(scenario, thesis_joint(), trials=20, stderr=True)
+    study = jid.sweep(scenario, thesis_joint(), trials=20, standard_errors=True)
     for parameter, true in TRUTH.items():
         values, errors = study.column(parameter), study.column(f"{parameter}_stderr")
         inside = np.abs(values - true) < 1.96 * errors
@@ -381,7 +383,7 @@ def test_payload_and_position_torque_load_the_joint(joint: jid.Joint) -> None:
     )
     dead = jid.simulate(joint, jid.OpenLoop(), push, payload=7.0)
     assert dead.truth.signals["link_torque"][0] == pytest.approx(7.0)
-    rough = joint.replace(harmonics=(3.0,)).with_parameters(
+    rough = joint.replace(model=joint.model.replace(harmonics=(3.0,))).with_parameters(
         {"position_cos_3": 0.0, "position_sin_3": 5.0}
     )
     held = jid.simulate(rough, jid.OpenLoop(), push, position=0.5).truth.signals

@@ -57,7 +57,9 @@ def scenario(joint: jid.Joint) -> jid.Scenario:
 
 @pytest.fixture(scope="module")
 def study(recording: jid.Recording, joint: jid.Joint) -> jid.Study:
-    return jid.sweep(recording, joint, grid=GRID, trials=3, seed=5, windows=200, truth=TRUTH)
+    return jid.sweep(
+        recording, joint, grid=GRID, trials=3, windows=200, truth=TRUTH, search=jid.Search(seed=5)
+    )
 
 
 class _AtOnce(Executor):
@@ -83,7 +85,9 @@ def test_a_row_is_what_identify_gives_with_its_seed(
         options = jid.GaOptions(
             population=cell["ga.population"], generations=cell["ga.generations"]
         )
-        estimate = jid.identify(recording, joint, ga=options, windows=200, seed=row.seed)
+        estimate = jid.identify(
+            recording, joint, windows=200, search=jid.Search(ga=options, seed=row.seed)
+        )
         assert row.seed == 5 + row.trial
         assert row.values == {n: p.value for n, p in estimate.parameters.items()}
         assert row.status == estimate.status
@@ -97,9 +101,13 @@ def test_other_methods_are_those_of_identify(
     recording: jid.Recording, joint: jid.Joint, method: str
 ) -> None:
     options = jid.GaOptions(population=20, generations=10)
-    found = jid.sweep(recording, joint, trials=2, method=method, ga=options, stderr=True)
+    found = jid.sweep(
+        recording, joint, trials=2, standard_errors=True, search=jid.Search(method, ga=options)
+    )
     for row in found.rows:
-        wanted = jid.identify(recording, joint, method=method, ga=options, seed=row.seed)
+        wanted = jid.identify(
+            recording, joint, search=jid.Search(method, ga=options, seed=row.seed)
+        )
         assert row.values == {n: p.value for n, p in wanted.parameters.items()}
         errors = {n: p.stderr for n, p in wanted.parameters.items() if p.stderr is not None}
         assert row.stderr == errors
@@ -110,7 +118,10 @@ def test_threads_and_executors_give_the_same_bits(
 ) -> None:
     again: dict[str, Any] = {"grid": GRID, "trials": 3, "seed": 5, "windows": 200}
     for threads in (1, 2, 7):
-        assert jid.sweep(recording, joint, threads=threads, **again).rows == study.rows
+        assert (
+            jid.sweep(recording, joint, search=jid.Search(threads=threads), **again).rows
+            == study.rows
+        )
     at_once = _AtOnce()
     assert jid.sweep(recording, joint, executor=at_once, **again).rows == study.rows
     assert at_once.parts > 0
@@ -135,9 +146,9 @@ def test_a_dask_cluster_of_processes_gives_the_same_bits(
             joint,
             grid=GRID,
             trials=3,
-            seed=5,
             windows=200,
             executor=client.get_executor(),
+            search=jid.Search(seed=5),
         )
     assert there.rows == jid.sweep(scenario, **simulated).rows
     assert grid.rows == study.rows
@@ -148,8 +159,8 @@ def test_a_scenario_is_simulated_anew_for_each_trial(scenario: jid.Scenario) -> 
         scenario,
         grid={"sensors.torque_noise": [0.0, 1.0], "truth.coulomb": [20.0, 30.0]},
         trials=2,
-        seed=3,
         tracking=True,
+        search=jid.Search(seed=3),
     )
     for row in study.rows:
         cell = study.cells[row.cell]
@@ -162,7 +173,7 @@ def test_a_scenario_is_simulated_anew_for_each_trial(scenario: jid.Scenario) -> 
             control_period=2e-3,
             seed=row.seed,
         )
-        estimate = jid.identify(recording, changed.joint, seed=row.seed)
+        estimate = jid.identify(recording, changed.joint, search=jid.Search(seed=row.seed))
         assert row.values == {n: p.value for n, p in estimate.parameters.items()}
         after = changed.simulate(row.seed, controllers=changed.believing(estimate.joint))
         assert row.tracking["after"] == after.error[0]
@@ -182,14 +193,16 @@ def test_presets_and_labelled_values_make_cells(
         scenario,
         grid={"trajectory": {"wide": scenario.trajectory, "slow": slow}},
         trials=1,
-        ga=jid.GaOptions(population=10, generations=5),
+        search=jid.Search(ga=jid.GaOptions(population=10, generations=5)),
     )
     assert [cell["trajectory"] for cell in found.cells] == ["wide", "slow"]
     assert found.rows[0].values != found.rows[1].values
     presets = jid.sweep(
         recording, joint, grid={"ga": ["default", "thesis"], "ga.generations": [5]}, trials=1
     )
-    text = jid.identify(recording, joint, ga=jid.GaOptions.thesis().replace(generations=5))
+    text = jid.identify(
+        recording, joint, search=jid.Search(ga=jid.GaOptions.thesis().replace(generations=5))
+    )
     assert presets.rows[1].values == {n: p.value for n, p in text.parameters.items()}
 
 
@@ -205,12 +218,14 @@ def test_a_loop_that_diverges_takes_no_other_trial_with_it(scenario: jid.Scenari
         }
     )
     options = jid.GaOptions(population=8, generations=5)
-    study = jid.sweep(edge, trials=16, ga=options)
+    study = jid.sweep(edge, trials=16, search=jid.Search(ga=options))
     refused = [row.trial for row in study.rows if row.status == "refused"]
     assert 0 < len(refused) < 16
     assert "not stable" in study.rows[refused[0]].message
     alone = [
-        jid.sweep(edge, trials=1, seed=t, ga=options).rows for t in range(16) if t not in refused
+        jid.sweep(edge, trials=1, search=jid.Search(ga=options, seed=t)).rows
+        for t in range(16)
+        if t not in refused
     ]
     kept = [row for row in study.rows if row.trial not in refused]
     assert [rows[0].values for rows in alone] == [row.values for row in kept]
@@ -224,7 +239,9 @@ def test_tracking_knows_what_a_controller_cannot_believe(scenario: jid.Scenario)
         tracking=True,
     )
     plain, general = study.rows
-    believed = scenario.joint.replace(friction="coulomb_viscous").with_parameters(
+    believed = scenario.joint.replace(
+        model=scenario.joint.model.replace(name="coulomb_viscous")
+    ).with_parameters(
         {
             name: plain.values[name]
             for name in ("coulomb", "viscous", "sensor_gain", "sensor_offset")
@@ -268,7 +285,9 @@ def test_a_dead_worker_is_told_with_what_was_done(
     assert whole.complete
     assert (
         whole.rows[:4]
-        == jid.sweep(recording, joint, grid={"windows": [50]}, trials=4, ga="thesis").rows
+        == jid.sweep(
+            recording, joint, grid={"windows": [50]}, trials=4, search=jid.Search(ga="thesis")
+        ).rows
     )
 
 
@@ -553,7 +572,9 @@ except jid.StudyInterruptedError as interrupted:
 @pytest.fixture(scope="module")
 def long_study(recording: jid.Recording, joint: jid.Joint) -> jid.Study:
     windows = list(range(50, 450, 10))
-    return jid.sweep(recording, joint, grid={"windows": windows}, trials=4, ga="thesis")
+    return jid.sweep(
+        recording, joint, grid={"windows": windows}, trials=4, search=jid.Search(ga="thesis")
+    )
 
 
 def _lines(path: Path) -> Iterator[str]:

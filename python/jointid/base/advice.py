@@ -53,7 +53,7 @@ class Action:
         """The action as a person at a Python prompt would write it."""
         if self.kind != "call":
             return f"{self.kind} {self.text}".rstrip()
-        shown = ", ".join(f"{name}={value!r}" for name, value in self.arguments.items())
+        shown = ", ".join(f"{name}={_written(value)}" for name, value in self.arguments.items())
         purpose = f" ({self.text})" if self.text else ""
         return f"{_VERB.get(self.function, self.function)} with {shown}{purpose}"
 
@@ -63,3 +63,13 @@ class Action:
 
 
 _VERB = {"compare_models": "compare", "Joint": "set the joint"}
+
+
+def _written(value: object) -> str:
+    """A value as Python writes it; an ellipsis stands for what only the user knows."""
+    if value is ...:
+        return "..."
+    if isinstance(value, Mapping):
+        inside = ", ".join(f"{key!r}: {_written(entry)}" for key, entry in value.items())
+        return f"{{{inside}}}"
+    return repr(value)

@@ -1,5 +1,6 @@
 """What a call was given is of the right kind, or one sentence says what would be."""
 
+import numbers
 import os
 from collections.abc import Mapping
 from pathlib import Path
@@ -27,6 +28,22 @@ def require_kind(what: str, value: object, *kinds: type) -> None:
     if not isinstance(value, kinds):
         names = " or ".join(kind.__name__ for kind in kinds)
         raise InputError(f"{_article(names)} is expected", argument=what, value=value)
+
+
+def whole_number(name: str, value: object, lowest: int, highest: int) -> int:
+    """A whole number within limits.
+
+    Raises
+    ------
+    InputError
+        Not a whole number, or outside.
+    """
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral):
+        raise InputError("a whole number is expected", argument=name, value=value)
+    number = int(value)
+    if not lowest <= number <= highest:
+        raise InputError(f"{lowest} to {highest} is expected", argument=name, value=number)
+    return number
 
 
 def _article(noun: str) -> str:

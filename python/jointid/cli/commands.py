@@ -51,8 +51,8 @@ def identify(arguments: argparse.Namespace) -> None:
     """Identify a joint from one recording or several."""
     from jointid._core import GaOptions
     from jointid.cli.progress import Progress
-    from jointid.comparison.model_spec import ModelSpec
     from jointid.identification import identification
+    from jointid.identification.search.search import Search
 
     changes = fixed_values(arguments)
     check_outputs(arguments)
@@ -62,9 +62,6 @@ def identify(arguments: argparse.Namespace) -> None:
         if getattr(arguments, name) is not None
     }
     options = GaOptions(**budget)
-    model: dict[str, Any] = {}
-    if arguments.model is not None:
-        model = ModelSpec.parse(arguments.model).arguments()
     joint = _joint(arguments)
     recordings = load_all(arguments.recordings, arguments)
     with Progress(total=options.generations, enabled=not arguments.quiet) as progress:
@@ -72,17 +69,19 @@ def identify(arguments: argparse.Namespace) -> None:
             recordings,
             joint,
             parameters=changes or None,
-            method=arguments.method,
-            ga=options,
+            model=arguments.model,
+            search=Search(
+                arguments.method,
+                ga=options,
+                seed=arguments.seed,
+                threads=arguments.threads,
+                callback=progress,
+                checkpoint=arguments.checkpoint,
+                resume=arguments.resume,
+            ),
             residual=arguments.residual,
             windows=arguments.windows,
             torque_hold=arguments.torque_hold,
-            seed=arguments.seed,
-            threads=arguments.threads,
-            callback=progress,
-            checkpoint=arguments.checkpoint,
-            resume=arguments.resume,
-            **model,
         )
     _write(estimate, arguments)
     print(estimate.to_json() if arguments.json else spoken(estimate.report()))
@@ -92,6 +91,7 @@ def compare(arguments: argparse.Namespace) -> None:
     """Compare models by how well they predict held-out motion."""
     from jointid.cli.progress import ComparisonProgress
     from jointid.comparison.comparison import compare_models
+    from jointid.identification.search.search import Search
 
     changes = fixed_values(arguments)
     check_outputs(arguments)
@@ -104,12 +104,10 @@ def compare(arguments: argparse.Namespace) -> None:
             models=arguments.models,
             folds=arguments.folds,
             parameters=changes or None,
-            method=arguments.method,
+            search=Search(arguments.method, seed=arguments.seed, threads=arguments.threads),
             residual=arguments.residual,
             windows=arguments.windows,
             torque_hold=arguments.torque_hold,
-            seed=arguments.seed,
-            threads=arguments.threads,
             callback=progress,
         )
     _write(comparison.estimate, arguments)

@@ -8,6 +8,7 @@ from pathlib import Path
 from jointid._core import Generation
 from jointid.estimate.estimate import Estimate
 from jointid.identification.identification import identify
+from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.recording.readers.loading import load
 
@@ -37,5 +38,5 @@ def demonstrate(callback: Callable[[Generation], bool | None] | None = None) -> 
     recording = load(folder / "kr300_joint1.csv.gz")
     joint = Joint.load(folder / "kr300_joint1.toml")
     return Demonstration(
-        estimate=identify(recording, joint, callback=callback), nominal=dict(NOMINAL)
+        estimate=identify(recording, joint, search=Search(callback=callback)), nominal=dict(NOMINAL)
     )

@@ -170,7 +170,7 @@ def scenario_of(joint_file: Path, arguments: argparse.Namespace) -> Scenario:
 def _controller(word: str, gains: Sequence[tuple[str, str]]) -> Controller:
     from jointid import _core
     from jointid.base.errors import InputError
-    from jointid.joint.parameters import suggestion
+    from jointid.joint.checks import suggestion
 
     if word not in CONTROLLERS:
         raise InputError(f"--controller '{word}' is not known; {suggestion(word, [*CONTROLLERS])}")

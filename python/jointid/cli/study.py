@@ -106,6 +106,7 @@ def sweep(arguments: argparse.Namespace) -> None:
     """Identify with many settings."""
     from jointid.base.errors import InputError
     from jointid.cli.progress import StudyProgress
+    from jointid.identification.search.search import Search
     from jointid.joint.joint import Joint
     from jointid.study import sweeping
 
@@ -118,7 +119,7 @@ def sweep(arguments: argparse.Namespace) -> None:
     fixed = fixed_values(arguments)
     options = {
         name: getattr(arguments, name)
-        for name in ("ga", "method", "model", "residual", "windows")
+        for name in ("model", "residual", "windows")
         if getattr(arguments, name) is not None
     }
     subject: Any
@@ -136,16 +137,20 @@ def sweep(arguments: argparse.Namespace) -> None:
             Joint.load(arguments.joint) if arguments.joint is not None else None,
             grid=_grid(arguments.grid),
             trials=arguments.trials,
-            seed=arguments.seed,
-            stderr=arguments.stderr,
+            search=Search(
+                arguments.method or "ga",
+                ga=arguments.ga or "default",
+                seed=arguments.seed,
+                threads=arguments.threads or 0,
+            ),
+            standard_errors=arguments.stderr,
             tracking=arguments.tracking,
             executor=executor,
-            threads=arguments.threads,
             callback=progress,
             output=arguments.output,
             resume=arguments.resume,
             **options,
-            **({"parameters": fixed} if fixed else {}),
+            parameters=fixed or None,
         )
     _write(study, arguments)
 

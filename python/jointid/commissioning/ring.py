@@ -19,6 +19,8 @@ from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.session.drive import Drive
 from jointid.hardware.session.session import Session
 from jointid.identification.identification import identify
+from jointid.identification.search.search import Search
+from jointid.joint.model import Model
 from jointid.recording.recording import Recording
 from jointid.simulation.arguments import Controller
 from jointid.simulation.scenario import believing
@@ -155,6 +157,7 @@ def commission(
     """
     if cycles < 1:
         raise InputError(f"cycles is {cycles}; at least 1 is expected")
+    search = Search(seed=seed, threads=threads)
     controller = believing(bench.controller, bench.joint)
     tell = callback if callback is not None else lambda _: None
     folder = None if output is None else Path(output)
@@ -185,7 +188,7 @@ def commission(
         for cycle in range(1, cycles + 1):
             tell(f"identify: cycle {cycle}")
             recordings = [each.recording for each in runs]
-            estimate = identify(recordings, bench.joint, seed=seed, threads=threads)
+            estimate = identify(recordings, bench.joint, search=search)
             estimates.append(estimate)
             if folder is not None:
                 estimate.save(folder / f"cycle_{cycle}.json")
@@ -195,9 +198,9 @@ def commission(
         if emulate:
             true_run = run("true parameters", believing(controller, true_joint(bench)))
     plain = None
-    if bench.joint.ripple:
+    if bench.joint.model.resolved.ripple:
         recordings = [each.recording for each in runs[: len(estimates)]]
-        plain = identify(recordings, bench.joint, ripple=(), seed=seed, threads=threads)
+        plain = identify(recordings, bench.joint, model=Model(ripple=()), search=search)
     truth = bench.emulation.truth if emulate and bench.emulation is not None else {}
     return Commissioning(
         runs=tuple(runs),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,12 +11,13 @@ import numpy as np
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.comparison.held_out import Fold, folds_by_block, folds_by_recording
-from jointid.comparison.model_spec import ModelSpec, specified
 from jointid.comparison.parsimony import judge, refusal
 from jointid.comparison.result import ComparedModel, Comparison
 from jointid.estimate.estimate import Estimate
 from jointid.identification.identification import identify
+from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
+from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
 from jointid.problem.problem import Windows, listed
 from jointid.recording.recording import Recording
@@ -41,27 +42,45 @@ class ComparisonStep:
     model: str
 
 
-def default_models() -> tuple[ModelSpec, ...]:
+def default_models() -> tuple[Model, ...]:
     """The models compared by default: Coulomb + viscous and Stribeck, each also asymmetric."""
-    return tuple(
-        ModelSpec(name, **options) for options in ({}, {"asymmetric": True}) for name in _MODELS
-    )
+    return tuple(Model(name, asymmetric=side or None) for side in (False, True) for name in _MODELS)
+
+
+def compared_models(models: object) -> tuple[Model, ...]:
+    """The models of a call: one or several, as `Model.of` takes them.
+
+    Raises
+    ------
+    InputError
+        None, something else, a model without a name, or the same model twice.
+    """
+    alone = isinstance(models, str | Model | Mapping)
+    if not alone and not isinstance(models, Iterable):
+        raise InputError("a list of models is expected", argument="models", value=models)
+    entries = tuple(Model.of(each) for each in ((models,) if alone else tuple(models)))  # type: ignore[arg-type]
+    if not entries:
+        raise InputError("give at least one, e.g. stribeck", argument="models", value=[])
+    for index, model in enumerate(entries):
+        if model.name is None:
+            raise InputError("a compared model needs a name", argument="models", value=str(model))
+        if model in entries[:index]:
+            raise InputError("it is given twice", argument="models", value=str(model))
+    return entries
 
 
 def compare_models(
     recordings: Recording | Sequence[Recording],
     joint: Joint | None = None,
     *,
-    models: str | ModelSpec | Sequence[Any] | None = None,
+    models: Model | str | Sequence[Any] | None = None,
     folds: int = 5,
     parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
-    method: str = "separable",
+    search: Search | str | None = None,
     residual: str | None = None,
     windows: Windows = None,
     torque_hold: str | None = None,
     mask_standstill: bool = True,
-    seed: int = 0,
-    threads: int = 0,
     callback: Callable[[ComparisonStep], object] | None = None,
 ) -> Comparison:
     """Compare friction models by how well they predict what they were not fitted to.
@@ -76,19 +95,18 @@ def compare_models(
     ----------
     recordings : Recording or sequence of Recording
     joint : Joint, optional
-        As in `identify`, but its friction model and its `asymmetric` are not used, and an asymmetric
+        As in `identify`, but its model's name and `asymmetric` are not used, and an asymmetric
         model takes no offset from it: asymmetric Coulomb friction holds one.
-    models : sequence, optional
-        Names, texts such as "coulomb_viscous:asymmetric", pairs (name, {option: value}) or `ModelSpec`;
-        options are keyword arguments of `identify`. Default: `default_models()`, less those that
-        cannot be told apart from an offset here; they are listed in `settings["left_out"]`.
+    models : sequence of Model, str or mapping, optional
+        Models or their texts, such as "coulomb_viscous:asymmetric". Default: `default_models()`, less those
+        that cannot be distinguished from an offset here; they are listed in `settings["left_out"]`.
     folds : int
         Blocks of one recording; of several recordings, groups at most.
     parameters : mapping, optional
         As in `identify`; for all models.
-    method : str
-        "separable" (default) or "ga", as in `identify`.
-    residual, torque_hold, mask_standstill, seed, threads
+    search : Search or str, optional
+        As in `identify`; default "separable".
+    residual, torque_hold, mask_standstill
         As in `identify`.
     windows : int, float, str or WindowOptions, optional
         As in `identify`; all models get the same, by default the shortest that one of them asks for.
@@ -107,25 +125,24 @@ def compare_models(
         Ctrl-C.
     """
     runs = listed(recordings)
-    specs = default_models() if models is None else specified(models)
+    specs = default_models() if models is None else compared_models(models)
     if isinstance(folds, bool) or not isinstance(folds, int | np.integer) or folds < 2:
-        raise InputError(f"folds is {folds!r}; a whole number from 2 on is expected")
+        raise InputError("a whole number from 2 on is expected", argument="folds", value=folds)
     parts = int(folds) if len(runs) == 1 else min(int(folds), len(runs))
+    chosen = Search.of(search, method="separable")
     fitter = _Fitter(
         joint=joint,
         common={
             "parameters": parameters,
-            "method": method,
+            "search": chosen,
             "residual": residual,
             "torque_hold": torque_hold,
             "mask_standstill": mask_standstill,
-            "seed": seed,
-            "threads": threads,
         },
         total=len(specs) * (1 + parts),
         callback=callback,
     )
-    whole: dict[ModelSpec, Estimate] = {}
+    whole: dict[Model, Estimate] = {}
     left_out: dict[str, str] = {}
     for spec in specs:
         try:
@@ -162,7 +179,7 @@ def compare_models(
             "folds": parts,
             "held_out": kind,
             "windows": duration,
-            "method": method,
+            "method": chosen.method,
             "residual": first.settings["residual"],
             "left_out": left_out,
         },
@@ -185,22 +202,22 @@ class _Fitter:
         self._done = 0
 
     def fit(
-        self, spec: ModelSpec, training: Sequence[Recording], windows: Windows, where: str = ""
+        self, spec: Model, training: Sequence[Recording], windows: Windows, where: str = ""
     ) -> Estimate:
-        arguments = {"asymmetric": False} | spec.arguments()
+        model = spec.over(Model(asymmetric=False))
         joint = self._joint
-        if joint is not None and joint.torque_offset and arguments["asymmetric"]:
+        if joint is not None and joint.torque_offset and model.asymmetric:
             joint = joint.replace(torque_offset=False)
         try:
-            estimate = identify(training, joint, windows=windows, **arguments, **self._common)
+            estimate = identify(training, joint, model=model, windows=windows, **self._common)
         except InputError as error:
-            raise InputError(f"model '{spec}'{where}: {error}") from error
+            raise error.at(f"model '{spec}'{where}") from error
         self._done += 1
         if self._callback is not None:
             self._callback(ComparisonStep(number=self._done, total=self.total, model=str(spec)))
         return estimate
 
-    def scores(self, spec: ModelSpec, splits: Sequence[Fold], windows: Windows) -> list[float]:
+    def scores(self, spec: Model, splits: Sequence[Fold], windows: Windows) -> list[float]:
         found = []
         for number, split in enumerate(splits, start=1):
             where = f", fold {number} of {len(splits)}"
@@ -208,7 +225,7 @@ class _Fitter:
             try:
                 found.append(split.residual(estimate))
             except InputError as error:
-                raise InputError(f"model '{spec}'{where}: {error}") from error
+                raise error.at(f"model '{spec}'{where}") from error
         return found
 
 
@@ -217,7 +234,7 @@ def _cumulative(windows: Windows) -> bool:
     return given or windows == "cumulative"
 
 
-def _row(spec: ModelSpec, estimate: Estimate, scores: Sequence[float]) -> ComparedModel:
+def _row(spec: Model, estimate: Estimate, scores: Sequence[float]) -> ComparedModel:
     told = refusal(estimate)
     return ComparedModel(
         model=str(spec),

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from html import escape
 from typing import Any
 
-from jointid.comparison.model_spec import ModelSpec
 from jointid.estimate.estimate import Estimate
+from jointid.joint.model import Model
 
 SCHEMA = 1
 """Raised when a reader of the old form would misread the new one."""
 
+_PLAIN = (
+    *("model", "parameters", "score", "stderr", "fold_scores", "penalty", "eligible", "reason"),
+)
 _HEAD = ("model", "parameters", "held-out residual", "± std. error", "penalty", "remark")
 
 
@@ -25,7 +28,7 @@ class ComparedModel:
     ----------
     model : str
         The model's text, e.g. "coulomb_viscous:asymmetric".
-    spec : ModelSpec
+    spec : Model
     parameters : int
         Free parameters, shape parameters included.
     score : float
@@ -42,7 +45,7 @@ class ComparedModel:
     """
 
     model: str
-    spec: ModelSpec
+    spec: Model
     parameters: int
     score: float
     stderr: float
@@ -117,10 +120,7 @@ class Comparison:
             "kind": "jointid comparison",
             "winner": self.winner,
             "reason": self.reason,
-            "rows": [
-                asdict(row) | {"spec": {"name": row.spec.name, "options": dict(row.spec.options)}}
-                for row in self.rows
-            ],
+            "rows": [_row(row) for row in self.rows],
             "settings": dict(self.settings),
             "estimate": json.loads(self.estimate.to_json()),
         }
@@ -151,3 +151,8 @@ class Comparison:
             )
             for row in self.rows
         ]
+
+
+def _row(row: ComparedModel) -> dict[str, Any]:
+    """A row, of JSON's types; the model as its fields."""
+    return {name: getattr(row, name) for name in _PLAIN} | {"spec": row.spec.stated()}

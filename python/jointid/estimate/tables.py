@@ -65,12 +65,7 @@ def quality(estimate: Estimate) -> list[tuple[str, str]]:
 
 def _model(estimate: Estimate) -> str:
     settings = estimate.settings
-    options = ["asymmetric"] if settings["asymmetric"] else []
-    options += ["load friction"] if settings["load_friction"] else []
-    for name in ("ripple", "harmonics"):
-        if settings[name]:
-            options.append(f"{name} of order {', '.join(f'{order:g}' for order in settings[name])}")
-    text = ", ".join([settings["model"], *options, f"residual of the {settings['residual']}"])
+    text = f"{settings['model']}, residual of the {settings['residual']}"
     return f"{text} (without {settings['dropped']})" if settings["dropped"] else text
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.argument_checks import whole_number
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.identification.conclusion import infer
@@ -18,9 +19,10 @@ from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Outcome
 from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
+from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
-from jointid.problem.problem import Problem, Windows, listed, whole_number
-from jointid.problem.terms import Request, TermChoice, choose_terms
+from jointid.problem.problem import Problem, Windows, listed
+from jointid.problem.terms import Request, choose_terms
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -70,13 +72,8 @@ class Prepared:
             "version": _core.__version__,
             "kind": runs[0].kind,
             "method": search.method,
-            "model": choice.model,
+            "model": str(choice.model.resolved),
             "terms": list(choice.terms),
-            "asymmetric": choice.asymmetric,
-            "ripple": list(choice.ripple),
-            "harmonics": list(choice.harmonics),
-            "load_friction": choice.load_friction,
-            "per_recording": list(choice.per_recording),
             "dropped": choice.dropped,
             "residual": choice.residual,
             "windows": penalty.window_duration,
@@ -84,7 +81,7 @@ class Prepared:
             "torque_hold": problem.torque_hold,
             "mask_standstill": problem.mask_standstill,
             "seed": search.seed,
-            "ga": None if search.method == "separable" else search.options.asdict(),
+            "ga": None if search.method == "separable" else search.genetic.asdict(),
             "bounds_from_data": list(self.domain.from_data),
             "recordings": [{"name": run.name, "fingerprint": run.fingerprint} for run in runs],
         }
@@ -110,14 +107,9 @@ class Prepared:
 
 def prepare(
     recordings: Recording | Sequence[Recording],
-    joint: Joint | None = None,
+    joint: Joint | None,
     *,
-    model: str | None = None,
-    asymmetric: bool | None = None,
-    ripple: Collection[float] | None = None,
-    harmonics: Collection[float] | None = None,
-    load_friction: bool | None = None,
-    per_recording: Collection[str] = (),
+    model: Model | str | Mapping[str, Any] | None = None,
     parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
     residual: str | None = None,
     windows: Windows = None,
@@ -133,26 +125,19 @@ def prepare(
         Anything that cannot be used, in one sentence.
     """
     runs = listed(recordings)
-    if joint is not None and not isinstance(joint, Joint):
-        raise InputError(
-            f"joint must be a Joint, got {joint!r}; read a file with jointid.Joint.load"
-        )
+    require_joint(joint)
     if not isinstance(mask_standstill, bool):
-        raise InputError(f"mask_standstill must be True or False, got {mask_standstill!r}")
-    request = Request(
-        model=model,
-        residual=residual,
-        asymmetric=asymmetric,
-        ripple=ripple,
-        harmonics=harmonics,
-        load_friction=load_friction,
-        per_recording=per_recording,
-    )
-    choice: TermChoice = choose_terms(runs, joint, request)
+        raise InputError(
+            "true or false is expected", argument="mask_standstill", value=mask_standstill
+        )
+    stated = Model.of(model)
+    if joint is not None:
+        joint = joint.replace(model=stated.over(joint.model))
+    request = Request(model=stated, residual=residual)
     problem = Problem(
         recordings=runs,
         joint=joint,
-        choice=choice,
+        choice=choose_terms(runs, joint, request),
         torque_hold=torque_hold,
         mask_standstill=mask_standstill,
         threads=whole_number("threads", threads, 0, 1024),
@@ -160,3 +145,11 @@ def prepare(
     penalty = problem.penalty(windows)
     domain = domain_for(penalty, joint, parameters, problem.peak_speed)
     return Prepared(problem=problem, penalty=penalty, domain=domain, windows=windows)
+
+
+def require_joint(joint: object) -> None:
+    """Refuse what is neither a joint nor None."""
+    if joint is not None and not isinstance(joint, Joint):
+        raise InputError(
+            "a Joint is expected; Joint.load reads one from a file", argument="joint", value=joint
+        )

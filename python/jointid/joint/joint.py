@@ -11,30 +11,26 @@ from typing import TYPE_CHECKING, Any, Literal, Self, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid import _core
+from jointid.base.advice import Action
 from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
-from jointid.joint.link import GravityCoefficients, Limits, Link
-from jointid.joint.parameters import (
-    FieldError,
-    Parameter,
+from jointid.joint.checks import (
     check_choice,
     check_flag,
     finite_number,
-    merge,
-    order_list,
-    parameter_table,
     positive_number,
     set_numbers,
     suggestion,
 )
+from jointid.joint.link import GravityCoefficients, Limits, Link
+from jointid.joint.model import Model
+from jointid.joint.parameters import Parameter, merge, parameter_table
 
 if TYPE_CHECKING:
     from jointid.recording.recording import Recording
 
 Kind = Literal["revolute", "prismatic"]
 TorqueHold = Literal["zoh", "linear"]
-Gravity = Literal["none", "known", "free"]
 
 # Two statements of the same inertia may differ by this share: printed values are rounded.
 _INERTIA_TOLERANCE = 1e-3
@@ -66,21 +62,11 @@ class Joint:
         How the torque lives between samples: held, or on a straight line. Default: not known.
     sensor : bool
         Whether the joint has a torque sensor. Default False.
-    friction : str
-        Name of the friction model. Default ``"coulomb_viscous"``.
-    gravity : {"none", "known", "free"}
-        Torque of gravity that the drive carries and no sensor sees: none, computed from `link`,
-        or to be identified. Default ``"none"``.
+    model : Model, str or mapping
+        Terms of the torque balance that the joint is known to have; as text, e.g. ``"stribeck:ripple=2"``.
+        Default: nothing stated.
     torque_offset : bool, optional
         Whether the torque has a constant offset. Default: only without a sensor.
-    asymmetric : bool
-        Whether friction differs between the two directions. Default False.
-    load_friction : bool
-        Whether friction grows with the transmitted torque. Default False.
-    ripple : tuple of float
-        Orders of torque ripple over the motor's angle, e.g. (2,). Default none.
-    harmonics : tuple of float
-        Orders of a torque over the joint's angle. Default none.
     link : Link, optional
     parameters : mapping of str to Parameter
         What is known of each parameter: values, bounds of the search. Default: nothing.
@@ -100,43 +86,40 @@ class Joint:
     torque_constant: float | None = None
     torque_hold: TorqueHold | None = None
     sensor: bool = False
-    friction: str = "coulomb_viscous"
-    gravity: Gravity = "none"
+    model: Model = field(default_factory=Model)
     torque_offset: bool | None = None
-    asymmetric: bool = False
-    load_friction: bool = False
-    ripple: tuple[float, ...] = ()
-    harmonics: tuple[float, ...] = ()
     link: Link | None = None
     parameters: Mapping[str, Parameter] = field(default_factory=dict, hash=False)
     limits: Limits = field(default_factory=Limits)
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
-            raise FieldError("joint", "name", f"is {self.name!r}; a text is expected")
+            raise InputError("a text is expected", argument="name", value=self.name, place="joint")
         if any("\ud800" <= letter <= "\udfff" for letter in self.name):
-            raise FieldError("joint", "name", f"is {self.name!r}, which no file can hold")
+            raise InputError("no file can hold it", argument="name", value=self.name, place="joint")
         owner = self._owner
         check_choice(owner, "kind", self.kind, get_args(Kind))
-        check_choice(owner, "friction", self.friction, _core.model_names())
-        check_choice(owner, "gravity", self.gravity, get_args(Gravity))
         if self.torque_hold is not None:
             check_choice(owner, "torque_hold", self.torque_hold, get_args(TorqueHold))
         set_numbers(self, owner, ("inertia", "rotor_inertia", "torque_constant"), positive_number)
         set_numbers(self, owner, ("gear_ratio",), finite_number)
         if self.gear_ratio == 0.0:
-            raise FieldError(owner, "gear_ratio", "is 0; 1 stands for a joint without a gear")
+            raise InputError(
+                "1 stands for a joint without a gear", argument="gear_ratio", value=0, place=owner
+            )
         check_flag(owner, "sensor", self.sensor)
         if self.torque_offset is not None:
             check_flag(owner, "torque_offset", self.torque_offset)
-        check_flag(owner, "asymmetric", self.asymmetric)
-        check_flag(owner, "load_friction", self.load_friction)
-        for orders in ("ripple", "harmonics"):
-            object.__setattr__(self, orders, order_list(owner, orders, getattr(self, orders)))
+        try:
+            object.__setattr__(self, "model", Model.of(self.model))
+        except InputError as error:
+            raise error.at(owner) from None
         if not isinstance(self.link, Link | None):
-            raise FieldError(owner, "link", f"is {self.link!r}; a Link is expected")
+            raise InputError("a Link is expected", argument="link", value=self.link, place=owner)
         if not isinstance(self.limits, Limits):
-            raise FieldError(owner, "limits", f"is {self.limits!r}; Limits are expected")
+            raise InputError(
+                "Limits are expected", argument="limits", value=self.limits, place=owner
+            )
         table = MappingProxyType(parameter_table(self.parameters))
         object.__setattr__(self, "parameters", table)
         self._check_inertia(owner)
@@ -152,22 +135,40 @@ class Joint:
         reflected = self.gear_ratio * self.gear_ratio * self.rotor_inertia
         product = f"gear_ratio² · rotor_inertia is {reflected:.6g}"
         if not math.isfinite(reflected) or reflected == 0.0:
-            raise FieldError(owner, "rotor_inertia", f"cannot be used: {product} kg·m²")
+            raise InputError(
+                f"it cannot be used: {product} kg·m²",
+                argument="rotor_inertia",
+                value=self.rotor_inertia,
+                place=owner,
+            )
         tolerance = _INERTIA_TOLERANCE * reflected
         if self.inertia is not None and abs(self.inertia - reflected) > tolerance:
-            sentence = f"is {self.inertia!r}, but {product}; give only one of the two"
-            raise FieldError(owner, "inertia", sentence)
+            raise InputError(
+                f"but {product}",
+                argument="inertia",
+                value=self.inertia,
+                place=owner,
+                remedy="give only one of the two",
+            )
 
     def _check_gravity(self, owner: str) -> None:
-        if self.gravity != "none" and self.kind == "prismatic":
-            sentence = (
-                f"is {self.gravity!r} on a prismatic joint, whose weight is the same everywhere; "
-                "use 'none' with torque_offset = true"
+        gravity = self.model.resolved.gravity
+        if gravity != "none" and self.kind == "prismatic":
+            raise InputError(
+                "the weight on a prismatic joint is the same everywhere",
+                argument="gravity",
+                value=gravity,
+                place=owner,
+                remedy="set gravity to none, and torque_offset to true",
             )
-            raise FieldError(owner, "gravity", sentence)
-        if self.gravity == "known" and self.link is None:
-            sentence = "is 'known', but there is no link; give its mass and centre_of_mass"
-            raise FieldError(owner, "gravity", sentence)
+        if gravity == "known" and self.link is None:
+            raise InputError(
+                "there is no link",
+                argument="gravity",
+                value=gravity,
+                place=owner,
+                remedy="give the link's mass and centre_of_mass",
+            )
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> "Joint":
@@ -210,7 +211,11 @@ class Joint:
         known = [item.name for item in fields(self)]
         for name in changes:
             if name not in known:
-                raise InputError(f"replace: '{name}' is no field; {suggestion(name, known)}")
+                raise InputError(
+                    f"a joint has no such field; {suggestion(name, known)}",
+                    argument=name,
+                    place="joint",
+                )
         return replace(self, **changes)
 
     def with_parameters(self, values: Mapping[str, float]) -> Self:
@@ -249,7 +254,12 @@ class Joint:
             The joint has no link.
         """
         if self.link is None:
-            raise InputError(f"{self._owner}: the torque of gravity needs a link; give one")
+            raise InputError(
+                "the torque of gravity needs a link",
+                argument="link",
+                place=self._owner,
+                remedy="give the link's mass and centre_of_mass",
+            )
         weight = self.link.mass * self.link.gravity * self.link.centre_of_mass
         return GravityCoefficients(
             cos=weight * math.cos(self.link.angle), sin=0.0 - weight * math.sin(self.link.angle)
@@ -280,13 +290,15 @@ class Joint:
             return recording.motor_torque * self.gear_ratio
         if recording.current is None:
             raise InputError(
-                "the recording has no signal 'torque', 'motor_torque' or 'current'; map one of "
-                "them with columns={'torque': ...}"
+                "the recording has no signal torque, motor_torque or current",
+                remedy=Action("call", {"columns": {"torque": ...}}, function="load"),
             )
         if self.torque_constant is None:
             raise InputError(
-                f"the recording has only 'current', and {self._owner} has no "
-                "torque_constant; give it in N·m/A, in the joint file under [drive]"
+                "the recording has only the current, and the joint has no torque constant",
+                argument="torque_constant",
+                place=self._owner,
+                remedy="give torque_constant in N·m/A, in the joint file under [drive]",
             )
         return recording.current * (self.torque_constant * self.gear_ratio)
 

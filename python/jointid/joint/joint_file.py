@@ -12,27 +12,21 @@ from jointid import _core
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
+from jointid.joint.checks import check_flag, check_parameter_name, suggestion
 from jointid.joint.joint import Joint
 from jointid.joint.link import Limits, Link
-from jointid.joint.parameters import (
-    FieldError,
-    Parameter,
-    check_flag,
-    check_parameter_name,
-    parameter_table,
-    suggestion,
-)
+from jointid.joint.model import FIELDS, Model
+from jointid.joint.parameters import Parameter, parameter_table
 from jointid.joint.toml_edit import update_table
 
-SCHEMA = 1
+SCHEMA = 2
 """Raised when a reader of the old form would misread the new one."""
 
 _TOP = ("schema", "name", "kind")
 _DRIVE = ("inertia", "rotor_inertia", "gear_ratio", "torque_constant", "torque_hold")
-_MODEL = (
-    *("friction", "gravity", "torque_offset"),
-    *("asymmetric", "load_friction", "ripple", "harmonics"),
-)
+# A model's fields; its name is that of the friction, as older files have it.
+_NAME = "friction"
+_MODEL = (_NAME, *FIELDS, "torque_offset")
 _KEYS: dict[str, tuple[str, ...]] = {
     "drive": _DRIVE,
     "model": _MODEL,
@@ -67,7 +61,11 @@ def save_joint(joint: Joint, path: str | os.PathLike[str]) -> None:
     """Write a joint file: see `Joint.save`."""
     place = require_path("path", path)
     if not place.parent.is_dir():
-        raise InputError(f"{place}: the folder '{place.parent}' does not exist; create it first")
+        raise InputError(
+            f"the folder '{place.parent}' does not exist",
+            place=str(place),
+            remedy="create it first",
+        )
     before = _text(place) if place.exists() else ""
     if before.strip():
         # Whatever is there is overwritten only when it is a joint file.
@@ -82,7 +80,7 @@ def joint_document(joint: Joint) -> dict[str, Any]:
         "name": joint.name,
         "kind": joint.kind,
         "drive": _known(joint, _DRIVE),
-        "model": _known(joint, _MODEL),
+        "model": _model_table(joint),
     }
     if joint.sensor:
         document["sensor"] = {"present": True}
@@ -121,25 +119,53 @@ def joint_from_document(document: Mapping[str, Any], source: str) -> Joint:
     arguments = {
         **{key: document[key] for key in _TOP[1:] if key in document},
         **tables["drive"],
-        **tables["model"],
+        **_model(tables["model"], source),
         "sensor": _sensor(document, tables["sensor"], source),
         "link": _link(document, tables["link"], source),
         "parameters": _parameters(tables["parameters"], source),
     }
     try:
         arguments["limits"] = Limits(**tables["limits"])
-    except FieldError as error:
+    except InputError as error:
         _refuse(source, "limits", error)
     try:
         return Joint(**arguments)
-    except FieldError as error:
+    except InputError as error:
         tables_of = {key: table for table in ("drive", "model") for key in _KEYS[table]}
-        _refuse(source, tables_of.get(error.field, ""), error)
+        own = error.argument in _TOP  # a model has a name, too
+        _refuse(source, "" if own else tables_of.get(error.argument, ""), error)
+
+
+def _model_table(joint: Joint) -> dict[str, Any]:
+    """Return the table [model]: what is stated, the name as that of the friction."""
+    stated = joint.model.stated()
+    table = {_NAME: stated.pop("name")} if "name" in stated else {}
+    return table | _listed(stated) | _known(joint, ("torque_offset",))
+
+
+def _model(table: dict[str, Any], source: str) -> dict[str, Any]:
+    """Return the arguments of a joint that the table [model] states."""
+    arguments = {"torque_offset": table.pop("torque_offset", None)}
+    name = table.pop(_NAME, None)
+    if name is not None and table.setdefault("name", name) != name:
+        raise InputError(
+            f"the model's name is stated twice, as name and as {_NAME}",
+            argument="name",
+            value=table["name"],
+            place=f"{source}: [model]",
+        )
+    try:
+        return arguments | {"model": Model.of(table)}
+    except InputError as error:
+        _refuse(source, "model", error)
 
 
 def _known(source: object, names: tuple[str, ...]) -> dict[str, Any]:
     """Return the attributes that are not None; TOML and JSON have lists for tuples."""
-    values = {name: getattr(source, name) for name in names}
+    return _listed({name: getattr(source, name) for name in names})
+
+
+def _listed(values: Mapping[str, Any]) -> dict[str, Any]:
     return {
         name: list(value) if isinstance(value, tuple) else value
         for name, value in values.items()
@@ -149,20 +175,29 @@ def _known(source: object, names: tuple[str, ...]) -> dict[str, Any]:
 
 def _check_schema(document: Mapping[str, Any], source: str) -> None:
     if "schema" not in document:
-        raise InputError(f"{source}: schema is missing; write schema = {SCHEMA} at the top")
+        raise InputError(
+            "it is missing",
+            argument="schema",
+            place=source,
+            remedy=f"write schema = {SCHEMA} at the top",
+        )
     schema = document["schema"]
     if isinstance(schema, bool) or not isinstance(schema, int) or schema < 1:
-        raise InputError(f"{source}: schema is {schema!r}; schema = {SCHEMA} is expected")
+        raise InputError(f"{SCHEMA} is expected", argument="schema", value=schema, place=source)
     if schema > SCHEMA:
         raise InputError(
-            f"{source}: schema is {schema}, this jointid reads up to {SCHEMA}; update jointid"
+            f"this jointid reads up to {SCHEMA}",
+            argument="schema",
+            value=schema,
+            place=source,
+            remedy="update jointid",
         )
 
 
 def _table(document: Mapping[str, Any], name: str, source: str) -> dict[str, Any]:
     table = document.get(name, {})
     if not isinstance(table, Mapping):
-        raise InputError(f"{source}: {name} is {table!r}; a table [{name}] is expected")
+        raise InputError(f"a table [{name}] is expected", argument=name, value=table, place=source)
     for key in table:
         if name != "parameters" and key not in _KEYS[name]:
             _refuse_key(source, name, key, _KEYS[name])
@@ -173,7 +208,7 @@ def _sensor(document: Mapping[str, Any], table: dict[str, Any], source: str) -> 
     present = table.get("present", "sensor" in document)
     try:
         check_flag("sensor", "present", present)
-    except FieldError as error:
+    except InputError as error:
         _refuse(source, "sensor", error)
     return bool(present)
 
@@ -183,10 +218,15 @@ def _link(document: Mapping[str, Any], table: dict[str, Any], source: str) -> Li
         return None
     for needed in ("mass", "centre_of_mass"):
         if needed not in table:
-            raise InputError(f"{source}: [link] has no {needed}; give it, or leave [link] out")
+            raise InputError(
+                "it is missing",
+                argument=needed,
+                place=f"{source}: [link]",
+                remedy="give it, or leave [link] out",
+            )
     try:
         return Link(**table)
-    except FieldError as error:
+    except InputError as error:
         _refuse(source, "link", error)
 
 
@@ -198,23 +238,30 @@ def _parameters(table: dict[str, Any], source: str) -> dict[str, Parameter]:
             check_parameter_name(name)
             place += f".{name}" if isinstance(entry, Mapping) else ""
             parameters |= parameter_table({name: entry})
-        except FieldError as error:
+        except InputError as error:
             _refuse(source, place, error)
     return parameters
 
 
-def _refuse(source: str, table: str, error: FieldError) -> NoReturn:
-    """Say what a constructor said, with the place in the file instead of the object."""
-    place = f"[{table}] " if table else ""
-    raise InputError(f"{source}: {place}{error.field} {error.sentence}") from error
+def _refuse(source: str, table: str, error: InputError) -> NoReturn:
+    """Raise what a constructor raised, with the place in the file instead of the object."""
+    raise InputError(
+        error.reason,
+        argument=error.argument,
+        value=error.value,
+        place=f"{source}: [{table}]" if table else source,
+        remedy=error.remedy,
+    ) from error
 
 
 def _refuse_key(source: str, table: str, key: str, known: tuple[str, ...]) -> NoReturn:
-    place = f"[{table}] " if table else ""
+    place = f"{source}: [{table}]" if table else source
     for other, keys in _KEYS.items():
         if key in keys:
-            raise InputError(f"{source}: {place}{key!r} does not belong here, but in [{other}]")
-    raise InputError(f"{source}: {place}{key!r} is unknown; {suggestion(key, known)}")
+            raise InputError(
+                f"it does not belong here, but in [{other}]", argument=key, place=place
+            )
+    raise InputError(f"there is no such key; {suggestion(key, known)}", argument=key, place=place)
 
 
 # --- Text ---
@@ -224,19 +271,21 @@ def _text(path: Path) -> str:
     try:
         content = path.read_bytes()
     except FileNotFoundError:
-        raise InputError(f"{path}: there is no such file; check the path") from None
+        raise InputError("there is no such file; check the path", place=str(path)) from None
     except IsADirectoryError:
         raise InputError(
-            f"{path}: this is a folder; the name of a joint file is expected"
+            "this is a folder; the name of a joint file is expected", place=str(path)
         ) from None
     except OSError as error:
-        raise InputError(f"{path}: the file cannot be read: {error.strerror}") from error
+        raise InputError(f"the file cannot be read: {error.strerror}", place=str(path)) from error
     try:
         return content.decode("utf-8-sig")  # some editors of Windows begin a file with a mark
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise InputError(
-            f"{path}, line {line}: this is no text in UTF-8; save the file as UTF-8"
+            "this is no text in UTF-8",
+            place=f"{path}, line {line}",
+            remedy="save the file as UTF-8",
         ) from None
 
 
@@ -244,13 +293,14 @@ def _parsed(text: str, path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except RecursionError:
-        raise InputError(f"{path}: not a joint file: it is nested too deeply") from None
+        raise InputError("not a joint file: it is nested too deeply", place=str(path)) from None
     except ValueError as error:  # mostly a TOMLDecodeError; numbers of 5000 digits are another
         reason, _, position = str(error).partition(" (at ")
         found = re.match(r"line (\d+)", position)
         line = int(found[1]) if found else text.rstrip().count("\n") + 1
         raise InputError(
-            f"{path}, line {line}: not TOML: {reason}; a joint file has lines like gear_ratio = 101"
+            f"not TOML: {reason}; a joint file has lines like gear_ratio = 101",
+            place=f"{path}, line {line}",
         ) from None
 
 
@@ -279,7 +329,7 @@ def _edited(before: str, joint: Joint, path: Path) -> str:
         except ValueError:
             continue
     raise InputError(
-        f"{path}: the layout of this file cannot be kept; save the joint as a new file"
+        "the layout of this file cannot be kept", place=str(path), remedy="save it as a new file"
     )
 
 

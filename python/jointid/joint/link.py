@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from jointid.joint.parameters import (
-    FieldError,
+from jointid.base.errors import InputError
+from jointid.joint.checks import (
     finite_number,
     not_negative,
     positive_number,
@@ -81,11 +81,19 @@ class Limits:
     def __post_init__(self) -> None:
         if self.position is not None:
             if not isinstance(self.position, list | tuple) or len(self.position) != 2:
-                sentence = f"is {self.position!r}; [lowest, highest] is expected"
-                raise FieldError("limits", "position", sentence)
+                raise InputError(
+                    "[lowest, highest] is expected",
+                    argument="position",
+                    value=self.position,
+                    place="limits",
+                )
             low, high = (finite_number("limits", "position", bound) for bound in self.position)
             if not low < high:
-                sentence = f"is [{low!r}, {high!r}]; the lower limit comes first, then the higher"
-                raise FieldError("limits", "position", sentence)
+                raise InputError(
+                    "the lower limit comes first, then the higher",
+                    argument="position",
+                    value=[low, high],
+                    place="limits",
+                )
             object.__setattr__(self, "position", (low, high))
         set_numbers(self, "limits", ("velocity", "torque", "current"), positive_number)

@@ -1,33 +1,19 @@
 """Parameters of a joint: value, bounds, free or fixed; tables of them, and how tables are merged."""
 
-import math
-import numbers
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.recording.signals import closest
-
-
-class FieldError(InputError):
-    """A field that cannot be used: whose, which, and what would be right.
-
-    A reader of files puts the place in the file where the owner stands.
-    """
-
-    def __init__(self, owner: str, field: str, sentence: str) -> None:
-        super().__init__(sentence, argument=field, place=owner)
-        self.owner = owner
-        self.field = field
-        self.sentence = sentence
-
-    def __str__(self) -> str:
-        return f"{self.owner}: {self.field} {self.sentence}"
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self.owner, self.field, self.sentence)
+from jointid.joint.checks import (
+    check_flag,
+    check_parameter_name,
+    finite_number,
+    is_number,
+    set_numbers,
+    suggestion,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,21 +51,32 @@ class Parameter:
         set_numbers(self, owner, ("value", "min", "max"), finite_number)
         check_flag(owner, "vary", self.vary)
         if self.min is not None and self.max is not None and self.min > self.max:
-            raise FieldError(owner, "min", f"is {self.min!r}, above max {self.max!r}; swap them")
+            raise InputError(
+                f"this is above max {self.max!r}",
+                argument="min",
+                value=self.min,
+                place=owner,
+                remedy="swap them",
+            )
         for bound, outside in (("min", "below"), ("max", "above")):
             limit = getattr(self, bound)
             if self.value is None or limit is None:
                 continue
             if self.value < limit if bound == "min" else self.value > limit:
-                raise FieldError(
-                    owner,
-                    "value",
-                    f"is {self.value!r}, {outside} {bound} {limit!r}; "
-                    f"give a value inside the bounds, or move {bound}",
+                raise InputError(
+                    f"this is {outside} {bound} {limit!r}",
+                    argument="value",
+                    value=self.value,
+                    place=owner,
+                    remedy=f"give a value inside the bounds, or move {bound}",
                 )
         if not self.vary and self.value is None:
-            raise FieldError(
-                owner, "vary", "is False, but there is no value to fix it at; give a value too"
+            raise InputError(
+                "there is no value to fix the parameter at",
+                argument="vary",
+                value=False,
+                place=owner,
+                remedy="give a value too",
             )
 
 
@@ -122,7 +119,7 @@ def merge(
         As in `parameter_table`; also when a change does not fit what it is laid over.
     """
     if not isinstance(changes, Mapping):
-        raise InputError(f"parameters is {changes!r}; a mapping from names is expected")
+        raise InputError("a mapping from names is expected", argument="parameters", value=changes)
     table = dict(base)
     for name, entry in changes.items():
         check_parameter_name(name)
@@ -141,105 +138,25 @@ def _stated(name: str, entry: object) -> dict[str, Any]:
     """Return the fields that an entry of a table states."""
     if isinstance(entry, Parameter):
         if entry.name != name:
-            raise FieldError("parameters", f"'{name}'", f"holds the parameter '{entry.name}'")
+            raise InputError(
+                f"it holds the parameter '{entry.name}'", argument=name, place="parameters"
+            )
         return {key: value for key, value in _fields(entry).items() if value is not None}
     if isinstance(entry, Mapping):
         known = [field.name for field in fields(Parameter) if field.name != "name"]
         for key in entry:
             if key not in known:
-                owner = f"parameter '{name}'"
-                raise FieldError(owner, repr(key), f"is no field; {suggestion(key, known)}")
+                raise InputError(
+                    f"a parameter has no such field; {suggestion(key, known)}",
+                    argument=str(key),
+                    place=f"parameter '{name}'",
+                )
         return dict(entry)
     if is_number(entry):
         return {"value": finite_number("parameters", name, entry), "vary": False}
-    raise FieldError(
-        "parameters",
-        name,
-        f"is {entry!r}; a number (it fixes the parameter) or a table of value, min, max and vary "
-        "is expected",
+    raise InputError(
+        "a number (it fixes the parameter) or a table of value, min, max and vary is expected",
+        argument=name,
+        value=entry,
+        place="parameters",
     )
-
-
-def check_parameter_name(name: object) -> None:
-    """Refuse what is no parameter's name, with a suggestion."""
-    known = _core.parameter_names()
-    if not isinstance(name, str) or not _core.is_parameter(name):
-        raise FieldError("parameters", repr(name), f"is no parameter; {suggestion(name, known)}")
-
-
-def suggestion(name: object, known: Collection[str]) -> str:
-    """Return what would be right instead of an unknown name: the nearest, or all."""
-    close = closest(name, known)
-    return f"did you mean '{close}'?" if close else f"known are {', '.join(known)}"
-
-
-def is_number(value: object) -> bool:
-    """Return whether this is a real number; True and False are none."""
-    return isinstance(value, numbers.Real) and not isinstance(value, bool)
-
-
-def finite_number(owner: str, field: str, value: Any) -> float:
-    """Return a field's value as a float, or refuse it."""
-    if not is_number(value):
-        raise FieldError(owner, field, f"is {value!r}; a number is expected")
-    try:
-        number = float(value)
-    except OverflowError:
-        number = math.inf
-    if not math.isfinite(number):
-        # NOTE: no repr here: an integer too large for a float is too long to show.
-        raise FieldError(owner, field, f"is {number}; a finite number is expected")
-    return number
-
-
-def order_list(owner: str, field: str, value: Any) -> tuple[float, ...]:
-    """Return the orders of harmonics as a tuple of different positive numbers, or refuse them."""
-    if isinstance(value, str | bytes) or not isinstance(value, Collection):
-        raise FieldError(owner, field, f"is {value!r}; a list of orders like [2] is expected")
-    orders = tuple(finite_number(owner, field, order) for order in value)
-    if any(order <= 0.0 for order in orders) or len(set(orders)) < len(orders):
-        sentence = f"is {list(value)!r}; different orders above 0 are expected, like [2]"
-        raise FieldError(owner, field, sentence)
-    return orders
-
-
-def check_flag(owner: str, field: str, value: object) -> None:
-    """Refuse what is neither True nor False."""
-    if not isinstance(value, bool):
-        raise FieldError(owner, field, f"is {value!r}; true or false is expected")
-
-
-def positive_number(owner: str, field: str, value: object) -> float:
-    """Return a field's value as a float, or refuse it."""
-    number = finite_number(owner, field, value)
-    if number <= 0.0:
-        raise FieldError(
-            owner, field, f"is {number!r}; more than 0 is expected, leave it out when not known"
-        )
-    return number
-
-
-def check_choice(owner: str, field: str, value: object, known: Collection[str]) -> None:
-    """Refuse what is none of the known words."""
-    if value not in known:
-        raise FieldError(
-            owner, field, f"is {value!r}, which is unknown; {suggestion(value, known)}"
-        )
-
-
-def not_negative(owner: str, field: str, value: object) -> float:
-    """Return a field's value as a float, or refuse it."""
-    number = finite_number(owner, field, value)
-    if number < 0.0:
-        raise FieldError(owner, field, f"is {number!r}; 0 or more is expected")
-    return number
-
-
-def set_numbers(
-    instance: Any, owner: str, names: Collection[str], convert: Callable[[str, str, object], float]
-) -> None:
-    """Turn fields of a frozen instance into checked floats; None stays where it is the default."""
-    for field in fields(instance):
-        value = getattr(instance, field.name)
-        if field.name in names and not (value is None and field.default is None):
-            object.__setattr__(instance, field.name, convert(owner, field.name, value))

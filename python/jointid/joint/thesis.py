@@ -2,6 +2,7 @@
 
 from jointid.joint.joint import Joint
 from jointid.joint.link import Limits, Link
+from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
 
 
@@ -28,8 +29,8 @@ def thesis_joint() -> Joint:
         torque_constant=0.198,
         torque_hold="zoh",
         sensor=True,
-        friction="stribeck",
-        gravity="none",  # behind the sensor, which measures it with the link's torque
+        # Gravity acts behind the sensor, which measures it with the link's torque.
+        model=Model("stribeck", gravity="none"),
         link=link,
         parameters={
             name: Parameter(name=name, min=low, max=high) for name, (low, high) in domain.items()

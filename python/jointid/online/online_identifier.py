@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import weakref
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from jointid.base.errors import InputError
 from jointid.estimate.student import quantile
 from jointid.joint.joint import Joint
+from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
 from jointid.online.online_estimate import OnlineEstimate
 from jointid.online.samples import checked
@@ -49,7 +50,7 @@ class OnlineIdentifier:
     update : float
         Time between estimates, and the stretch that is forgotten at once [s], rounded up to a whole
         number of integration windows; default 0.5.
-    model, asymmetric, ripple, harmonics, load_friction, residual, parameters, torque_hold, mask_standstill
+    model, residual, parameters, torque_hold, mask_standstill
         As for `identify`; of the models those with at most one shape.
     windows : float, optional
         Duration of an integration window [s]; more than two a parameter must fit into `window`.
@@ -78,11 +79,7 @@ class OnlineIdentifier:
         *,
         window: float = 30.0,
         update: float = 0.5,
-        model: str | None = None,
-        asymmetric: bool | None = None,
-        ripple: Collection[float] | None = None,
-        harmonics: Collection[float] | None = None,
-        load_friction: bool | None = None,
+        model: Model | str | Mapping[str, Any] | None = None,
         residual: str | None = None,
         parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
         windows: float | None = None,
@@ -91,20 +88,12 @@ class OnlineIdentifier:
         callback: Callable[[OnlineEstimate], object] | None = None,
     ) -> None:
         if callback is not None and not callable(callback):
-            raise InputError(f"callback must be callable, got {callback!r}")
+            raise InputError("a function is expected", argument="callback", value=callback)
         self._settings = Settings(
             joint=joint,
             window=window,
             update=update,
-            request=Request(
-                model=model,
-                residual=residual,
-                asymmetric=asymmetric,
-                ripple=ripple,
-                harmonics=harmonics,
-                load_friction=load_friction,
-                per_recording=(),
-            ),
+            request=Request(model=Model.of(model), residual=residual),
             parameters=parameters,
             windows=windows,
             torque_hold=torque_hold,

@@ -1,4 +1,4 @@
-"""What an on-line identification is told, and whether it can be."""
+"""Settings of an on-line identification, checked before the first sample."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from jointid.base.errors import InputError
+from jointid.identification.prepared import require_joint
 from jointid.identification.search.domain import parameter_bounds
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
@@ -21,7 +22,7 @@ from jointid.recording.recording import Recording
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Settings:
-    """What an on-line identification is told; see `OnlineIdentifier`.
+    """Settings of an on-line identification; see `OnlineIdentifier`.
 
     Raises
     ------
@@ -39,22 +40,27 @@ class Settings:
     mask_standstill: bool
 
     def __post_init__(self) -> None:
-        if self.joint is not None and not isinstance(self.joint, Joint):
-            raise InputError(f"joint must be a Joint, got {self.joint!r}")
+        require_joint(self.joint)
+        if self.joint is not None:
+            model = self.request.model.over(self.joint.model)
+            object.__setattr__(self, "joint", self.joint.replace(model=model))
         for name in ("window", "update", "windows"):
             _check_duration(name, getattr(self, name), optional=name == "windows")
         if self.window < 4.0 * self.update:
             raise InputError(
-                f"window must be at least four times update, got {self.window:g} and {self.update:g} s"
+                f"at least four times update, {self.update:g} s, is expected",
+                argument="window",
+                value=self.window,
             )
         if isinstance(self.windows, numbers.Integral):
             raise InputError(
-                f"windows is the whole number {self.windows}; on-line it is the duration of a window in seconds, "
-                "like 0.02"
+                "on line it is the duration of a window in seconds, like 0.02",
+                argument="windows",
+                value=self.windows,
             )
         if not isinstance(self.mask_standstill, bool):
             raise InputError(
-                f"mask_standstill is {self.mask_standstill!r}; True or False is expected"
+                "true or false is expected", argument="mask_standstill", value=self.mask_standstill
             )
         check_torque_hold(self.torque_hold)
         self._check_terms()
@@ -101,14 +107,20 @@ class Settings:
 
     def _check_terms(self) -> None:
         """Refuse what no samples could make right; whether there is a sensor is known only with them."""
-        if self.request.load_friction not in (None, True, False):
-            raise InputError(f"load_friction is {self.request.load_friction!r}; give True or False")
-        if self.request.asymmetric not in (None, True, False):
-            raise InputError(f"asymmetric is {self.request.asymmetric!r}; give True or False")
-        chosen = self.request.model or (self.joint.friction if self.joint is not None else None)
-        if chosen == "stribeck_general":
+        model = self.request.model
+        chosen = (model if self.joint is None else self.joint.model).resolved
+        if chosen.name == "stribeck_general":
             raise InputError(
-                "model 'stribeck_general' has two shapes, which is too much between two samples; use 'stribeck' on-line"
+                "its two shapes are too many to search between two samples",
+                argument="model",
+                value=chosen.name,
+                remedy="use the model stribeck on line",
+            )
+        if chosen.per_recording:
+            raise InputError(
+                "there is one recording on line",
+                argument="per_recording",
+                value=list(chosen.per_recording),
             )
         with_sensor = ("time", "position", "torque", "sensor")
         if self.joint is not None:
@@ -124,9 +136,11 @@ def _check_duration(name: str, value: object, *, optional: bool) -> None:
     if optional and value is None:
         return
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise InputError(f"{name} is {value!r}; a duration in seconds is expected")
+        raise InputError("a duration in seconds is expected", argument=name, value=value)
     if not 0.0 < float(value) < float("inf"):
-        raise InputError(f"{name} must be above 0 and finite [s], got {value!r}")
+        raise InputError(
+            "a duration above 0 and finite [s] is expected", argument=name, value=value
+        )
 
 
 def _rehearsal(signals: tuple[str, ...], kind: str) -> Recording:

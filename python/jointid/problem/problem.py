@@ -221,22 +221,6 @@ def _options(windows: int | float | _core.WindowOptions | None) -> _core.WindowO
     return _core.WindowOptions(duration=float(windows))
 
 
-def whole_number(name: str, value: object, lowest: int, highest: int) -> int:
-    """A whole number within limits.
-
-    Raises
-    ------
-    InputError
-        Not a whole number, or outside.
-    """
-    if isinstance(value, bool) or not isinstance(value, numbers.Integral):
-        raise InputError(f"{name} must be a whole number, got {value!r}")
-    number = int(value)
-    if not lowest <= number <= highest:
-        raise InputError(f"{name} must be {lowest} to {highest}, got {number}")
-    return number
-
-
 def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]:
     """One recording or several, checked.
 

@@ -1,12 +1,14 @@
-"""Which terms the torque balance of a joint has, told from the joint, the recordings and the call."""
+"""Which terms the torque balance of a joint has: from the joint, the recordings and the call."""
 
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 from jointid import _core
-from jointid.base.errors import InputError, shown
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
+from jointid.joint.checks import check_choice
 from jointid.joint.joint import Joint
-from jointid.joint.parameters import order_list
+from jointid.joint.model import Model
 from jointid.recording.recording import Recording
 
 _GRAVITY = ("gravity_cos", "gravity_sin")
@@ -15,15 +17,18 @@ _SENSOR = ("sensor_gain", "sensor_offset")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
-    """What a call asks of the model; None leaves it to the joint."""
+    """What a call asks of the torque balance.
 
-    model: str | None = None
+    Attributes
+    ----------
+    model : Model
+        Goes over the joint's, field by field.
+    residual : str or None
+        "sensor" or "torque"; None: the sensor where there is one.
+    """
+
+    model: Model = field(default_factory=Model)
     residual: str | None = None
-    asymmetric: bool | None = None
-    ripple: Collection[float] | None = None
-    harmonics: Collection[float] | None = None
-    load_friction: bool | None = None
-    per_recording: Collection[str] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,27 +39,80 @@ class TermChoice:
     ----------
     terms : tuple of str
         Keys of the core's terms.
+    model : Model
+        The call's over the joint's; its name is stated.
     dropped : str
         A term that another one makes superfluous, and why; empty if none.
     """
 
     terms: tuple[str, ...]
-    model: str
+    model: Model
     residual: str
     sensor: bool
-    asymmetric: bool = False
-    ripple: tuple[float, ...] = ()
-    harmonics: tuple[float, ...] = ()
-    load_friction: bool = False
-    per_recording: tuple[str, ...] = ()
     gear_ratio: float = 1.0
     dropped: str = ""
 
+    @property
+    def per_recording(self) -> tuple[str, ...]:
+        """Coefficients that each recording has for itself."""
+        return self.model.resolved.per_recording
 
-def _known(name: str, known: Sequence[str], what: str) -> str:
-    if name not in known:
-        raise InputError(f"{what} '{name}' is not known; known are {', '.join(known)}")
-    return name
+
+def choose_terms(
+    recordings: Sequence[Recording], joint: Joint | None, request: Request
+) -> TermChoice:
+    """Terms of the torque balance: inertia, friction, then gravity, offset, harmonics and sensor.
+
+    Raises
+    ------
+    InputError
+        A sensor residual without a sensor; terms that cannot be told apart; a coefficient of
+        `per_recording` that is not among the terms.
+    """
+    base = joint if joint is not None else Joint()
+    stated = request.model.over(base.model)
+    model = stated.resolved
+    _check_kind(recordings, joint)
+    sensor = _has_sensor(recordings, joint)
+    residual = request.residual or ("sensor" if sensor else "torque")
+    check_choice("", "residual", residual, ("sensor", "torque"))
+    if residual == "sensor" and not sensor:
+        raise InputError(
+            "the recording has no torque sensor",
+            argument="residual",
+            value=residual,
+            remedy=Action("call", {"residual": "torque"}),
+        )
+    if model.ripple and joint is None:
+        raise InputError(
+            "its orders count turns of the motor: give a joint with its gear_ratio",
+            argument="ripple",
+            value=list(model.ripple),
+        )
+    if model.gravity != "none" and joint is None and model.gravity == "known":
+        raise InputError(
+            "there is no joint whose link is known", argument="gravity", value=model.gravity
+        )
+    offset, dropped = _offset(base, model.asymmetric, sensor)
+    friction = next(entry for entry in _core.models() if entry.name == model.name)
+    wanted = {"inertia", *_friction(friction.terms, model.asymmetric)}
+    wanted.update(_GRAVITY if model.gravity != "none" else ())
+    wanted.update(_SENSOR if sensor else ())
+    wanted.update(("load_friction",) if model.load_friction else ())
+    wanted.update(("torque_offset",) if offset else ())
+    terms = _ordered(wanted, model.ripple, model.harmonics)
+    _check_per_recording(model.per_recording, terms)
+    several = len(recordings) > 1
+    return TermChoice(
+        terms=terms,
+        model=stated.replace(
+            name=model.name, per_recording=stated.per_recording if several else None
+        ),
+        residual=residual,
+        sensor=sensor,
+        gear_ratio=base.gear_ratio,
+        dropped=dropped,
+    )
 
 
 def _check_kind(recordings: Sequence[Recording], joint: Joint | None) -> None:
@@ -72,74 +130,13 @@ def _has_sensor(recordings: Sequence[Recording], joint: Joint | None) -> bool:
         for number, recording in enumerate(recordings):
             if recording.sensor is None:
                 raise InputError(
-                    f"joint '{joint.name}' has a torque sensor, but recording {number} has no signal "
-                    "'sensor'; map it with columns={'sensor': ...}, or drop [sensor] from the joint"
+                    f"joint '{joint.name}' has a torque sensor, but recording {number} has no signal sensor",
+                    remedy=(
+                        Action("call", {"columns": {"sensor": ...}}, function="load"),
+                        "drop [sensor] from the joint",
+                    ),
                 )
     return joint.sensor
-
-
-def choose_terms(
-    recordings: Sequence[Recording], joint: Joint | None, request: Request
-) -> TermChoice:
-    """Terms of the torque balance: inertia, friction, then gravity, offset, harmonics and sensor.
-
-    Raises
-    ------
-    InputError
-        An unknown model or residual; a sensor residual without a sensor; collinear terms.
-    """
-    models = {entry.name: entry for entry in _core.models()}
-    base = joint if joint is not None else Joint()
-    name = _known(request.model or base.friction, tuple(models), "model")
-    _check_kind(recordings, joint)
-    sensor = _has_sensor(recordings, joint)
-    residual = request.residual or ("sensor" if sensor else "torque")
-    compared = _known(residual, ("sensor", "torque"), "residual")
-    if compared == "sensor" and not sensor:
-        raise InputError(
-            "residual 'sensor' needs a torque sensor in the recording; use residual='torque'"
-        )
-    choice = TermChoice(
-        terms=(),
-        model=name,
-        residual=compared,
-        sensor=sensor,
-        asymmetric=base.asymmetric if request.asymmetric is None else bool(request.asymmetric),
-        ripple=_orders("ripple", request.ripple, base.ripple),
-        harmonics=_orders("harmonics", request.harmonics, base.harmonics),
-        load_friction=base.load_friction
-        if request.load_friction is None
-        else bool(request.load_friction),
-        per_recording=_shared_not(request.per_recording) if len(recordings) > 1 else (),
-        gear_ratio=base.gear_ratio,
-    )
-    if choice.ripple and joint is None:
-        raise InputError("ripple counts turns of the motor: give a joint with its gear_ratio")
-    offset, dropped = _offset(base, choice)
-    wanted = {"inertia", *_friction(models[name].terms, choice.asymmetric)}
-    wanted.update(_GRAVITY if base.gravity != "none" else ())
-    wanted.update(_SENSOR if sensor else ())
-    wanted.update(("load_friction",) if choice.load_friction else ())
-    wanted.update(("torque_offset",) if offset else ())
-    if base.gravity != "none" and 1.0 in choice.harmonics:
-        raise InputError(
-            "harmonics: order 1 over the joint's angle is what gravity is; drop it, or set gravity = 'none'"
-        )
-    return replace(choice, terms=_ordered(wanted, choice), dropped=dropped)
-
-
-def _orders(
-    name: str, asked: Collection[float] | None, known: tuple[float, ...]
-) -> tuple[float, ...]:
-    return known if asked is None else order_list("identify", name, asked)
-
-
-def _shared_not(names: object) -> tuple[str, ...]:
-    if isinstance(names, str) or not isinstance(names, Collection):
-        raise InputError(
-            f"per_recording is {shown(names)}; a list of names like ('sensor_offset',) is expected"
-        )
-    return tuple(names)
 
 
 def _friction(terms: Sequence[str], asymmetric: bool) -> list[str]:
@@ -148,32 +145,55 @@ def _friction(terms: Sequence[str], asymmetric: bool) -> list[str]:
     return [f"{term}_{side}" for term in terms for side in ("positive", "negative")]
 
 
-def _offset(joint: Joint, choice: TermChoice) -> tuple[bool, str]:
-    """Whether the torque has an offset of its own, and what is said when it has not."""
-    if choice.sensor:
+def _offset(joint: Joint, asymmetric: bool, sensor: bool) -> tuple[bool, str]:
+    """Whether the torque has an offset of its own, and what is reported when it has not."""
+    if sensor:
         if joint.torque_offset:
             raise InputError(
-                "torque_offset and sensor_offset are the same constant and cannot both be identified; "
-                "set torque_offset = false in the joint's [model]"
+                "torque_offset and sensor_offset are the same constant and cannot both be identified",
+                argument="torque_offset",
+                value=True,
+                remedy=Action("call", {"torque_offset": False}, function="Joint"),
             )
         return False, ""
-    if choice.asymmetric:
+    if asymmetric:
         if joint.torque_offset:
             raise InputError(
-                "torque_offset and asymmetric Coulomb friction are the same where the joint moves; set torque_offset = "
-                "false in the joint's [model], or asymmetric=False"
+                "torque_offset and asymmetric Coulomb friction are the same where the joint moves",
+                argument="torque_offset",
+                value=True,
+                remedy=(
+                    Action("call", {"torque_offset": False}, function="Joint"),
+                    "leave out asymmetric",
+                ),
             )
         return False, "torque_offset: asymmetric Coulomb friction holds it"
     return joint.torque_offset is not False, ""
 
 
-def _ordered(wanted: set[str], choice: TermChoice) -> tuple[str, ...]:
+def _ordered(
+    wanted: set[str], ripple: tuple[float, ...], harmonics: tuple[float, ...]
+) -> tuple[str, ...]:
     """Keys in the core's order; a family's row gives way to its orders."""
-    orders = {"ripple": choice.ripple, "position": choice.harmonics}
+    orders = {"ripple": ripple, "position": harmonics}
     keys: list[str] = []
+    known = {term.key for term in _core.terms()}
+    for key in sorted(wanted - known):
+        raise InputError("the core has no such term", argument="model", value=key)
     for term in _core.terms():
         if term.family:
             keys += [f"{term.key}_{order:g}" for order in orders[term.key.split("_")[0]]]
         elif term.key in wanted:
             keys.append(term.key)
     return tuple(keys)
+
+
+def _check_per_recording(names: tuple[str, ...], terms: tuple[str, ...]) -> None:
+    known = [_core.term(key).name for key in terms]
+    for name in names:
+        if name not in known and name not in terms:
+            raise InputError(
+                f"{name} is not among the terms; there are {', '.join(known)}",
+                argument="per_recording",
+                value=list(names),
+            )

@@ -7,9 +7,9 @@ from typing import Any
 from jointid import _core
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
+from jointid.joint.checks import not_negative, positive_number, set_numbers
 from jointid.joint.joint import Joint
 from jointid.joint.link import Link
-from jointid.joint.parameters import not_negative, positive_number, set_numbers
 
 _DECAY = {"coulomb_viscous": "none", "stribeck": "gaussian", "stribeck_general": "general"}
 
@@ -63,7 +63,7 @@ class Values:
 
     def both(self, name: str) -> tuple[float, float]:
         """Return a friction coefficient for positive and negative velocity."""
-        if self._joint.asymmetric:
+        if self._joint.model.resolved.asymmetric:
             return self.need(f"{name}_positive"), self.need(f"{name}_negative")
         value = self.need(name)
         return value, value
@@ -79,13 +79,18 @@ def simulated_joint(
     InputError
         A value that the simulation needs is missing or cannot be.
     """
-    decay = _DECAY[joint.friction]
+    decay = _DECAY[joint.model.resolved.name]
     coulomb, viscous = values.both("coulomb"), values.both("viscous")
     static = (0.0, 0.0) if decay == "none" else values.both("static")
     revolute = joint.kind == "revolute"
     inertia, link_inertia = _inertias(joint, values)
     weights = []
-    if joint.link is not None and revolute and joint.sensor and joint.gravity == "none":
+    if (
+        joint.link is not None
+        and revolute
+        and joint.sensor
+        and joint.model.resolved.gravity == "none"
+    ):
         weights.append(_weight(joint.link))
     load = 0.0
     if isinstance(payload, Link):
@@ -96,7 +101,7 @@ def simulated_joint(
         load = payload
     harmonics = [
         (order, values.need(f"position_cos_{order:g}"), values.need(f"position_sin_{order:g}"))
-        for order in joint.harmonics
+        for order in joint.model.resolved.harmonics
     ]
     turned = math.copysign(1.0, joint.gear_ratio)
     harmonics += [
@@ -105,12 +110,12 @@ def simulated_joint(
             values.need(f"ripple_cos_{order:g}"),
             turned * values.need(f"ripple_sin_{order:g}"),
         )
-        for order in joint.ripple
+        for order in joint.model.resolved.ripple
     ]
-    if joint.gravity == "known":
+    if joint.model.resolved.gravity == "known":
         known = joint.gravity_coefficients
         harmonics.append((1.0, known.cos, known.sin))
-    elif joint.gravity == "free":
+    elif joint.model.resolved.gravity == "free":
         harmonics.append((1.0, values.need("gravity_cos"), values.need("gravity_sin")))
     limit = torque_limit(joint)
     return _core.SimulatedJoint(
@@ -129,7 +134,7 @@ def simulated_joint(
         stribeck=values.need("stribeck") if decay == "gaussian" else 0.0,
         stribeck_velocity=values.need("stribeck_velocity") if decay == "general" else 1.0,
         stribeck_exponent=values.need("stribeck_exponent") if decay == "general" else 1.0,
-        load_friction=values.need("load_friction") if joint.load_friction else 0.0,
+        load_friction=values.need("load_friction") if joint.model.resolved.load_friction else 0.0,
         bristles=bristle is not None,
         bristle_stiffness=0.0 if bristle is None else bristle.stiffness,
         bristle_damping=0.0 if bristle is None else bristle.damping,
@@ -170,7 +175,7 @@ def control_estimates(joint: Joint) -> dict[str, Any]:
         A value is missing, or the friction model is one that no controller has.
     """
     require_kind("joint", joint, Joint)
-    if joint.friction == "stribeck_general":
+    if joint.model.resolved.name == "stribeck_general":
         raise InputError(
             "controllers compensate the friction models 'coulomb_viscous' and 'stribeck', not "
             "'stribeck_general'; identify with model='stribeck' for the controller"
@@ -178,7 +183,7 @@ def control_estimates(joint: Joint) -> dict[str, Any]:
     values = Values(joint)
     drive, link = _inertias(joint, values)
     estimates: dict[str, Any] = {"inertia": drive if joint.sensor else drive + link}
-    stribeck = joint.friction == "stribeck"
+    stribeck = joint.model.resolved.name == "stribeck"
     for name in ("coulomb", "static", "viscous") if stribeck else ("coulomb", "viscous"):
         estimates[name] = sum(values.both(name)) / 2.0
     if stribeck:

@@ -8,9 +8,9 @@ from typing import Any, Self, get_args
 
 from jointid import _core
 from jointid.base.errors import InputError
+from jointid.joint.checks import suggestion
 from jointid.joint.joint import Joint
 from jointid.joint.link import Link
-from jointid.joint.parameters import suggestion
 from jointid.simulation.arguments import Controller
 from jointid.simulation.batch import SimulatedBatch, simulate_batch
 from jointid.simulation.plant import Bristle, control_estimates

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,18 +14,14 @@ from jointid import _core
 from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
 from jointid.identification.prepared import prepare
-from jointid.joint.parameters import suggestion
+from jointid.identification.search.search import Search
+from jointid.joint.checks import suggestion
+from jointid.joint.model import FIELDS, Model
 from jointid.simulation.scenario import Scenario
 
-PRESETS = {
-    "default": _core.GaOptions,
-    "thesis": _core.GaOptions.thesis,
-    "thesis_code": _core.GaOptions.thesis_code,
-}
-# Keyword arguments of `identify` that a study hands on, alike for all cells or swept.
+# Arguments of `prepare` that a study passes on, alike for all cells or swept; and fields of the search.
 OPTIONS = (
-    "method",
-    "ga",
+    *("method", "ga"),
     *(
         n
         for n in inspect.signature(prepare).parameters
@@ -56,27 +52,32 @@ class Cell:
         return base.changed({n: v for n, v in self.values.items() if not is_option(n)})
 
     def options(self, common: Mapping[str, Any]) -> dict[str, Any]:
-        """Arguments of `identify`, without `ga`: the study's, with this cell's in their place."""
-        chosen = {n: v for n, v in common.items() if n != "ga"}
+        """Arguments of `prepare`: the study's, with this cell's in their place."""
+        chosen = dict(common)
         fixed: dict[str, Any] = _changes(common.get("parameters"))
+        model = Model.of(self.values.get("model", common.get("model")))
         for name, value in self.values.items():
             part, _, inside = name.partition(".")
             if part == "parameters" and inside:
                 fixed[inside] = value
+            elif part == "model" and inside:
+                model = model.replace(**{inside: value})
             elif name == "parameters":
                 fixed |= _changes(value)
-            elif name in OPTIONS and name != "ga":
+            elif name in OPTIONS and name not in ("ga", "method", "model"):
                 chosen[name] = value
-        return chosen | ({"parameters": fixed} if fixed else {})
+        return chosen | {"model": model} | ({"parameters": fixed} if fixed else {})
 
-    def genetic(self, common: Mapping[str, Any]) -> _core.GaOptions:
-        """Settings of the genetic algorithm."""
-        base = genetic_options(self.values.get("ga", common.get("ga")))
+    def search(self, base: Search, seed: int, threads: int) -> Search:
+        """The study's search with this cell's method and settings, for one trial."""
+        ga = self.values.get("ga", base.ga)
+        method = self.values.get("method", base.method)
         changes = {n.removeprefix("ga."): v for n, v in self.values.items() if n.startswith("ga.")}
+        found = Search(method, ga=ga, seed=seed, threads=threads)
         try:
-            return base.replace(**changes)
+            return replace(found, ga=found.genetic.replace(**changes))
         except (ValueError, TypeError) as error:
-            raise InputError(f"ga: {error}") from None
+            raise InputError(str(error), argument="ga") from None
 
 
 def _changes(parameters: object) -> dict[str, Any]:
@@ -86,27 +87,7 @@ def _changes(parameters: object) -> dict[str, Any]:
 
 def is_option(name: str) -> bool:
     """Whether a swept name is of the identification, not of the scenario."""
-    return name in OPTIONS or name.startswith(("ga.", "parameters."))
-
-
-def genetic_options(given: object) -> _core.GaOptions:
-    """GaOptions of a preset's name, or themselves.
-
-    Raises
-    ------
-    InputError
-        Something else.
-    """
-    if given is None:
-        return _core.GaOptions()
-    if isinstance(given, str) and given in PRESETS:
-        return PRESETS[given]()
-    if isinstance(given, _core.GaOptions):
-        return given
-    raise InputError(
-        f"ga must be GaOptions or one of {', '.join(PRESETS)}, got {given!r}; use "
-        "jointid.GaOptions(population=...)"
-    )
+    return name in OPTIONS or name.startswith(("ga.", "model.", "parameters."))
 
 
 def cells_of(grid: Mapping[str, Any], scenario: Scenario | None) -> tuple[Cell, ...]:
@@ -134,6 +115,7 @@ def cells_of(grid: Mapping[str, Any], scenario: Scenario | None) -> tuple[Cell, 
 
 def _known(scenario: Scenario | None) -> list[str]:
     names = [*OPTIONS, *(f"ga.{field}" for field in _core.GaOptions().asdict())]
+    names += [f"model.{field}" for field in FIELDS]
     return names + ([] if scenario is None else scenario.options())
 
 

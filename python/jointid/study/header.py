@@ -9,7 +9,7 @@ from typing import Any
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.joint.parameters import finite_number, suggestion
+from jointid.joint.checks import finite_number, suggestion
 from jointid.simulation.scenario import Scenario
 from jointid.study import study_file
 from jointid.study.work import Work
@@ -31,7 +31,8 @@ def header_of_work(work: Work, trials: int, truth: Mapping[str, float] | None) -
         else [{"name": run.name, "fingerprint": run.fingerprint} for run in subject],
         "joint": None if work.joint is None else repr(work.joint),
         "options": {name: repr(value) for name, value in sorted(work.common.items())},
-        "stderr": work.stderr,
+        "search": repr((work.search.method, work.search.ga)),
+        "standard_errors": work.standard_errors,
         "tracking": work.tracking,
         "version": _core.__version__,
     }
@@ -61,11 +62,15 @@ def _truth(work: Work, given: Mapping[str, float] | None) -> dict[str, float]:
     """What is known to be true of all recordings."""
     if given is not None:
         if not isinstance(given, Mapping):
-            raise InputError(f"truth is {given!r}; a mapping of parameters to numbers is expected")
+            raise InputError(
+                "a mapping of parameters to numbers is expected", argument="truth", value=given
+            )
         for name in given:
             if not isinstance(name, str) or not _core.is_parameter(name.partition("[")[0]):
                 known = suggestion(name, _core.parameter_names())
-                raise InputError(f"truth: {name!r} is no parameter; {known}")
+                raise InputError(
+                    f"there is no such parameter; {known}", argument=str(name), place="truth"
+                )
         return {str(name): finite_number("truth", str(name), v) for name, v in given.items()}
     if isinstance(work.subject, Scenario):
         return work.subject.truth

@@ -13,6 +13,7 @@ from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.identification.prepared import Prepared, prepare
 from jointid.identification.search.engine import Engine, Outcome
+from jointid.identification.search.run import concluded, separable
 from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
@@ -105,24 +106,19 @@ class Runner:
         """Trials on one penalty, side by side."""
         work = self._work
         options = work.cells[places[0][0]].options(work.common)
-        method = options.pop("method", "ga")
         joint = scenario.joint if scenario is not None and work.joint is None else work.joint
         started = time.perf_counter()
         try:
             searches = [
-                Search(
-                    method=method,
-                    options=work.cells[cell].genetic(work.common),
-                    seed=work.seed + trial,
-                    threads=work.threads,
-                    callback=None,
-                )
+                work.cells[cell].search(work.search, work.seed + trial, work.threads)
                 for cell, trial in places
             ]
             if self._ready is None or self._ready[0] != key:
                 self._ready = None  # not two at a time
                 prepared = prepare(recordings, joint, **options, threads=work.threads)
-                engine = Engine.of(prepared.penalty, prepared.domain, work.threads, method)
+                engine = Engine.of(
+                    prepared.penalty, prepared.domain, work.threads, searches[0].method
+                )
                 self._ready = key, prepared, engine
             _, prepared, engine = self._ready
             outcomes = _outcomes(searches, prepared, engine)
@@ -148,10 +144,10 @@ class Runner:
             generations=outcome.generations,
             values=dict(zip(prepared.penalty.names, outcome.best.tolist(), strict=True)),
         )
-        if not (work.stderr or work.tracking):
+        if not (work.standard_errors or work.tracking):
             return row, None
         estimate = prepared.estimate(search, outcome, started)
-        if work.stderr:
+        if work.standard_errors:
             known = ((name, p.stderr) for name, p in estimate.parameters.items())
             row = replace(row, stderr={name: e for name, e in known if e is not None})
         return row, estimate
@@ -205,17 +201,17 @@ class Runner:
 def _outcomes(searches: list[Search], prepared: Prepared, engine: Engine) -> list[Outcome]:
     domain = prepared.domain
     if searches[0].method == "separable":
-        return [search.separable(engine, domain) for search in searches]
+        return [separable(search, engine, domain) for search in searches]
     results = _core.minimise_trials(
         engine.form,
         domain.lower,
         domain.upper,
-        options=[search.options for search in searches],
+        options=[search.genetic for search in searches],
         seeds=[search.seed for search in searches],
         random=searches[0].method == "random",
         threads=searches[0].threads,
     )
     return [
-        search.concluded(engine, domain, result, result.generations)
+        concluded(search, engine, domain, result, result.generations)
         for search, result in zip(searches, results, strict=True)
     ]

@@ -10,15 +10,16 @@ from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from typing import Any
 
-from jointid.base.argument_checks import require_path
+from jointid.base.argument_checks import require_path, whole_number
 from jointid.base.errors import InputError
-from jointid.identification.search.search import METHODS
+from jointid.identification.prepared import require_joint
+from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
-from jointid.joint.parameters import suggestion
-from jointid.problem.problem import listed, whole_number
+from jointid.joint.model import Model
+from jointid.problem.problem import Windows, listed
 from jointid.recording.recording import Recording
 from jointid.simulation.scenario import Scenario
-from jointid.study.grid import OPTIONS, cells_of, genetic_options
+from jointid.study.grid import cells_of
 from jointid.study.header import header_of_work
 from jointid.study.row import REFUSED, Row
 from jointid.study.runner import Runner, run_chunk
@@ -82,16 +83,20 @@ def sweep(
     *,
     grid: Mapping[str, Any] | None = None,
     trials: int = 10,
-    seed: int = 0,
-    stderr: bool = False,
+    model: Model | str | Mapping[str, Any] | None = None,
+    parameters: Mapping[str, Any] | None = None,
+    search: Search | str | None = None,
+    residual: str | None = None,
+    windows: Windows = None,
+    torque_hold: str | None = None,
+    mask_standstill: bool = True,
+    standard_errors: bool = False,
     tracking: bool = False,
     truth: Mapping[str, float] | None = None,
     executor: Executor | None = None,
-    threads: int | None = None,
     callback: Callable[[StudyStep], object] | None = None,
     output: str | os.PathLike[str] | None = None,
     resume: bool = False,
-    **options: Any,
 ) -> Study:
     """Identify with every combination of some settings, several times each.
 
@@ -104,16 +109,19 @@ def sweep(
         and known facts, not the values.
     grid : mapping of str to sequence or mapping, optional
         Settings by name, each with its values, or with labels and values: arguments of `identify`
-        (``"windows"``, ``"method"``, ``"model"``, …), ``"ga"`` (``"default"``, ``"thesis"``,
-        ``"thesis_code"`` or GaOptions), ``"ga.FIELD"``, ``"parameters.NAME"`` (fixed), and of a
+        (``"windows"``, ``"model"``, ``"model.FIELD"``, …), of the search ``"method"``, ``"ga"`` and
+        ``"ga.FIELD"``, ``"parameters.NAME"`` (fixed), and of a
         scenario its fields, ``"sensors.FIELD"``, ``"controller.FIELD"``, ``"truth.NAME"``.
         Default: one cell.
     trials : int
         Of each combination. Default 10.
-    seed : int
-        Trial t has the seed ``seed + t``, in every cell: for the search, and for the noise of a
-        simulated recording. `identify` with a row's seed gives the row. Default 0.
-    stderr : bool
+    model, parameters, residual, windows, torque_hold, mask_standstill
+        As in `identify`, for all cells.
+    search : Search or str, optional
+        As in `identify`. Trial t has its seed + t, in every cell: for the search, and for the noise of a
+        simulated recording; `identify` with a row's seed gives the row. Its threads, where 0, are all here
+        and 1 each in an executor. Callback, checkpoint and resume are not for a sweep.
+    standard_errors : bool
         Whether to have standard errors, too; some milliseconds more a trial. Default False.
     tracking : bool
         Of a scenario whose controller compensates friction: whether to simulate again with the
@@ -124,16 +132,12 @@ def sweep(
     executor : concurrent.futures.Executor, optional
         Who does the trials: a process pool, or a cluster's, such as Dask's ``client.get_executor()``.
         It is left running. Default: this process.
-    threads : int, optional
-        Default: all; in an executor, 1 each.
     callback : callable, optional
         Called with a `StudyStep` whenever trials are done; returning True stops.
     output : path, optional
         A file (.jsonl) that keeps each row as it is done.
     resume : bool
         Whether to go on with an existing `output`; also with more trials. Default False.
-    **options
-        Arguments of `identify` for all cells.
 
     Returns
     -------
@@ -151,8 +155,18 @@ def sweep(
         Ctrl-C, within 0.1 s; a `KeyboardInterrupt` whose `study` has the rows done so far.
     """
     began = time.perf_counter()
-    work = _work(subject, joint, grid, seed, options, stderr, tracking)
-    work = _threaded(work, executor, threads)
+    common = {
+        "model": model,
+        "parameters": parameters,
+        "residual": residual,
+        "windows": windows,
+        "torque_hold": torque_hold,
+        "mask_standstill": mask_standstill,
+    }
+    chosen = _searched(Search.of(search))
+    work = _work(subject, joint, grid, chosen, common, standard_errors, tracking)
+    if chosen.threads == 0 and executor is not None:
+        work = replace(work, threads=1)
     trials = whole_number("trials", trials, 1, 10**9)
     whole_number("seed", work.seed + trials - 1, 0, 2**64 - 1)
     if callback is not None and not callable(callback):
@@ -193,55 +207,54 @@ def sweep(
     return study_of(header, rows, time.perf_counter() - began)
 
 
+def _searched(search: Search) -> Search:
+    """The search of a sweep: what belongs to a single run is refused."""
+    for name in ("callback", "checkpoint", "resume"):
+        if getattr(search, name) is not None:
+            raise InputError(
+                "a sweep has its own callback, and a file that it continues",
+                argument=f"search.{name}",
+                remedy="leave it out of the search",
+            )
+    return search
+
+
 def _work(
     subject: Recording | Sequence[Recording] | Scenario,
     joint: Joint | None,
     grid: Mapping[str, Any] | None,
-    seed: int,
-    options: dict[str, Any],
-    stderr: bool,
+    search: Search,
+    common: dict[str, Any],
+    standard_errors: bool,
     tracking: bool,
 ) -> Work:
-    for name in options:
-        if name not in OPTIONS:
-            raise InputError(f"sweep: '{name}' is no option; {suggestion(name, OPTIONS)}")
-    for name, flag in (("stderr", stderr), ("tracking", tracking)):
+    for name, flag in (("standard_errors", standard_errors), ("tracking", tracking)):
         if not isinstance(flag, bool):
-            raise InputError(f"{name} must be True or False, got {flag!r}")
-    if joint is not None and not isinstance(joint, Joint):
-        raise InputError(
-            f"joint must be a Joint, got {joint!r}; read a file with jointid.Joint.load"
-        )
-    if "ga" in options:
-        options = options | {"ga": genetic_options(options["ga"])}
+            raise InputError("true or false is expected", argument=name, value=flag)
+    require_joint(joint)
     scenario = subject if isinstance(subject, Scenario) else None
     if tracking:
         if scenario is None:
-            raise InputError("tracking=True simulates; give a jointid.Scenario, not recordings")
+            raise InputError(
+                "recordings cannot be tracked again; give a scenario that simulates",
+                argument="tracking",
+                value=True,
+            )
         scenario.believing(scenario.joint)
     work = Work(
         subject=scenario if scenario is not None else listed(subject),  # type: ignore[arg-type]
         joint=joint,
-        common=options,
+        common=common | {"model": Model.of(common["model"])},
+        search=search,
         cells=cells_of(grid or {}, scenario),
-        seed=whole_number("seed", seed, 0, 2**64 - 1),
-        stderr=stderr,
+        standard_errors=standard_errors,
         tracking=tracking,
-        threads=0,
+        threads=search.threads,
     )
-    for cell in work.cells:  # what is wrong in itself is told before the work
-        cell.genetic(work.common)
-        method = cell.options(work.common).get("method", "ga")
-        if method not in METHODS:
-            raise InputError(f"method {method!r} is not known; known are {', '.join(METHODS)}")
+    for cell in work.cells:  # what is wrong in itself is reported before the work
+        cell.search(search, search.seed, search.threads)
+        cell.options(work.common)
     return work
-
-
-def _threaded(work: Work, executor: Executor | None, threads: int | None) -> Work:
-    usual = 0 if executor is None else 1
-    return replace(
-        work, threads=usual if threads is None else whole_number("threads", threads, 0, 1024)
-    )
 
 
 def _done(work: Work, places: Sequence[Place], executor: Executor | None) -> Iterator[list[Row]]:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
 from jointid.simulation.scenario import Scenario
@@ -29,22 +30,27 @@ class Work:
     subject : tuple of Recording, or Scenario
     joint : Joint or None
     common : dict of str to object
-        Arguments of `identify`, alike in all cells.
+        Arguments of `prepare`, alike in all cells.
     cells : tuple of Cell
-    seed : int
-        Trial t has the seed `seed` + t.
-    stderr, tracking : bool
+    search : Search
+        Trial t has the seed of it + t.
+    standard_errors, tracking : bool
     threads : int
     """
 
     subject: tuple[Recording, ...] | Scenario
     joint: Joint | None
     common: dict[str, Any]
+    search: Search
     cells: tuple[Cell, ...]
-    seed: int
-    stderr: bool
+    standard_errors: bool
     tracking: bool
     threads: int
+
+    @property
+    def seed(self) -> int:
+        """Of the first trial."""
+        return self.search.seed
 
     def ordered(self, trials: int, done: Iterable[Place]) -> list[Place]:
         """What is left to do, with what can share a recording or a penalty side by side."""
@@ -87,6 +93,6 @@ class Work:
             yield tuple(chunk)
 
     def _cost(self, cell: int) -> int:
-        options = self.cells[cell].genetic(self.common)
+        options = self.cells[cell].search(self.search, self.seed, self.threads).genetic
         fixed = _TRIAL + (_SIMULATION if isinstance(self.subject, Scenario) else 0)
         return options.population * options.islands * (options.generations + 1) + fixed

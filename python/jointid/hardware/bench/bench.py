@@ -134,5 +134,7 @@ def joint_with_truth(joint: Joint, truth: Mapping[str, float]) -> Joint:
     InputError
         A parameter that the joint's model does not have.
     """
-    orders = tuple(order for order in joint.ripple if f"ripple_sin_{order:g}" in truth)
+    orders = tuple(
+        order for order in joint.model.resolved.ripple if f"ripple_sin_{order:g}" in truth
+    )
     return joint.replace(ripple=orders, parameters=dict(truth))

@@ -17,9 +17,9 @@ from jointid.hardware.elmo.torque_source import AnalogInput, SensorScaling, Sync
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.options import SessionOptions
 from jointid.hardware.session.realtime import RealTimeOptions
+from jointid.joint.checks import suggestion
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_from_document, read_document
-from jointid.joint.parameters import suggestion
 from jointid.simulation.arguments import Controller
 from jointid.simulation.scenario import believing
 from jointid.simulation.trajectory import Trajectory

@@ -127,7 +127,9 @@ def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Join
             name=recording.name,
             kind=recording.kind,
             sensor=choice.sensor,
-            torque_offset=None if choice.asymmetric else "torque_offset" in choice.terms,
+            torque_offset=None
+            if choice.model.resolved.asymmetric
+            else "torque_offset" in choice.terms,
         )
     table = dict(base.parameters)
     for name, found in parameters.items():
@@ -142,11 +144,4 @@ def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Join
     if inertia is not None and inertia.vary and base.reflected_inertia is not None:
         # What was found takes the place of what was believed.
         base = base.replace(inertia=inertia.value, rotor_inertia=None)
-    return base.replace(
-        parameters=table,
-        friction=choice.model,
-        asymmetric=choice.asymmetric,
-        ripple=choice.ripple,
-        harmonics=choice.harmonics,
-        load_friction=choice.load_friction,
-    )
+    return base.replace(parameters=table, model=choice.model)

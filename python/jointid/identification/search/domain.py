@@ -153,7 +153,7 @@ def _known_values(joint: Joint | None) -> dict[str, Parameter]:
         return values
     if joint.reflected_inertia is not None:
         values["inertia"] = Parameter(name="inertia", value=joint.reflected_inertia, vary=False)
-    if joint.gravity == "known":
+    if joint.model.resolved.gravity == "known":
         gravity = joint.gravity_coefficients
         values["gravity_cos"] = Parameter(name="gravity_cos", value=gravity.cos, vary=False)
         values["gravity_sin"] = Parameter(name="gravity_sin", value=gravity.sin, vary=False)

@@ -1,199 +1,124 @@
-"""Running a search over the penalty: genetic, random or separable; checkpoints of a long one."""
+"""How to search: method, budget, seed, and where a long search keeps its state."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from pathlib import Path
-
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
 
 from jointid import _core
-from jointid.base.argument_checks import require_path
+from jointid.base.argument_checks import require_path, whole_number
 from jointid.base.errors import InputError
-from jointid.base.files import write_whole
-from jointid.estimate.statistics import Convergence
-from jointid.identification.search.domain import SearchDomain
-from jointid.identification.search.engine import Engine, Outcome
+from jointid.joint.checks import check_choice
 
-Array = NDArray[np.float64]
 Callback = Callable[[_core.Generation], bool | None]
 StatePath = str | os.PathLike[str]
 
 METHODS = ("ga", "separable", "random")
+PRESETS: Mapping[str, Callable[[], _core.GaOptions]] = MappingProxyType(
+    {
+        "default": _core.GaOptions,
+        "thesis": _core.GaOptions.thesis,
+        "thesis_code": _core.GaOptions.thesis_code,
+    }
+)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Search:
-    """How to search.
+    """How to search for the minimum of the penalty.
 
-    Attributes
+    Parameters
     ----------
-    method : str
-        "ga", "separable" or "random".
-    options : GaOptions
-    seed, threads : int
-    callback : callable or None
-    checkpoint : path or None
-        The state of the search is written here every 50 generations and at its end, whole or not at all.
-    resume : path or None
-        A checkpoint to go on from, to the same bits as an uninterrupted search.
+    method : {"ga", "separable", "random"}
+        "ga" (default): genetic algorithm, then a local polish. "separable": linear parameters eliminated
+        exactly, a search over the shapes alone. "random": random search with the genetic algorithm's
+        budget and no polish, for comparison.
+    ga : GaOptions or {"default", "thesis", "thesis_code"}
+        Settings of the genetic algorithm. Default "default".
+    seed : int
+        Same seed, same bits, whatever `threads` is. Default 0.
+    threads : int
+        0 (default): all.
+    callback : callable, optional
+        Called with each `Generation`; returning True stops the search. Not with "separable".
+    checkpoint : path, optional
+        The genetic search's state is kept in this file, written whole, every 50 generations and at the end.
+    resume : path, optional
+        A checkpoint to continue from; the result has the same bits as an uninterrupted search.
+
+    Raises
+    ------
+    InputError
+        A field that cannot be used, or a checkpoint with another method than "ga".
+
+    Examples
+    --------
+    >>> Search("separable").method
+    'separable'
+    >>> Search(ga=_core.GaOptions(population=50), seed=3).genetic.population
+    50
     """
 
-    method: str
-    options: _core.GaOptions
-    seed: int
-    threads: int
-    callback: Callback | None
+    method: str = "ga"
+    ga: _core.GaOptions | str = "default"
+    seed: int = 0
+    threads: int = 0
+    callback: Callback | None = None
     checkpoint: StatePath | None = None
     resume: StatePath | None = None
 
     def __post_init__(self) -> None:
-        if self.method not in METHODS:
-            raise InputError(f"method {self.method!r} is not known; known are {', '.join(METHODS)}")
-        if not isinstance(self.options, _core.GaOptions):
+        check_choice("", "method", self.method, METHODS)
+        if isinstance(self.ga, str):
+            check_choice("", "ga", self.ga, PRESETS)
+        elif not isinstance(self.ga, _core.GaOptions):
             raise InputError(
-                f"ga must be GaOptions, got {self.options!r}; use jointid.GaOptions(population=...)"
+                f"GaOptions or one of {', '.join(PRESETS)} is expected",
+                argument="ga",
+                value=self.ga,
             )
+        object.__setattr__(self, "seed", whole_number("seed", self.seed, 0, 2**64 - 1))
+        object.__setattr__(self, "threads", whole_number("threads", self.threads, 0, 1024))
         for name in ("checkpoint", "resume"):
             if getattr(self, name) is not None:
                 require_path(name, getattr(self, name))
+                if self.method != "ga":
+                    raise InputError(
+                        "checkpoint and resume go with the method ga",
+                        argument="method",
+                        value=self.method,
+                    )
         if self.callback is not None and not callable(self.callback):
-            raise InputError(f"callback must be callable, got {self.callback!r}")
-        if self.method != "ga" and (self.checkpoint is not None or self.resume is not None):
-            raise InputError(f"checkpoint and resume go with method='ga', not '{self.method}'")
+            raise InputError("a function is expected", argument="callback", value=self.callback)
 
-    def run(self, penalty: _core.Penalty, domain: SearchDomain) -> Outcome:
-        """Search.
+    @classmethod
+    def of(cls, value: object, *, method: str = "ga") -> Search:
+        """Return a search from whatever states one: a search, its method's name, None.
+
+        Parameters
+        ----------
+        value : Search, str or None
+        method : str
+            Where nothing is stated. Default "ga".
 
         Raises
         ------
         InputError
-            A checkpoint that does not fit.
-        KeyboardInterrupt
-            Ctrl-C.
+            Something else, or an unknown method.
         """
-        engine = Engine.of(penalty, domain, self.threads, self.method)
-        if self.method == "separable":
-            return self.separable(engine, domain)
-        result = (self._random if self.method == "random" else self._genetic)(engine, domain)
-        convergence = _convergence(result)
-        outcome = self.concluded(engine, domain, result, int(convergence.generation[-1]))
-        return replace(outcome, convergence=convergence)
-
-    def separable(self, engine: Engine, domain: SearchDomain) -> Outcome:
-        """The outcome of the search by elimination."""
-        found = _core.minimise_separable(
-            engine.form, domain.lower, domain.upper, threads=self.threads
-        )
-        told = f"separable optimum after {found.evaluations} shapes"
-        outcome = Outcome(
-            best=found.best,
-            convergence=None,
-            status="converged",
-            message=told,
-            evaluations=found.evaluations,
-        )
-        return engine.verified(outcome, domain)
-
-    def concluded(
-        self,
-        engine: Engine,
-        domain: SearchDomain,
-        result: _core.GaResult | _core.TrialResult,
-        generations: int,
-    ) -> Outcome:
-        """Where a search by populations ended: polished if it is to be, and verified."""
-        best, status, told = self._finished(engine, domain, result, generations)
-        outcome = Outcome(
-            best=best,
-            convergence=None,
-            status=status,
-            message=told,
-            generations=generations,
-            evaluations=result.evaluations,
-        )
-        return engine.verified(outcome, domain)
-
-    def _random(self, engine: Engine, domain: SearchDomain) -> _core.GaResult:
-        return _core.minimise_random(
-            engine.form,
-            domain.lower,
-            domain.upper,
-            options=self.options,
-            seed=self.seed,
-            threads=self.threads,
-            callback=self.callback,
+        if isinstance(value, Search):
+            return value
+        if value is None:
+            return cls(method)
+        if isinstance(value, str):
+            return cls(value)
+        raise InputError(
+            "a Search or the name of a method is expected", argument="search", value=value
         )
 
-    def _genetic(self, engine: Engine, domain: SearchDomain) -> _core.GaResult:
-        state = None if self.resume is None else _read_state(Path(self.resume))
-        try:
-            result = _core.minimise_genetic(
-                engine.form,
-                domain.lower,
-                domain.upper,
-                options=self.options,
-                seed=self.seed,
-                threads=self.threads,
-                callback=self.callback,
-                resume=state,
-                checkpoint=None if self.checkpoint is None else self._write_state,
-            )
-        except ValueError as error:
-            raise InputError(str(error)) from error
-        if self.checkpoint is not None and result.state is not None:
-            self._write_state(result.state)
-        return result
-
-    def _write_state(self, state: _core.GaState) -> None:
-        if self.checkpoint is not None:
-            write_whole(Path(self.checkpoint), state.to_bytes())
-
-    def _finished(
-        self,
-        engine: Engine,
-        domain: SearchDomain,
-        result: _core.GaResult | _core.TrialResult,
-        generations: int,
-    ) -> tuple[Array, str, str]:
-        """Best parameters, status and message after the polish, if there is one."""
-        told = f"{generations} generations, {result.evaluations} penalties"
-        polish = self.options.polish and self.method == "ga"
-        if result.stop == _core.Stop.observer:
-            return result.best, "stopped", f"stopped by the callback after {told}"
-        if polish:
-            best, steps, settled = engine.polished(domain, result.best)
-            told = f"{told}, then {steps} polish steps"
-            if not settled:
-                return best, "stopped", f"the polish did not settle after {told}"
-            return best, "converged", told
-        if result.stop == _core.Stop.generations:
-            return result.best, "stopped", f"used up its {told} without a polish"
-        return result.best, "converged", told
-
-
-def _convergence(result: _core.GaResult) -> Convergence:
-    def series(name: str) -> Array:
-        return np.array([getattr(g, name) for g in result.history], dtype=np.float64)
-
-    return Convergence(
-        generation=np.array([g.number for g in result.history], dtype=np.int64),
-        best=series("best"),
-        mean=series("mean"),
-        diversity=series("diversity"),
-        crossover_probability=series("crossover_probability"),
-        mutation_probability=series("mutation_probability"),
-        evaluations=np.array([g.evaluations for g in result.history], dtype=np.int64),
-    )
-
-
-def _read_state(path: Path) -> _core.GaState:
-    try:
-        return _core.GaState.from_bytes(path.read_bytes())
-    except OSError as error:
-        raise InputError(f"{path}: the checkpoint cannot be read: {error.strerror}") from error
-    except ValueError as error:
-        raise InputError(f"{path}: {error}") from error
+    @property
+    def genetic(self) -> _core.GaOptions:
+        """Settings of the genetic algorithm, a preset's name resolved."""
+        return PRESETS[self.ga]() if isinstance(self.ga, str) else self.ga

@@ -102,7 +102,7 @@ class Facts:
     @property
     def model(self) -> str:
         """Name of the friction model."""
-        return self.problem.choice.model
+        return self.problem.choice.model.resolved.name
 
     def regressor(self, best: Array | None = None) -> Regressor:
         """Every term's window integrals and the target's, at the shapes found or others [unit · s]."""

@@ -1,0 +1,162 @@
+"""Running a search over the penalty: genetic, random or separable; checkpoints of a long one."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.base.errors import InputError
+from jointid.base.files import write_whole
+from jointid.estimate.statistics import Convergence
+from jointid.identification.search.domain import SearchDomain
+from jointid.identification.search.engine import Engine, Outcome
+from jointid.identification.search.search import Search
+
+Array = NDArray[np.float64]
+
+
+def run_search(search: Search, penalty: _core.Penalty, domain: SearchDomain) -> Outcome:
+    """Search.
+
+    Raises
+    ------
+    InputError
+        A checkpoint that does not fit.
+    KeyboardInterrupt
+        Ctrl-C.
+    """
+    engine = Engine.of(penalty, domain, search.threads, search.method)
+    if search.method == "separable":
+        return separable(search, engine, domain)
+    result = (_random if search.method == "random" else _genetic)(search, engine, domain)
+    convergence = _convergence(result)
+    outcome = concluded(search, engine, domain, result, int(convergence.generation[-1]))
+    return replace(outcome, convergence=convergence)
+
+
+def separable(search: Search, engine: Engine, domain: SearchDomain) -> Outcome:
+    """The outcome of the search by elimination."""
+    found = _core.minimise_separable(
+        engine.form, domain.lower, domain.upper, threads=search.threads
+    )
+    told = f"separable optimum after {found.evaluations} shapes"
+    outcome = Outcome(
+        best=found.best,
+        convergence=None,
+        status="converged",
+        message=told,
+        evaluations=found.evaluations,
+    )
+    return engine.verified(outcome, domain)
+
+
+def concluded(
+    search: Search,
+    engine: Engine,
+    domain: SearchDomain,
+    result: _core.GaResult | _core.TrialResult,
+    generations: int,
+) -> Outcome:
+    """Where a search by populations ended: polished if it is to be, and verified."""
+    best, status, told = _finished(search, engine, domain, result, generations)
+    outcome = Outcome(
+        best=best,
+        convergence=None,
+        status=status,
+        message=told,
+        generations=generations,
+        evaluations=result.evaluations,
+    )
+    return engine.verified(outcome, domain)
+
+
+def _random(search: Search, engine: Engine, domain: SearchDomain) -> _core.GaResult:
+    return _core.minimise_random(
+        engine.form,
+        domain.lower,
+        domain.upper,
+        options=search.genetic,
+        seed=search.seed,
+        threads=search.threads,
+        callback=search.callback,
+    )
+
+
+def _genetic(search: Search, engine: Engine, domain: SearchDomain) -> _core.GaResult:
+    state = None if search.resume is None else _read_state(Path(search.resume))
+    try:
+        result = _core.minimise_genetic(
+            engine.form,
+            domain.lower,
+            domain.upper,
+            options=search.genetic,
+            seed=search.seed,
+            threads=search.threads,
+            callback=search.callback,
+            resume=state,
+            checkpoint=None
+            if search.checkpoint is None
+            else functools.partial(_write_state, search),
+        )
+    except ValueError as error:
+        raise InputError(str(error)) from error
+    if search.checkpoint is not None and result.state is not None:
+        _write_state(search, result.state)
+    return result
+
+
+def _write_state(search: Search, state: _core.GaState) -> None:
+    if search.checkpoint is not None:
+        write_whole(Path(search.checkpoint), state.to_bytes())
+
+
+def _finished(
+    search: Search,
+    engine: Engine,
+    domain: SearchDomain,
+    result: _core.GaResult | _core.TrialResult,
+    generations: int,
+) -> tuple[Array, str, str]:
+    """Best parameters, status and message after the polish, if there is one."""
+    told = f"{generations} generations, {result.evaluations} penalties"
+    polish = search.genetic.polish and search.method == "ga"
+    if result.stop == _core.Stop.observer:
+        return result.best, "stopped", f"stopped by the callback after {told}"
+    if polish:
+        best, steps, settled = engine.polished(domain, result.best)
+        told = f"{told}, then {steps} polish steps"
+        if not settled:
+            return best, "stopped", f"the polish did not settle after {told}"
+        return best, "converged", told
+    if result.stop == _core.Stop.generations:
+        return result.best, "stopped", f"used up its {told} without a polish"
+    return result.best, "converged", told
+
+
+def _convergence(result: _core.GaResult) -> Convergence:
+    def series(name: str) -> Array:
+        return np.array([getattr(g, name) for g in result.history], dtype=np.float64)
+
+    return Convergence(
+        generation=np.array([g.number for g in result.history], dtype=np.int64),
+        best=series("best"),
+        mean=series("mean"),
+        diversity=series("diversity"),
+        crossover_probability=series("crossover_probability"),
+        mutation_probability=series("mutation_probability"),
+        evaluations=np.array([g.evaluations for g in result.history], dtype=np.int64),
+    )
+
+
+def _read_state(path: Path) -> _core.GaState:
+    try:
+        return _core.GaState.from_bytes(path.read_bytes())
+    except OSError as error:
+        raise InputError(f"{path}: the checkpoint cannot be read: {error.strerror}") from error
+    except ValueError as error:
+        raise InputError(f"{path}: {error}") from error

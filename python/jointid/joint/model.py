@@ -1,0 +1,291 @@
+"""What a model of a joint's torque holds: one value, whoever states it and wherever."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Collection, Mapping
+from dataclasses import KW_ONLY, dataclass, fields, replace
+from typing import Any, Literal, Self, get_args
+
+from jointid import _core
+from jointid.base.errors import InputError
+from jointid.joint.checks import check_choice, check_flag, finite_number, suggestion
+
+Gravity = Literal["none", "known", "free"]
+
+_GRAVITY_ORDER = 1.0
+_LISTS = ("ripple", "harmonics", "per_recording")
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """The terms of a joint's torque balance; a field that is None is left to whoever else states it.
+
+    The model of a call goes over the model of its joint, field by field; what neither states takes the
+    default. As text: the name, then options, each after a colon: ``"stribeck:asymmetric:ripple=2,4"``,
+    ``":gravity=free"``.
+
+    Parameters
+    ----------
+    name : str, optional
+        Friction: "coulomb_viscous" (default), "stribeck" or "stribeck_general" (with a free exponent).
+    gravity : {"none", "known", "free"}, optional
+        Torque of gravity that the drive carries and no sensor sees: none (default), computed from the
+        joint's link, or identified.
+    asymmetric : bool, optional
+        Whether friction differs between the two directions. Default False.
+    ripple : collection of float, optional
+        Orders of a torque over the motor's angle, e.g. (2,) for a strain-wave gear; each is a sine and a
+        cosine [N·m]. Default none.
+    harmonics : collection of float, optional
+        Orders of a torque over the joint's angle. Default none.
+    load_friction : bool, optional
+        Whether friction grows with the magnitude of the drive's torque. Default False.
+    per_recording : collection of str, optional
+        Coefficients that each of several recordings has for itself, e.g. ("torque_offset",). Default none.
+
+    Raises
+    ------
+    InputError
+        A field of the wrong kind, an unknown name, or fields that cannot be told apart.
+
+    Examples
+    --------
+    >>> Model("stribeck", ripple=(2, 4)) == Model.parse("stribeck:ripple=2,4")
+    True
+    """
+
+    name: str | None = None
+    _: KW_ONLY
+    gravity: Gravity | None = None
+    asymmetric: bool | None = None
+    ripple: tuple[float, ...] | None = None
+    harmonics: tuple[float, ...] | None = None
+    load_friction: bool | None = None
+    per_recording: tuple[str, ...] | None = None
+
+    def __post_init__(self) -> None:
+        if self.name is not None:
+            check_choice("", "name", self.name, _core.model_names())
+        if self.gravity is not None:
+            check_choice("", "gravity", self.gravity, get_args(Gravity))
+        for flag in ("asymmetric", "load_friction"):
+            if getattr(self, flag) is not None:
+                check_flag("", flag, getattr(self, flag))
+        for name in ("ripple", "harmonics"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, _orders(name, getattr(self, name)))
+        if self.per_recording is not None:
+            object.__setattr__(self, "per_recording", _coefficients(self.per_recording))
+        if self.gravity in ("known", "free") and _GRAVITY_ORDER in (self.harmonics or ()):
+            raise InputError(
+                "order 1 over the joint's angle is what gravity is",
+                argument="harmonics",
+                value=list(self.harmonics or ()),
+                remedy="leave out order 1, or set gravity to none",
+            )
+
+    @classmethod
+    def of(cls, value: object, argument: str = "model") -> Model:
+        """Return a model from whatever states one: a model, its text, a mapping of its fields, None.
+
+        Parameters
+        ----------
+        value : Model, str, mapping or None
+        argument : str
+            Its name, for the error. Default "model".
+
+        Raises
+        ------
+        InputError
+            Something else, or a field that cannot be used.
+        """
+        if isinstance(value, Model):
+            return value
+        if value is None:
+            return cls()
+        if isinstance(value, str):
+            return cls.parse(value)
+        if isinstance(value, Mapping):
+            for key in value:
+                _check_field(key)
+            return cls(**value)
+        raise InputError(
+            "a model's text, a Model or a mapping of its fields is expected",
+            argument=argument,
+            value=value,
+        )
+
+    @classmethod
+    def parse(cls, text: str) -> Model:
+        """Return the model of a text such as ``"stribeck:asymmetric:ripple=2,4"``; inverse of `str`.
+
+        Raises
+        ------
+        InputError
+            A part that is no option, or an option given twice.
+        """
+        name, *parts = text.split(":")
+        options: dict[str, Any] = {}
+        for part in parts:
+            key, separator, value = part.partition("=")
+            if key == "name" or (separator and not value) or not key:
+                raise InputError(
+                    "write name:option or name:option=value", argument="model", value=text
+                )
+            _check_field(key)
+            if key in options:
+                raise InputError("it is given twice", argument=key, value=text)
+            options[key] = _read(key, value) if separator else True
+        return cls(name or None, **options)
+
+    def __str__(self) -> str:
+        parts = [self.name or ""]
+        for name, value in self.stated().items():
+            if name != "name":
+                parts.append(name if value is True else f"{name}={_written(value)}")
+        return ":".join(parts)
+
+    def __repr__(self) -> str:
+        shown = [f"{key}={value!r}" for key, value in self.stated().items() if key != "name"]
+        name = [] if self.name is None else [repr(self.name)]
+        return f"Model({', '.join([*name, *shown])})"
+
+    def stated(self) -> dict[str, Any]:
+        """Return the fields that are not None, by name."""
+        values = ((item.name, getattr(self, item.name)) for item in fields(self))
+        return {name: value for name, value in values if value is not None}
+
+    def replace(self, **changes: Any) -> Self:
+        """Return a model with some fields changed.
+
+        Raises
+        ------
+        InputError
+            No such field, or a value that cannot be used.
+        """
+        for key in changes:
+            _check_field(key)
+        return replace(self, **changes)
+
+    def over(self, base: Model) -> Model:
+        """Return this model, with the fields that it leaves open taken from another."""
+        return Model(**(base.stated() | self.stated()))
+
+    @property
+    def resolved(self) -> ResolvedModel:
+        """Every field, with the default for those that nobody stated."""
+        return ResolvedModel(**self.stated())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return functools.partial(Model, **self.stated()), ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ResolvedModel:
+    """A model in which nothing is open; the fields are those of `Model`, with their defaults."""
+
+    name: str = "coulomb_viscous"
+    gravity: Gravity = "none"
+    asymmetric: bool = False
+    ripple: tuple[float, ...] = ()
+    harmonics: tuple[float, ...] = ()
+    load_friction: bool = False
+    per_recording: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        """The name and what differs from the defaults, as text that `Model.parse` reads."""
+        usual = ResolvedModel()
+        stated = {item.name: getattr(self, item.name) for item in fields(self)}
+        switched = {n: v for n, v in stated.items() if n == "name" or v != getattr(usual, n)}
+        return str(Model(**switched))
+
+
+FIELDS = tuple(item.name for item in fields(Model))
+"""Names of a model's fields."""
+
+
+def _check_field(key: object) -> None:
+    if key not in FIELDS:
+        raise InputError(
+            f"a model has no such option; {suggestion(key, FIELDS)}",
+            argument=str(key),
+            place="model",
+        )
+
+
+def _orders(field: str, value: Any) -> tuple[float, ...]:
+    """Return the orders of a harmonic as a tuple of different positive numbers."""
+    values = _listed(field, value, "a list of orders like [2] is expected")
+    try:
+        orders = tuple(finite_number("", field, order) for order in values)
+    except InputError:
+        raise _refused(field, value, "different orders above 0 are expected, like [2]") from None
+    if any(order <= 0.0 for order in orders) or len(set(orders)) < len(orders):
+        raise _refused(field, value, "different orders above 0 are expected, like [2]")
+    # An order is part of its parameter's name, with six digits.
+    if any(not _core.is_parameter(f"ripple_cos_{o:g}") or float(f"{o:g}") != o for o in orders):
+        raise _refused(field, value, "orders have at most six digits")
+    return orders
+
+
+def _coefficients(value: Any) -> tuple[str, ...]:
+    names = _listed(
+        "per_recording", value, "a list of coefficients like [sensor_offset] is expected"
+    )
+    shapes = {shape.name for shape in _core.shapes()}
+    for name in names:
+        if (
+            not isinstance(name, str)
+            or not _core.is_parameter(name)
+            or "[" in name
+            or name in shapes
+        ):
+            raise _refused(
+                "per_recording", value, "names of coefficients are expected, like sensor_offset"
+            )
+    if len(set(names)) < len(names):
+        raise _refused("per_recording", value, "a coefficient is given twice")
+    return names
+
+
+def _listed(field: str, value: Any, reason: str) -> tuple[Any, ...]:
+    wrong = isinstance(value, str | bytes | Mapping) or not isinstance(value, Collection)
+    if wrong or getattr(value, "ndim", 1) != 1:
+        raise InputError(reason, argument=field, value=value)
+    return tuple(sorted(value, key=str) if isinstance(value, set | frozenset) else value)
+
+
+def _refused(field: str, value: Collection[Any], reason: str) -> InputError:
+    return InputError(reason, argument=field, value=list(value))
+
+
+def _read(key: str, text: str) -> Any:
+    """Return an option's value from its text."""
+    if key in _LISTS:
+        return () if text == "none" else tuple(_word(key, part) for part in text.split(","))
+    if key == "gravity":
+        return text
+    return {"true": True, "false": False}.get(text, _word("", text))
+
+
+def _word(key: str, text: str) -> Any:
+    """Return a number, or the text where it is none."""
+    if key == "per_recording":
+        return text
+    for kind in (int, float):
+        try:
+            number = kind(text)
+        except ValueError:
+            continue
+        return number if math.isfinite(number) else text
+    return text
+
+
+def _written(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, tuple):
+        return ",".join(f"{v:g}" if isinstance(v, float) else v for v in value) or "none"
+    return str(value)
