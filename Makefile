@@ -25,7 +25,7 @@ IN_PLACE := $(wildcard .venv/.editable)
 MOVED := $(if $(IN_PLACE),$(shell echo $(MODULES) | cmp -s - .venv/.editable || echo list-changed))
 
 .PHONY: help demo test checks check-plain check-address check-thread pytest lint stub format \
-        develop list-changed sdist check-sdist study bench soak clean
+        develop list-changed sdist check-sdist study bench notebooks soak clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## */\t/' | expand -t 16
@@ -98,6 +98,9 @@ study: $(INSTALLED)  ## accuracy over many seeds; by hand, the results go to doc
 bench: $(INSTALLED) .venv/.bench-tools  ## speed against other libraries (20 min); writes docs/performance.md
 	@$(BIN)/python benchmarks/speed.py $(BENCH)
 	@$(BIN)/python benchmarks/simulation_speed.py --output docs/simulation_speed.md
+
+notebooks: $(INSTALLED) .venv/.test-tools  ## run the notebooks and keep what they show; by hand
+	@$(BIN)/python tools/notebooks.py $(NOTEBOOKS)
 
 soak: $(INSTALLED)  ## minutes of identification, 30 emulated minutes of sessions; by hand
 	@$(BIN)/python benchmarks/soak.py
