@@ -16,7 +16,7 @@ def main() -> jid.Estimate:
         session = Session(
             drive, bench.controller, bench.trajectory, bench.limits, options=bench.options
         )
-        session.run(dry_run=True)  # motor off; raises if a pre-flight check fails
+        session.run(dry_run=True)  # motor off; raises when a check fails
         print("all pre-flight checks passed")
 
     ring = commission(bench, cycles=1, emulate=True, callback=print)
