@@ -18,8 +18,14 @@ SOURCES := $(wildcard $(or $(LISTED),$(shell find $(PARTS) -type f -not -name '*
 # Warnings are errors in CI and in `make test`, never when a user just wants the demo.
 INSTALLED := $(if $(filter true,$(CI)),.venv/.strict,.venv/.installed)
 
+# After `make develop`, .venv/.editable lists the Python files that are used in place. Then only the compiled part,
+# or another list of files, needs an installation, and that one is in place again.
+MODULES := $(sort $(filter python/%.py,$(SOURCES)))
+IN_PLACE := $(wildcard .venv/.editable)
+MOVED := $(if $(IN_PLACE),$(shell echo $(MODULES) | cmp -s - .venv/.editable || echo list-changed))
+
 .PHONY: help demo test checks check-plain check-address check-thread pytest lint stub format \
-        develop sdist check-sdist study bench soak clean
+        develop list-changed sdist check-sdist study bench notebooks soak clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## */\t/' | expand -t 16
@@ -60,10 +66,15 @@ format: .venv/.lint-tools  ## format Python and C++ in place
 stub: .venv/.installed .venv/.lint-tools  ## write python/jointid/_core.pyi anew
 	@$(BIN)/python tools/stub.py
 
-develop: .venv/.test-tools .venv/.lint-tools  ## editable install for contributors
-	@echo "Installing jointid in place"
-	@PATH="$$PWD/$(BIN):$$PATH" $(INSTALL) --no-build-isolation -Cbuild-dir=build/editable $(STRICT) -e .
-	@rm -f .venv/.installed .venv/.strict
+define INSTALL_IN_PLACE
+@echo "Installing jointid in place, warnings are errors"
+@PATH="$$PWD/$(BIN):$$PATH" $(INSTALL) --no-build-isolation -Cbuild-dir=build/editable $(STRICT) -e .
+@echo $(MODULES) > .venv/.editable
+@touch .venv/.installed .venv/.strict
+endef
+
+develop: .venv/.test-tools .venv/.lint-tools  ## editable install for contributors, used until `make clean`
+	$(INSTALL_IN_PLACE)
 
 sdist: .venv/.test-tools  ## dist/jointid-VERSION.tar.gz
 	@rm -f dist/jointid-*.tar.gz
@@ -87,6 +98,9 @@ study: $(INSTALLED)  ## accuracy over many seeds; by hand, the results go to doc
 bench: $(INSTALLED) .venv/.bench-tools  ## speed against other libraries (20 min); writes docs/performance.md
 	@$(BIN)/python benchmarks/speed.py $(BENCH)
 	@$(BIN)/python benchmarks/simulation_speed.py --output docs/simulation_speed.md
+
+notebooks: $(INSTALLED) .venv/.test-tools  ## run the notebooks and keep what they show; by hand
+	@$(BIN)/python tools/notebooks.py $(NOTEBOOKS)
 
 soak: $(INSTALLED)  ## minutes of identification, 30 emulated minutes of sessions; by hand
 	@$(BIN)/python benchmarks/soak.py
@@ -117,6 +131,7 @@ clean:  ## remove everything made here, .venv too
 	@$(INSTALL) --group bench
 	@touch $@
 
+ifeq ($(IN_PLACE),)
 .venv/.installed: .venv/.created $(SOURCES)
 	@echo "Building and installing jointid (a minute or two)"
 	@$(INSTALL) .
@@ -126,3 +141,10 @@ clean:  ## remove everything made here, .venv too
 	@echo "Building and installing jointid, warnings are errors (a minute or two)"
 	@$(INSTALL) $(STRICT) .
 	@touch .venv/.installed $@
+else
+.venv/.installed: .venv/.created $(filter-out $(MODULES) README.md LICENSE,$(SOURCES)) $(MOVED)
+	$(INSTALL_IN_PLACE)
+
+.venv/.strict: .venv/.installed
+	@touch $@
+endif

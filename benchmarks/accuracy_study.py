@@ -1,6 +1,6 @@
 """`make study`: how accurate `identify` is over many seeds, with the failures. Prints a Markdown table.
 
-Two sources of spread are told apart: the search's seed on one recording, and the noise of simulated recordings that
+Two sources of spread are separated: the search's seed on one recording, and the noise of simulated recordings that
 are made here by integrating the torque balance (smooth motion, no sticking, so no simulator is needed).
 """
 
@@ -66,7 +66,7 @@ def noise_seeds(seeds: int) -> list[str]:
     found = [jid.identify(smooth_recording(seed), search="separable") for seed in range(seeds)]
     lines = [
         f"\n{seeds} recordings of a joint without a sensor (torque noise 0.3 N·m), no options given:\n",
-        "| parameter | truth | bias | spread | 95 % interval holds the truth |",
+        "| parameter | truth | bias | spread | 95 % interval contains the truth |",
         "|---|---|---|---|---|",
     ]
     for name, truth in SMOOTH.items():

@@ -1,6 +1,6 @@
-"""Do the 95 % intervals hold the truth in 95 of 100 runs? By hand; prints a Markdown table.
+"""Do the 95 % intervals contain the truth in 95 of 100 runs? By hand; prints a Markdown table.
 
-The runs come from the simulator of the tests, which is none of the code under study.
+The runs come from the simulator of the tests, which shares no code with the package.
 """
 
 import argparse
@@ -20,7 +20,7 @@ def coverage(recordings: list[jid.Recording]) -> tuple[list[str], dict[str, int]
     """One line a parameter, and how often each warning was raised."""
     found = [jid.identify(run, jid.thesis_joint(), search="separable") for run in recordings]
     lines = [
-        "| parameter | truth | bias | spread | mean standard error | 95 % interval holds the truth |",
+        "| parameter | truth | bias | spread | mean standard error | 95 % interval contains the truth |",
         "|---|---|---|---|---|---|",
     ]
     for name, truth in TRUTH.items():

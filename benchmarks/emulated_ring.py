@@ -1,4 +1,4 @@
-"""The ring through an emulated bus, over many seeds: tracking errors, and how far the estimate is off. Markdown."""
+"""The ring through an emulated bus, over many seeds: tracking errors, and errors of the estimate. Markdown."""
 
 import argparse
 import os
@@ -76,7 +76,7 @@ def main(seeds: int, output: Path | None) -> None:
         f"estimates; {seeds} seeds.\n",
     ]
     tracking = [
-        "| bench | before [mrad] | after | true parameters | after / true, worst | before / after, least |",
+        "| bench | before [mrad] | after | true parameters | after / true, worst | before / after, smallest |",
         "|---|---|---|---|---|---|",
     ]
     off = [
@@ -101,7 +101,7 @@ def main(seeds: int, output: Path | None) -> None:
                 ]
                 off.append(f"| {what} | {' | '.join(cells)} |")
     lines += ["RMS tracking error after the first sixth, medians.\n", *tracking, ""]
-    lines += ["How far the last estimate is off [%]: mean ± standard deviation (worst).\n", *off]
+    lines += ["Relative error of the last estimate [%]: mean ± standard deviation (worst).\n", *off]
     page = "\n".join(lines) + "\n"
     print(page)
     if output is not None:

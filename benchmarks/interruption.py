@@ -35,9 +35,9 @@ def interrupted(samples: int) -> Record:
             time.sleep(share * whole)
             sent = time.monotonic()
             os.kill(child.pid, signal.SIGINT)
-            told = child.stdout.readline().split()
-            if told[0] == "interrupted":
-                latencies.append(float(told[1]) - sent)
+            answer = child.stdout.readline().split()
+            if answer[0] == "interrupted":
+                latencies.append(float(answer[1]) - sent)
         child.stdin.close()
         child.wait()
     return {

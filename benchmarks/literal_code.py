@@ -29,8 +29,8 @@ def measure(recording: jid.Recording, folder: Path, repeats: int) -> Record:
     each = []
     for seed in range(repeats):
         call = [str(program), str(text), str(POPULATION), str(TIMED), str(seed)]
-        told = subprocess.run(call, check=True, text=True, capture_output=True).stdout.split()
-        each.append(float(told[0]) / int(told[1]))
+        printed = subprocess.run(call, check=True, text=True, capture_output=True).stdout.split()
+        each.append(float(printed[0]) / int(printed[1]))
     candidate = statistics.median(each)
     return {
         "kind": "literal",

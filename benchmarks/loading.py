@@ -1,7 +1,7 @@
 """Readers of a .csv of a million rows and six columns: time, throughput, and what else they bring. Markdown.
 
-Each reader gives the columns as NumPy doubles; they are timed in turn, medians are told. `jid.load` does more: headers,
-units, checks of the signals, gaps.
+Each reader gives the columns as NumPy doubles; they are timed in turn, and the table shows medians. `jid.load` does
+more: headers, units, checks of the signals, gaps.
 """
 
 import argparse

@@ -122,7 +122,7 @@ def main(samples: int, repeats: int) -> None:
         if len(seconds) == 1:  # later calls find what the allocator has kept
             # getrusage's peak is the same where it can be reset, which is what clear_refs does.
             peak = min(status("VmHWM"), 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
-    told = {
+    measured = {
         "samples": samples,
         "seconds": float(np.median(seconds)),
         "windows": windows,
@@ -130,7 +130,7 @@ def main(samples: int, repeats: int) -> None:
         "memory": peak - before,
         **search_speed(recording, joint),
     }
-    print(json.dumps(told))
+    print(json.dumps(measured))
 
 
 if __name__ == "__main__":

@@ -41,14 +41,14 @@ def main() -> None:
                 updates.append(spent)
                 last = found
     steady = [u for t, u in zip(times, updates, strict=True) if t > WINDOW + 1.0]
-    told = {
+    measured = {
         "first": updates[0],
         "filling": max(updates[1 : len(updates) - len(steady)]),
         "median": statistics.median(steady),
         "worst": max(steady),
         "updates": len(steady),
     }
-    print(json.dumps(told))
+    print(json.dumps(measured))
 
 
 if __name__ == "__main__":

@@ -17,12 +17,12 @@ from summary import OURS, RatioClaim, Verdict, claims, floors, ratio_claims, row
 import jointid as jid
 
 TEMPLATE = Path(__file__).resolve().parent / "performance.template.md"
-VERDICTS = {True: "yes", False: "**no**", None: "limit too short to tell"}
+VERDICTS = {True: "yes", False: "**no**", None: "limit too short to decide"}
 LIBRARIES = ("numpy", "scipy", "pygmo", "deap", "pymoo", "pygad", "cma")
 
 
 def versions() -> dict[str, str]:
-    """Of what was timed; of jointid with the commit, so that no run goes on after a change of the code."""
+    """Of what was timed; of jointid with the commit, so that no run continues after a change of the code."""
     libraries = {name: version(name) for name in LIBRARIES}
     ours = f"{jid.__version__} ({commit()})"
     return {"jointid": ours, "python": platform.python_version(), **libraries}
@@ -32,10 +32,10 @@ def commit() -> str:
     """The checkout's, "-dirty" if files differ from it; "unknown" outside of one."""
     call = ["git", "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]
     try:
-        told = subprocess.run(call, check=True, text=True, capture_output=True, cwd=TEMPLATE.parent)
+        run = subprocess.run(call, check=True, text=True, capture_output=True, cwd=TEMPLATE.parent)
     except (OSError, subprocess.CalledProcessError):
         return "unknown"
-    return told.stdout.strip()
+    return run.stdout.strip()
 
 
 def machine() -> str:
@@ -45,8 +45,8 @@ def machine() -> str:
         if line.startswith("model name"):
             model = line.split(":", 1)[1].strip()
             break
-    told = subprocess.run(["c++", "--version"], check=True, text=True, capture_output=True)
-    return f"{model}, {os.cpu_count()} cores; {told.stdout.splitlines()[0]}"
+    compiler = subprocess.run(["c++", "--version"], check=True, text=True, capture_output=True)
+    return f"{model}, {os.cpu_count()} cores; {compiler.stdout.splitlines()[0]}"
 
 
 def seconds(value: float) -> str:
@@ -145,12 +145,12 @@ def scaling_tables(store: Store) -> dict[str, str]:
 
 
 def ratios(store: Store, order: list[str]) -> str:
-    """What was wanted of the search and of the whole call, each with its own verdict."""
+    """What is required of the search and of the whole call, each with its own verdict."""
     lines = []
     for c in ratio_claims(rows(store, order)):
         verdicts = [cell for v in (c.alone, c.whole) for cell in (v.measured, VERDICTS[v.holds])]
         lines.append([f"≥ {c.wanted:g} times as fast as {c.group}", c.quickest, *verdicts])
-    header = ["wanted", "quickest of them", "search alone", "holds", "whole `identify()`", "holds"]
+    header = ["required", "fastest of them", "search alone", "holds", "whole `identify()`", "holds"]
     return table(header, lines)
 
 
@@ -186,8 +186,8 @@ def missed(store: Store, order: list[str]) -> str:
             ]
         )
     header = [
-        "wanted",
-        "time it leaves",
+        "required",
+        "time it allows",
         "our search alone",
         "with nothing but compression",
         "whole `identify()`",
@@ -216,7 +216,7 @@ def write(store: Store, order: list[str], limit: float, path: Path) -> None:
         few=FEW,
         failed=FAILED,
         claims=table(
-            ["wanted", "measured", "holds"],
+            ["required", "measured", "holds"],
             [[c.wish, c.verdict.measured, VERDICTS[c.verdict.holds]] for c in claims(store, order)],
         ),
         ratios=ratios(store, order),

@@ -1,6 +1,6 @@
 """`make study`, fourth part: the joint simulated, identified, and simulated again; writes docs/accuracy.md.
 
-Every figure is over seeds of the sensors' noise, failures and all; nothing is left out.
+Every figure is over seeds of the sensors' noise, failures included.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ CHAIN = NOISE.replace(
     converter_noise=3.0,
     converter_samples=128,
 )
-EVERYTHING = CHAIN.replace(nonlinearity=0.0014, filter_order=2, filter_frequency=5e3, ripple=2.6)
+EVERYTHING = CHAIN.replace(ripple=2.6, nonlinearity=0.0014, filter_order=2, filter_frequency=5e3)
 PRESETS = {
     "default": jid.GaOptions(),
     "thesis(), 100 × 1000": jid.GaOptions.thesis(),
@@ -47,7 +47,7 @@ PRESETS = {
         population=200, generations=1500
     ),
 }
-WANTED = {"noise 0.5 N·m": (2.0, 3.0), "encoder and converter, too": (4.0, 6.0)}  # [%]; stribeck
+WANTED = {"noise 0.5 N·m": (2.0, 3.0), "with encoder and converter": (4.0, 6.0)}  # [%]; stribeck
 
 
 def scenario(friction_velocity: str, control_period: float = 1e-3) -> jid.Scenario:
@@ -77,7 +77,7 @@ def accuracy(trials: int) -> list[str]:
         scenario("reference"),
         known_joint(),
         grid={
-            "sensors": {"noise 0.5 N·m": NOISE, "encoder and converter, too": CHAIN},
+            "sensors": {"noise 0.5 N·m": NOISE, "with encoder and converter": CHAIN},
             "ga": PRESETS,
         },
         trials=trials,
@@ -109,7 +109,7 @@ def accuracy(trials: int) -> list[str]:
                 worst = {name: float(np.abs(e).max()) for name, e in errors.items()}
                 limits = {n: stribeck_limit if n == "stribeck" else limit for n in worst}
                 held = all(worst[name] <= limits[name] for name in worst)
-                verdict = f"\nWanted of the default: {limit:g} % (stribeck {stribeck_limit:g} %) in every recording: "
+                verdict = f"\nRequired of the default: {limit:g} % (stribeck {stribeck_limit:g} %) in every recording: "
                 verdict += "holds." if held else "does not hold."
         lines.append(verdict)
     return lines
@@ -170,7 +170,7 @@ def grid() -> list[str]:
             recording, known_joint(), grid=sizes, trials=10, search=jid.Search(ga="thesis")
         )
         summary = study.summary()
-        laws = [base.controller.replace(**_believed(cell.mean)) for cell in summary.cells]
+        laws = [base.controller.replace(**_assumed(cell.mean)) for cell in summary.cells]
         runs = base.simulate(0, controllers=laws, recordings=False)
         seconds.append(time.perf_counter() - began)
     candidates = int(study.column("evaluations").sum())
@@ -182,7 +182,7 @@ def grid() -> list[str]:
     ]
 
 
-def _believed(mean: dict[str, float]) -> dict[str, Any]:
+def _assumed(mean: dict[str, float]) -> dict[str, Any]:
     return {name: mean[name] for name in TRUTH}
 
 
@@ -194,15 +194,14 @@ def main(trials: int, ring_trials: int, output: Path) -> None:
         "`thesis_joint()` with the link hanging down, moved "
         "±60° for 12 s by the adaptive-robust controller on Table 6-3's initial estimates (10, 20, "
         "200, 10, 1, 0) with adaptation off; "
-        "the truth is 25, 20, 100, 20, 2.4, 15. `identify` is called with the joint and nothing else.",
-        "\n## What comes out, and how it spreads",
+        "the truth is 25, 20, 100, 20, 2.4, 15. `identify` is called with the joint only.",
+        "\n## Accuracy and spread",
         *accuracy(trials),
         "\nThe presets' searches are not polished: they stop on the ridge between gain and offset. "
-        "What the thesis says about them, and what "
-        "of it holds, is in [thesis.md](thesis.md).",
+        "[thesis.md](thesis.md) says which statements of the thesis about them hold.",
         "\n## The ring closed: simulate, identify, simulate again",
         *ring(ring_trials),
-        "\nRipple is not modelled here: `ripple=(2,)` takes its bias away. With friction compensated "
+        "\nRipple is not modelled here: `ripple=2` in the model removes its bias. With friction compensated "
         "at the measured velocity, as the "
         "thesis has it, a joint that sticks gets no help, whatever the estimates; the error then is "
         "mostly that of sticking, and differs "

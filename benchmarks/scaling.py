@@ -54,8 +54,8 @@ def online() -> Record:
 def _child(program: str, *arguments: str) -> Record:
     """What a program of this folder prints, run in a process of its own."""
     call = [sys.executable, str(HERE / program), *arguments]
-    told = subprocess.run(call, check=True, text=True, capture_output=True).stdout
-    record: Record = json.loads(told)
+    printed = subprocess.run(call, check=True, text=True, capture_output=True).stdout
+    record: Record = json.loads(printed)
     return record
 
 

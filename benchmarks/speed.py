@@ -1,6 +1,6 @@
 """`make bench`: who finds the optimum how fast, on one recording and one penalty; writes docs/performance.md.
 
-Results go to build/bench as JSON lines first: an interrupted run goes on where it was.
+Results go to build/bench as JSON lines first: an interrupted run continues where it stopped.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Results as JSON lines, appended one by one, so that an interrupted run goes on where it was."""
+"""Results as JSON lines, appended one by one, so that an interrupted run continues where it stopped."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Record = dict[str, Any]
 
 
 class Store:
-    """Records of one run of the benchmark; a finished run, or one with other settings, is begun anew."""
+    """Records of one run of the benchmark; a finished run, or one with other settings, starts again."""
 
     def __init__(self, path: Path, settings: Record) -> None:
         self.path = path
@@ -23,7 +23,7 @@ class Store:
         if found and found[0] == header and found[-1]["kind"] != "finished":
             path.write_text(whole)
             self.records = found
-            print(f"Going on from {len(found) - 1} records of {path}", flush=True)
+            print(f"Continuing from {len(found) - 1} records of {path}", flush=True)
         else:
             path.write_text("")
             self.append(header)

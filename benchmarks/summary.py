@@ -1,4 +1,4 @@
-"""What the records say: medians of rows, whether each wanted figure holds, and what a missed one would take."""
+"""What the records say: medians of rows, whether each required figure holds, and what a missed one would need."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Row:
 
     @property
     def form(self) -> str:
-        """The penalty it was handed."""
+        """The penalty it was given."""
         return self.key.split(" | ")[1]
 
 
@@ -75,7 +75,7 @@ def rows(store: Store, order: list[str]) -> list[Row]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
-    """What was measured, and whether it suffices; None: the limit of a run was too short to tell."""
+    """What was measured, and whether it suffices; None: the limit of a run was too short to decide."""
 
     measured: str
     holds: bool | None
@@ -226,10 +226,10 @@ def _from_good_start(found: list[Row]) -> Claim:
         )
         for who in ("jointid polish", "SciPy least_squares")
     )
-    told = f"{theirs.seconds / ours.seconds:.3g} times as fast ({ours.name}, to the end; SciPy to the target)"
+    measured = f"{theirs.seconds / ours.seconds:.3g} times as fast ({ours.name}, to the end; SciPy to the target)"
     return Claim(
         wish="from a good start no slower than SciPy least squares, compiled residual and Jacobian",
-        verdict=Verdict(measured=told, holds=theirs.seconds >= ours.seconds),
+        verdict=Verdict(measured=measured, holds=theirs.seconds >= ours.seconds),
     )
 
 
@@ -318,23 +318,23 @@ def _hour(store: Store) -> list[Claim]:
             _at_most("memory ≤ 3 times the arrays", share, 3.0, f"{share:.1f} times"),
         ]
     for record in store.of("interruption"):
-        told = (
-            f"{1e3 * record['worst']:.0f} ms at worst, {1e3 * record['median']:.0f} ms in the middle "
+        measured = (
+            f"{1e3 * record['worst']:.0f} ms at worst, {1e3 * record['median']:.0f} ms in the median "
             f"({record['interrupted']} signals over the call)"
         )
         wish = f"Ctrl-C ends `identify()` on {record['samples']:,} samples within 0.1 s"
-        result.append(_at_most(wish, record["worst"], 0.1, told))
+        result.append(_at_most(wish, record["worst"], 0.1, measured))
     return result
 
 
 def _while_it_runs(store: Store) -> list[Claim]:
     result = []
     for record in store.of("online"):
-        told = (
-            f"{1e3 * record['median']:.1f} ms in the middle, {1e3 * record['worst']:.1f} ms at worst of "
+        measured = (
+            f"{1e3 * record['median']:.1f} ms in the median, {1e3 * record['worst']:.1f} ms at worst of "
             f"{record['updates']} ({1e3 * record['filling']:.1f} ms while the window fills; the very first "
             f"{1e3 * record['first']:.0f} ms)"
         )
         wish = "on-line ≤ 5 ms an update, 30 s at 1 kHz, in blocks of 50 samples"
-        result.append(_at_most(wish, record["worst"], 5e-3, told))
+        result.append(_at_most(wish, record["worst"], 5e-3, measured))
     return result

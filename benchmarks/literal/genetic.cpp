@@ -157,7 +157,7 @@ class Search {
   }
 
   // The smaller parent's gene goes first; children beyond the upper bound are put on it, negative
-  // ones turned round.
+  // ones reversed.
   void sbx(double a, double b, std::size_t n, Individual& first, Individual& second) {
     const double u = uniform();
     const double spread = std::pow(u <= 0.5 ? 2 * u : 1 / (2 * (1 - u)), 1.0 / 5);

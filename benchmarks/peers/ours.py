@@ -97,7 +97,7 @@ def peers() -> list[Peer]:
     rows = {
         "jointid `identify()`, default windows": whole_identify("ga", None),
         "jointid `identify()`, 200 windows": whole_identify("ga", WINDOWS),
-        'jointid `identify(method="separable")`, 200 windows': whole_identify("separable", WINDOWS),
+        'jointid `identify(search="separable")`, 200 windows': whole_identify("separable", WINDOWS),
         "jointid search, default": search(_core.GaOptions()),
         "jointid search, `thesis()` 200 × 1500": search(thesis),
         "jointid search, `thesis_code()` 200 × 1500": search(code),

@@ -1,4 +1,4 @@
-"""Every figure of the 2007 thesis that can be computed: pictures and a table of numbers.
+"""Every figure of the thesis that can be computed: pictures and a table of numbers.
 
 python examples/thesis/all_figures.py --output figures [--quick] [GROUP ...]
 """

@@ -38,5 +38,5 @@ def draw(gallery: Gallery) -> None:
             gallery.note(
                 "6-2" if samples == 1 else "6-3", f"{name}: standard deviation", spread, "steps"
             )
-            reckoned = float(np.sqrt((NOISE**2 + 1.0 / 12.0) / samples))
-            gallery.note("6-2" if samples == 1 else "6-3", f"{name}: reckoned", reckoned, "steps")
+            estimated = float(np.sqrt((NOISE**2 + 1.0 / 12.0) / samples))
+            gallery.note("6-2" if samples == 1 else "6-3", f"{name}: estimated", estimated, "steps")

@@ -24,7 +24,7 @@ GENERATIONS = (20, 50, 100, 500, 1000, 1500)
 
 @dataclass(frozen=True)
 class Cell:
-    """What came of one pair of settings."""
+    """The result of one pair of settings."""
 
     mean: dict[str, float]  # parameters averaged over the trials
     good: int  # trials with all six within 5 %

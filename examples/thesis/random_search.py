@@ -1,4 +1,4 @@
-"""Section 5.5: genetic against random search, reckoned and run."""
+"""Section 5.5: genetic against random search, estimated and run."""
 
 import numpy as np
 from gallery import Gallery, titled

@@ -15,13 +15,14 @@ ENCODER = jid.Sensors(encoder_counts=8000, velocity="counts", torque_noise=0.5)
 
 
 def rippled_joint(amplitude: float) -> jid.Joint:
-    """Its gear pushes and brakes with the motor's angle."""
-    joint = hanging_joint().replace(model=hanging_joint().model.replace(ripple=(2,)))
+    """A gear whose torque ripples with the motor's angle."""
+    joint = hanging_joint()
+    joint = joint.replace(model=joint.model.replace(ripple=(2,)))
     return joint.with_parameters({**TRUTH, "ripple_sin_2": amplitude, "ripple_cos_2": 0.0})
 
 
 def closed_loop(amplitude: float) -> Run:
-    """A move of 20 degrees to and fro under the true estimates."""
+    """A motion of 20 degrees, controlled with the true parameters."""
     return jid.simulate(
         rippled_joint(amplitude),
         controller(hanging_joint(), TRUTH),
@@ -32,7 +33,7 @@ def closed_loop(amplitude: float) -> Run:
 
 
 def open_loop(amplitude: float, *, size: float = 48.0, rate: float = 0.05) -> Run:
-    """The drive pushes with a sine, slowly unless told, so that its own inertia takes little of it."""
+    """The drive pushes with a sine; slowly by default, so that its own inertia takes little of the torque."""
     push = jid.Trajectory.sine(size, rate, duration=2.0 / rate)
     return jid.simulate(
         rippled_joint(amplitude),

@@ -8,7 +8,7 @@ import numpy as np
 import jointid as jid
 from jointid import _core
 
-# Simulation truth: coulomb is printed, the others follow from section 5.5; offset ours.
+# Simulation truth: coulomb is printed, the others follow from section 5.5; the offset is ours.
 TRUTH = {
     "coulomb": 25.0,
     "static": 20.0,
@@ -37,7 +37,7 @@ def hanging_joint() -> jid.Joint:
 
 
 def wide_motion() -> jid.Trajectory:
-    """60 degrees in cycles of 3 s: what tells all six parameters apart."""
+    """60 degrees in cycles of 3 s: a motion that determines all six parameters."""
     return jid.Trajectory.thesis(math.radians(60.0), cycle=3.0, duration=12.0)
 
 

@@ -1,4 +1,4 @@
-"""Figure 6-11: identified against tuned by hand, one parameter after the other, by a machine that has the patience."""
+"""Figure 6-11: identification against tuning, one parameter after the other, as a patient person would."""
 
 import numpy as np
 from gallery import Gallery, titled

@@ -1,4 +1,4 @@
-"""docs/hardware.md names what a bench file takes, and its tables hold what the code reckons."""
+"""docs/hardware.md names what a bench file takes, and its tables hold what the code computes."""
 
 from dataclasses import fields, replace
 from pathlib import Path
@@ -47,9 +47,9 @@ def test_each_key_of_a_bench_file_is_explained(table: str) -> None:
 
 
 def test_each_limit_has_a_row_that_says_what_stops() -> None:
-    told = (ROOT / "docs" / "hardware_limits.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "hardware_limits.md").read_text(encoding="utf-8")
     for field in fields(SessionLimits):
-        assert f"| `{field.name}` |" in told
+        assert f"| `{field.name}` |" in text
 
 
 @pytest.mark.parametrize(
@@ -61,13 +61,13 @@ def test_each_limit_has_a_row_that_says_what_stops() -> None:
         ("AN every cycle", AnalogInput(every=1)),
     ],
 )
-def test_bus_loads_are_those_that_a_session_reckons(
+def test_bus_loads_are_those_that_a_session_computes(
     name: str, source: SyncedConverter | AnalogInput | None
 ) -> None:
     bench = Bench.load(ROOT / "examples" / "hardware" / "joint.toml")
     cycles = ((500e3, 2e-3), (1e6, 2e-3), (1e6, 1e-3), (500e3, 1e-3))
-    for told, (bitrate, period) in zip(_row(name)[1:], cycles, strict=True):
+    for printed, (bitrate, period) in zip(_row(name)[1:], cycles, strict=True):
         options = replace(bench.drive, torque=source, bitrate=bitrate)
         with EmulatedBus() as bus:
             load = ElmoDrive(bus, bench.joint, options).bus_load(period)
-        assert told == f"{100.0 * load:.0f} %"
+        assert printed == f"{100.0 * load:.0f} %"

@@ -39,8 +39,8 @@ def test_notebook_runs(path: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
     ).execute()
     assert _pictures(again) == _pictures(committed)
     assert sum(_pictures(again)) >= 2
-    told = [output for cell in again.cells for output in cell.get("outputs", [])]
-    assert not [output for output in told if output.get("name") == "stderr"]
+    printed = [output for cell in again.cells for output in cell.get("outputs", [])]
+    assert not [output for output in printed if output.get("name") == "stderr"]
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

@@ -99,7 +99,7 @@ def test_identified_tracks_better_than_guessed_and_initial(table: Table) -> None
     for name in ("coulomb", "static", "stribeck", "viscous", "sensor_gain", "sensor_offset"):
         assert abs(table("Table 6-3", ring, name)) < 3.0
     assert table("Table 6-3", ring, "warnings") == 0
-    assert table("Table 6-3", "4° about", "warnings") > 0  # that motion cannot tell
+    assert table("Table 6-3", "4° about", "warnings") > 0  # that motion does not determine them
 
 
 def test_larger_errors_track_worse(table: Table) -> None:
@@ -112,14 +112,14 @@ def test_larger_errors_track_worse(table: Table) -> None:
 
 
 def test_chance_of_random_search(table: Table) -> None:
-    # Reckoned as 1 in 20 for each of the six; of the offset's domain it is 1 in 40.
+    # Estimated as 1 in 20 for each of the six; of the offset's domain it is 1 in 40.
     assert table("5.5", "by chance") == pytest.approx(20.0**4 * 40.0 * 4.9 / 0.24, rel=1e-3)
 
 
 def test_over_sampling_averages(table: Table) -> None:
     for figure, name in (("6-2", "1 conv"), ("6-3", "16 conv"), ("6-3", "128 conv")):
-        measured, reckoned = table(figure, name, "deviation"), table(figure, name, "reckoned")
-        assert measured == pytest.approx(reckoned, rel=0.15)
+        measured, estimated = table(figure, name, "deviation"), table(figure, name, "estimated")
+        assert measured == pytest.approx(estimated, rel=0.15)
 
 
 def test_feedback_and_good_estimates_help_where_the_thesis_says(table: Table) -> None:

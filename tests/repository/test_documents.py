@@ -1,0 +1,158 @@
+"""The code in docs/ runs, the links lead somewhere, and the citation names this version."""
+
+import re
+import shlex
+import shutil
+import tomllib
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from documents import ROOT, blocks, enter, read, run_python_blocks
+
+import jointid as jid
+from jointid.cli import main
+from jointid.cli.demo import data_folder
+
+PAGES = ["README.md", "CONTRIBUTING.md", "examples/README.md"]
+PAGES += [f"docs/{path.name}" for path in (ROOT / "docs").glob("*.md")]
+COMMANDS = [
+    line
+    for page in ("README.md", "docs/command_line.md")
+    for block in blocks(read(page), "sh")
+    for line in block.splitlines()
+    if line.startswith("jointid ")
+]
+
+
+def test_the_guide_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run = jid.load(data_folder() / "well_excited.csv.gz").crop(0.0, 2.0)
+    assert run.torque is not None
+    assert run.sensor is not None
+    columns = (run.time, run.position, run.velocity, run.torque, run.sensor)
+    samples = [
+        SimpleNamespace(t=t, q=q, v=v, tau=tau, raw=raw)
+        for t, q, v, tau, raw in zip(*(column.tolist() for column in columns), strict=True)
+    ]
+    names = run_python_blocks(read("docs/guide.md"), tmp_path, monkeypatch, samples=samples)
+    assert (tmp_path / "grid.csv").is_file()
+    assert names["comparison"].winner == "stribeck"
+    assert names["measured"].status == names["together"].status == "converged"
+
+
+def test_the_joint_file_in_the_guide_loads(tmp_path: Path) -> None:
+    (text,) = blocks(read("docs/guide.md"), "toml")
+    path = tmp_path / "joint.toml"
+    path.write_text(text, encoding="utf-8")
+    joint = jid.Joint.load(path)
+    assert joint.parameters["coulomb"].max == 50.0
+    assert joint.torque_hold == "zoh"
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What the commands read: recordings, a joint with values, and a saved estimate."""
+    folder = tmp_path_factory.mktemp("files")
+    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    estimate = jid.identify(recording, jid.thesis_joint())
+    estimate.save(folder / "joint.toml")
+    estimate.save(folder / "estimate.json")
+    for name in ("run", "monday", "tuesday"):
+        recording.save(folder / f"{name}.csv")
+    text = (folder / "run.csv").read_text(encoding="utf-8")
+    (folder / "log.csv").write_text(text.replace("position_rad", "enc1", 1), encoding="utf-8")
+    return folder
+
+
+@pytest.mark.parametrize("line", COMMANDS)
+def test_a_command_runs(
+    line: str, files: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    command, *arguments = shlex.split(line, comments=True)[1:]
+    if command == "emulate":  # until Ctrl-C, on an interface of the machine: only its arguments
+        from jointid.cli.arguments import parser
+
+        assert parser().parse_args([command, *arguments]).command == command
+        return
+    for path in files.iterdir():
+        shutil.copy(path, tmp_path)
+    enter(tmp_path, monkeypatch)
+    if command == "sweep":
+        arguments += ["--trials", "1"]
+    if command == "run" and arguments[0] == "joint.toml":
+        shutil.copy(ROOT / "examples" / "hardware" / "joint.toml", tmp_path)
+    assert main([command, *arguments]) == 0
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_links_lead_somewhere(page: str) -> None:
+    for link in re.findall(r"\]\(([^)\s]+)\)", read(page)):
+        if re.match(r"https?://", link):
+            continue
+        path, _, anchor = link.partition("#")
+        target = ((ROOT / page).parent / path) if path else ROOT / page
+        assert target.exists(), f"{page}: {link}"
+        if anchor:
+            assert anchor in _anchors(target.read_text(encoding="utf-8")), f"{page}: {link}"
+
+
+def _anchors(text: str) -> set[str]:
+    """The names that GitHub gives a page's headings."""
+    headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", each.lower()).replace(" ", "-") for each in headings}
+
+
+def test_every_page_can_be_found_from_the_readme() -> None:
+    linked = {link.partition("#")[0] for link in re.findall(r"\]\(([^)\s]+)\)", read("README.md"))}
+    pages = {page for page in PAGES if page.startswith("docs/")}
+    beside = {
+        f"docs/{link.partition('#')[0]}"
+        for page in linked & pages
+        for link in re.findall(r"\]\(([^)\s]+)\)", read(page))
+    }
+    assert pages <= linked | beside
+
+
+def test_the_citation_names_this_version_and_the_thesis() -> None:
+    yaml: Any = pytest.importorskip("yaml")
+    citation = yaml.safe_load(read("CITATION.cff"))
+    project = tomllib.loads(read("pyproject.toml"))["project"]
+    assert citation["cff-version"] == "1.2.0"
+    assert citation["version"] == project["version"]
+    assert citation["license"] == project["license"]
+    (thesis,) = citation["references"]
+    assert thesis["type"] == "thesis"
+    assert thesis["year"] == 2007
+    cited = " ".join(read("README.md").split())
+    assert f"*{thesis['title']}*" in cited
+
+
+def test_the_thesis_is_cited_in_full_once() -> None:
+    whole = " ".join("\n".join(read(page) for page in PAGES).split())
+    assert whole.count("Ryerson University") == 1
+
+
+def test_each_decision_has_a_date() -> None:
+    decisions = [part for part in read("docs/decisions.md").split("\n\n") if part.startswith("**")]
+    assert len(decisions) >= 50
+    for decision in decisions:
+        assert re.search(r"\*20\d\d-\d\d-\d\d\.\*", decision), decision[:60]
+
+
+def test_contributing_lists_every_folder_of_the_code() -> None:
+    listed = re.findall(r"^\| `((?:python|cpp)/[\w/]+)` \|", read("CONTRIBUTING.md"), re.MULTILINE)
+    sources = [*(ROOT / "python" / "jointid").rglob("*.py"), *(ROOT / "cpp").rglob("*.?pp")]
+    folders = {path.parent.relative_to(ROOT).as_posix() for path in sources}
+    assert len(set(listed)) == len(listed)
+    assert set(listed) == folders - {"python/jointid"}
+
+
+def test_the_house_is_drawn_in_ten_lines() -> None:
+    picture = blocks(read("CONTRIBUTING.md"), "")[0]
+    assert len(picture.splitlines()) == 10
+
+
+def test_every_example_is_listed() -> None:
+    listed = re.findall(r"^\| `(\w+\.py)` \|", read("examples/README.md"), re.MULTILINE)
+    assert listed == sorted(path.name for path in (ROOT / "examples").glob("*.py"))

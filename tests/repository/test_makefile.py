@@ -1,0 +1,90 @@
+"""`make lint` and `make test` keep the editable install of `make develop`, and renew it when they must."""
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from documents import ROOT
+
+pytestmark = pytest.mark.skipif(shutil.which("make") is None, reason="make is not installed")
+STAMPS = ("created", "test-tools", "lint-tools", "installed", "strict")
+OLD, NEW = 1_000_000_000, 2_000_000_000  # seconds; younger than any file here, older than any
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Path:
+    """A checkout of few files, whose environment is complete and installed in the ordinary way."""
+    shutil.copy(ROOT / "Makefile", tmp_path)
+    for name in ("cpp/base/pool.cpp", "python/jointid/joint.py", "pyproject.toml", "README.md"):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+        os.utime(path, (OLD, OLD))
+    (tmp_path / ".venv").mkdir()
+    for stamp in STAMPS:
+        (tmp_path / ".venv" / f".{stamp}").touch()
+    return tmp_path
+
+
+def develop(tree: Path) -> None:
+    """Leave what `make develop` leaves."""
+    (tree / ".venv" / ".editable").write_text("python/jointid/joint.py\n", encoding="utf-8")
+
+
+def installations(tree: Path, target: str, **environment: str) -> list[str]:
+    """The installations of the package that make would run for a target."""
+    inherited = {name: text for name, text in os.environ.items() if not name.startswith("MAKE")}
+    inherited.pop("CI", None)
+    run = subprocess.run(
+        ["make", "--dry-run", target],
+        cwd=tree,
+        env={**inherited, **environment},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    return [line for line in run.stdout.splitlines() if "pip install" in line]
+
+
+def change(tree: Path, name: str) -> None:
+    path = tree / name
+    path.touch()
+    os.utime(path, (NEW, NEW))
+
+
+@pytest.mark.parametrize("target", ["lint", "pytest", "demo", "stub"])
+def test_nothing_is_installed_anew_without_a_change(tree: Path, target: str) -> None:
+    assert installations(tree, target) == []
+    develop(tree)
+    assert installations(tree, target) == []
+    assert installations(tree, target, CI="true") == []
+
+
+@pytest.mark.parametrize("target", ["lint", "pytest"])
+def test_an_edited_module_is_used_in_place(tree: Path, target: str) -> None:
+    change(tree, "python/jointid/joint.py")
+    (line,) = installations(tree, target)
+    assert " -e " not in line
+    develop(tree)
+    assert installations(tree, target) == []
+
+
+@pytest.mark.parametrize("target", ["lint", "pytest"])
+@pytest.mark.parametrize("name", ["cpp/base/pool.cpp", "python/jointid/link.py"])
+def test_compiled_sources_and_new_modules_are_installed_in_place_again(
+    tree: Path, target: str, name: str
+) -> None:
+    develop(tree)
+    change(tree, name)
+    (line,) = installations(tree, target)
+    assert line.endswith(" -e .")
+
+
+def test_a_removed_module_is_installed_in_place_again(tree: Path) -> None:
+    develop(tree)
+    (tree / "python/jointid/joint.py").unlink()
+    (line,) = installations(tree, "lint")
+    assert line.endswith(" -e .")
