@@ -104,14 +104,14 @@ def test_without_pyarrow_the_sentence_says_what_to_install(
 
     def without(name: str, *rest: Any) -> Any:
         if name.partition(".")[0] == "pyarrow":
-            raise ModuleNotFoundError(name)
+            raise ModuleNotFoundError(name, name=name)
         return original(name, *rest)
 
     monkeypatch.setattr(builtins, "__import__", without)
     path = written(tmp_path / "a.parquet", b"PAR1")
     said = refusal(path)
     assert_one_sentence(said, path)
-    assert "needs pyarrow; pip install 'jointid[parquet]', or save the file as .csv" in said
+    assert "needs pyarrow, which is not installed; pip install 'jointid[parquet]' or save" in said
 
 
 @pytest.mark.parametrize("name", ["a.mat", "a.parquet"])

@@ -317,7 +317,7 @@ def test_saving_replaces_and_keeps_the_mode(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("run.txt", r"run\.txt: a name that ends in '\.txt' is not known; \.csv, \.csv\.gz, \.npz"),
+        ("run.txt", r"run\.txt: a file name that ends in \.csv, \.csv\.gz or \.npz is expected"),
         ("none/run.csv", "the folder '.*none' does not exist"),
         ("folder.csv", "this is a folder"),
     ],

@@ -2,71 +2,22 @@
 
 import math
 import operator
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
 
 import numpy as np
 
 from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
+from jointid.recording.headers import ALIASES, parsed, plain
 from jointid.recording.signals import SIGNALS, FloatArray, check_signal_name, closest, dimensions
-from jointid.recording.units import Unit, find_unit, unit_named, unit_names
+from jointid.recording.table import Table
+from jointid.recording.units import Unit, unit_named, unit_names
 
-_ALIASES: dict[str, str] = {
-    alias: signal
-    for signal, aliases in {
-        "time": "time t",
-        "position": "position pos angle q",
-        "velocity": "velocity vel speed",
-        "torque": "torque tau force motor_force motor_torque_output output_torque",
-        "sensor": "sensor sensor_raw torque_sensor",
-        "reference": "reference position_ref position_reference goal_position",
-        "link_position": "link_position",
-        "temperature": "temperature",
-        "motor_torque": "motor_torque",
-        "current": "current motor_current",
-    }.items()
-    for alias in aliases.split()
-}
 # Signals whose dimension tells the kind of joint, the most telling first.
 _TELLING = ("position", "link_position", "reference", "velocity", "torque")
 _LIKELY = {"time": ("time", "stamp", "clock"), "position": ("pos", "ang", "travel")}
 _SHOWN = 8  # headers listed in a message
-
-
-class Table(Protocol):
-    """Named columns, wherever they come from."""
-
-    @property
-    def source(self) -> str:
-        """What the messages call it."""
-
-    @property
-    def headers(self) -> tuple[str, ...]:
-        """One for each column."""
-
-    @property
-    def other_names(self) -> Mapping[str, int]:
-        """Names that `columns=` may use besides the headers → their columns."""
-
-    @property
-    def header_place(self) -> str:
-        """Where the headers stand, for messages."""
-
-    @property
-    def saved(self) -> Mapping[str, Any] | None:
-        """What a saved recording says of itself; None for a foreign table."""
-
-    def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
-        """Return columns as numbers, or say which cell is none."""
-
-    def text(self, column: int) -> list[str]:
-        """Return a column as text."""
-
-    def place(self, column: int, row: int) -> str:
-        """Return where a cell stands, for messages."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -219,33 +170,12 @@ def _candidates(table: Table, columns: Mapping[str, str | int | None]) -> dict[s
         chosen[index] = signal
     candidates: dict[str, list[Column]] = {}
     for index, header in enumerate(table.headers):
-        name, unit, unknown = _parsed(header)
-        signal_here = chosen.get(index) or _ALIASES.get(name)
+        name, unit, unknown = parsed(header)
+        signal_here = chosen.get(index) or ALIASES.get(name)
         if signal_here and (index in chosen or signal_here not in columns):
             column_here = Column(index=index, unit=unit, unknown=unknown)
             candidates.setdefault(signal_here, []).append(column_here)
     return candidates
-
-
-def _parsed(header: str) -> tuple[str, Unit | None, str]:
-    """Return a header's plain name, its unit, and what stands for a unit but is none."""
-    if re.search(r"\((\d+,:|:,\d+)\)$", header):  # a part of a matrix: no unit in the brackets
-        return _plain(header), None, ""
-    bracketed = re.fullmatch(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*", header)
-    if bracketed and bracketed[2].strip():
-        unit = find_unit(bracketed[2])
-        return _plain(bracketed[1]), unit, "" if unit else bracketed[2].strip()
-    parts = re.split(r"[_\s,]+", (bracketed[1] if bracketed else header).strip())
-    for first in range(1, len(parts)):  # the longest unit: rad_s before s
-        suffix = "_".join(parts[first:])
-        unit = find_unit(suffix) if suffix and not suffix[0].isdigit() else None
-        if unit:
-            return _plain("_".join(parts[:first])), unit, ""
-    return _plain("_".join(parts)), None, ""
-
-
-def _plain(name: str) -> str:
-    return re.sub(r"[\s_.-]+", "_", name.strip().casefold())
 
 
 def _kind(table: Table, candidates: Mapping[str, list[Column]]) -> str:
@@ -305,11 +235,9 @@ def _the_one(table: Table, signal: str, candidates: list[Column], kind: str) -> 
 
 def _missing(table: Table, signal: str) -> InputError:
     likely = [
-        header
-        for header in table.headers
-        if any(part in _plain(header) for part in _LIKELY[signal])
+        header for header in table.headers if any(part in plain(header) for part in _LIKELY[signal])
     ]
-    strange = [header for header in table.headers if _parsed(header)[0] not in _ALIASES]
+    strange = [header for header in table.headers if parsed(header)[0] not in ALIASES]
     shown = likely or strange or list(table.headers)
     example = f"columns={{{signal!r}: {shown[0]!r}}}" if shown else "columns="
     return InputError(

@@ -10,8 +10,9 @@ import numpy.typing as npt
 from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
 from jointid.recording.attributes import check_kind, check_torque_hold
-from jointid.recording.columns import Column, Table, column_index, match_columns
+from jointid.recording.columns import Column, column_index, match_columns
 from jointid.recording.signals import FloatArray, check_signals
+from jointid.recording.table import Table
 from jointid.recording.truncated import untold
 
 Rows = npt.NDArray[np.intp]

@@ -4,14 +4,14 @@ import gzip
 import io
 import json
 import os
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
+from jointid.base.file_endings import ending_of
 from jointid.base.files import write_whole
 from jointid.recording.signals import KINDS, header_unit
 
@@ -21,40 +21,22 @@ if TYPE_CHECKING:
 SCHEMA = 1
 CSV_MARK = "# jointid recording "
 NPZ_MEMBER = "jointid_recording"
-ENDINGS = (".csv", ".csv.gz", ".npz")
 _ATTRIBUTES = ("name", "kind", "torque_hold", "velocity_derived", "metadata", "truth")
 
 
 def save_recording(recording: "Recording", path: str | os.PathLike[str]) -> None:
     """Write a recording to a file: see `Recording.save`."""
     target = require_path("path", path)
-    ending = ending_of(target, ENDINGS)
+    writer = _WRITERS[ending_of(target, tuple(_WRITERS))]
     if not target.parent.is_dir():
-        raise InputError(f"{target}: the folder '{target.parent}' does not exist; create it first")
+        raise InputError(
+            f"the folder '{target.parent}' does not exist",
+            place=str(target),
+            remedy="create it first",
+        )
     if target.is_dir():
-        raise InputError(f"{target}: this is a folder; the name of a file is expected")
-    if ending == ".npz":
-        write_whole(target, _npz(recording))
-    elif ending == ".csv":
-        write_whole(target, _csv(recording))
-    else:  # no time stamp inside: the same recording gives the same file
-        write_whole(target, gzip.compress(_csv(recording), compresslevel=6, mtime=0))
-
-
-def ending_of(path: Path, endings: Sequence[str]) -> str:
-    """Return which of some endings a file's name has, in any case.
-
-    Raises
-    ------
-    InputError
-        None of them.
-    """
-    for ending in sorted(endings, key=len, reverse=True):
-        if path.name.lower().endswith(ending):
-            return ending
-    raise InputError(
-        f"{path}: a name that ends in {path.suffix!r} is not known; {', '.join(endings)} are"
-    )
+        raise InputError("this is a folder; a file name is expected", place=str(target))
+    write_whole(target, writer(recording))
 
 
 def _attributes(recording: "Recording") -> str:
@@ -79,6 +61,18 @@ def _npz(recording: "Recording") -> bytes:
     stream = io.BytesIO()
     np.savez_compressed(stream, allow_pickle=False, **arrays)
     return stream.getvalue()
+
+
+def _compressed_csv(recording: "Recording") -> bytes:
+    # No time stamp inside: the same recording gives the same file.
+    return gzip.compress(_csv(recording), compresslevel=6, mtime=0)
+
+
+_WRITERS: dict[str, Callable[["Recording"], bytes]] = {
+    ".csv": _csv,
+    ".csv.gz": _compressed_csv,
+    ".npz": _npz,
+}
 
 
 def saved_attributes(text: str, place: str) -> dict[str, object]:

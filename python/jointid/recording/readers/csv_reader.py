@@ -20,6 +20,7 @@ from jointid.recording.readers.csv_dialect import (
     separator_of,
 )
 from jointid.recording.readers.csv_text import text_of
+from jointid.recording.readers.reader import Reader
 from jointid.recording.saving import CSV_MARK, saved_attributes
 from jointid.recording.signals import FloatArray
 from jointid.recording.truncated import ended_before, session_text, with_notes
@@ -231,3 +232,6 @@ def _no_number(cell: str) -> str:
     if re.search(r"\d:\d\d", cell):
         return f"{what}; clock times are not read, seconds such as 0.25 are expected"
     return f"{what}; a number such as 0.25 is expected"
+
+
+READER = Reader(endings=(".csv", ".csv.gz"), open=CsvTable)

@@ -7,16 +7,12 @@ from typing import Any
 
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
-from jointid.recording.columns import Table, column_index
+from jointid.base.file_endings import ending_of
+from jointid.recording.columns import column_index
 from jointid.recording.contents import read_contents
-from jointid.recording.readers.csv_reader import CsvTable
-from jointid.recording.readers.mat_reader import MatTable
-from jointid.recording.readers.npz_reader import NpzTable
-from jointid.recording.readers.parquet_reader import ParquetTable
+from jointid.recording.readers.registry import endings, reader_of
 from jointid.recording.recording import Recording
-from jointid.recording.saving import ending_of
-
-ENDINGS = (".csv", ".csv.gz", ".npz", ".mat", ".parquet")
+from jointid.recording.table import Table
 
 
 def load(
@@ -139,25 +135,29 @@ def load_runs(
 
 
 def _table(file: Path) -> Table:
-    """Return a file as a table of columns, by what its name ends in."""
-    ending = ending_of(file, ENDINGS)
-    readers: dict[str, type[NpzTable | MatTable | ParquetTable]] = {
-        ".npz": NpzTable,
-        ".mat": MatTable,
-        ".parquet": ParquetTable,
-    }
+    """Return a file as a table of columns, by the ending of its name."""
+    reader = reader_of(file)
     try:
-        return readers.get(ending, CsvTable)(file)
+        return reader.open(file)
     except FileNotFoundError:
-        raise InputError(f"{file}: there is no such file") from None
+        raise InputError("there is no such file", place=str(file)) from None
     except IsADirectoryError:
-        raise InputError(f"{file}: this is a folder; the name of a file is expected") from None
+        raise InputError("this is a folder; a file name is expected", place=str(file)) from None
     except OSError as error:
-        raise InputError(f"{file}: the file cannot be read ({error.strerror})") from None
+        raise InputError(f"the file cannot be read ({error.strerror})", place=str(file)) from None
+    except ModuleNotFoundError as error:
+        if not reader.package or (error.name or "").partition(".")[0] != reader.package:
+            raise
+        raise InputError(
+            f"reading {ending_of(file, reader.endings)} files needs {reader.package}, "
+            "which is not installed",
+            place=str(file),
+            remedy=(f"pip install 'jointid[{reader.extra}]'", "save the file as .csv"),
+        ) from None
 
 
 def _name(file: Path, fields: Mapping[str, Any], name: str | None) -> Any:
-    stem = file.name[: -len(ending_of(file, ENDINGS))]
+    stem = file.name[: -len(ending_of(file, endings()))]
     return fields.get("name", stem) if name is None else name
 
 

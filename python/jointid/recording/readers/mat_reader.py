@@ -7,6 +7,7 @@ from typing import Any
 
 from jointid.base.errors import InputError
 from jointid.recording.readers.mat_elements import Array, DamageError, Variable, variables_of
+from jointid.recording.readers.reader import Reader
 from jointid.recording.signals import FloatArray, signal_array
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
@@ -106,3 +107,6 @@ def _vectors(struct: str, variable: Variable) -> Iterator[tuple[str, str, Array]
         for number, vector in enumerate(array.T if long else array, start=1):
             part = f"{name}(:,{number})" if long else f"{name}({number},:)"
             yield struct + part, part, vector
+
+
+READER = Reader(endings=(".mat",), open=MatTable)

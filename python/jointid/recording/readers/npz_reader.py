@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
+from jointid.recording.readers.reader import Reader
 from jointid.recording.saving import NPZ_MEMBER, saved_attributes
 from jointid.recording.signals import FloatArray, signal_array
 
@@ -88,3 +89,6 @@ class NpzTable:
         if not isinstance(value, np.ndarray):
             raise InputError(f"{self.source}: member {name!r} is not an array")
         return value
+
+
+READER = Reader(endings=(".npz",), open=NpzTable)

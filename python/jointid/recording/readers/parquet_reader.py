@@ -9,6 +9,7 @@ import numpy as np
 
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
+from jointid.recording.readers.reader import Reader
 from jointid.recording.signals import FloatArray, signal_array
 
 
@@ -22,7 +23,9 @@ class ParquetTable:
     Raises
     ------
     InputError
-        pyarrow is not installed, or the file is no .parquet file.
+        The file is no .parquet file.
+    ModuleNotFoundError
+        pyarrow is not installed.
     """
 
     saved: Mapping[str, Any] | None = None
@@ -32,14 +35,9 @@ class ParquetTable:
         self.source = str(path)
         self.header_place = self.source
         content = path.read_bytes()
-        try:
-            import pyarrow
-            from pyarrow import parquet
-        except ImportError:
-            raise InputError(
-                f"{path}: reading .parquet files needs pyarrow; pip install 'jointid[parquet]', "
-                "or save the file as .csv"
-            ) from None
+        import pyarrow
+        from pyarrow import parquet
+
         try:
             self._file: Any = parquet.ParquetFile(pyarrow.BufferReader(content))
             self.headers = tuple(map(str, self._file.schema_arrow.names))
@@ -96,3 +94,6 @@ class ParquetTable:
         return InputError(
             f"{self.source}: column {self.headers[column]!r} cannot be read ({reason_of(error)})"
         )
+
+
+READER = Reader(endings=(".parquet",), open=ParquetTable, package="pyarrow", extra="parquet")
