@@ -61,29 +61,35 @@ def test_attributes_are_read_only() -> None:
 
 
 BAD: list[tuple[dict[str, Any], str]] = [
-    ({"position": np.ones((N, 1))}, r"position has the shape \(12, 1\).*one dimension"),
-    ({"torque": np.ones(5)}, "torque has 5 samples and time has 12"),
-    ({"time": TIME[:7], "position": TIME[:7], "torque": None}, "time has 7 samples.*at least 8"),
+    ({"position": np.ones((N, 1))}, r"position: the shape is \(12, 1\).*one dimension"),
+    ({"torque": np.ones(5)}, "torque: 5 samples, but time has 12"),
+    ({"time": TIME[:7], "position": TIME[:7], "torque": None}, "time: 7 samples.*at least 8"),
     ({"position": changed(5, np.nan)}, "index 5: position is nan"),
     ({"torque": changed(3, -np.inf)}, "index 3: torque is -inf"),
-    ({"time": changed(6, TIME[5])}, r"index 6: time is 0\.05 after 0\.05.*strictly increase"),
-    ({"time": TIME[::-1]}, "index 1: time is .* after 0.11"),
+    (
+        {"time": changed(6, TIME[5])},
+        r"index 6: time is 0\.05: the sample before is at 0\.05.*strictly increase",
+    ),
+    ({"time": TIME[::-1]}, "index 1: time is .*: the sample before is at 0.11"),
     ({"time": changed(0, -np.inf)}, "index 0: time is -inf"),
-    ({"time": changed(0, -1e308)}, "time spans more than"),
-    ({"position": changed(4, 1e308)}, "index 3: position changes too fast.*give the velocity"),
-    ({"position": ["a"] * N}, "position does not hold numbers"),
-    ({"position": np.array(["1"] * N, dtype=object)}, "position is '1' at index 0"),
-    ({"position": np.ones(N) * 1j}, "position does not hold numbers"),
-    ({"position": [[1], [1, 2]]}, "position does not hold numbers"),
-    ({"position": np.ma.masked_equal(np.arange(N), 4)}, "position is masked at index 4"),
-    ({"position": None}, "position is missing"),
-    ({"kind": "linear"}, "kind is 'linear'; 'revolute' or 'prismatic'"),
-    ({"torque_hold": "foh"}, "torque_hold is 'foh'; 'zoh'"),
-    ({"name": 5}, "name is 5; a string"),
-    ({"velocity_derived": 1}, "velocity_derived is 1; True or False"),
-    ({"metadata": [1]}, "metadata is a list; a mapping"),
-    ({"metadata": {"a": np.zeros(2)}}, "metadata: 'a' holds no JSON value"),
-    ({"metadata": {"a": float("nan")}}, "metadata: 'a' holds no JSON value"),
+    ({"time": changed(0, -1e308)}, "time: the span is too long"),
+    (
+        {"position": changed(4, 1e308)},
+        "index 3: position is .* changes too fast .*give the velocity",
+    ),
+    ({"position": ["a"] * N}, "position: an array of numbers is expected"),
+    ({"position": np.array(["1"] * N, dtype=object)}, "position: '1' at index 0 is not a number"),
+    ({"position": np.ones(N) * 1j}, "position: an array of numbers is expected"),
+    ({"position": [[1], [1, 2]]}, "position: an array of numbers is expected"),
+    ({"position": np.ma.masked_equal(np.arange(N), 4)}, "position: masked at index 4"),
+    ({"position": None}, "position is None: a recording needs time and position"),
+    ({"kind": "linear"}, "kind is 'linear': revolute or prismatic"),
+    ({"torque_hold": "foh"}, "torque_hold is 'foh': zoh"),
+    ({"name": 5}, "name is 5: a string"),
+    ({"velocity_derived": 1}, "velocity_derived is 1: true or false"),
+    ({"metadata": [1]}, "metadata is \\[1\\]: a mapping"),
+    ({"metadata": {"a": np.zeros(2)}}, "metadata.a: a JSON value is expected"),
+    ({"metadata": {"a": float("nan")}}, "metadata.a: a JSON value is expected"),
     ({"truth": {1: 2.0}}, "truth: the key 1 is not a string"),
 ]
 
@@ -102,7 +108,7 @@ def test_units_follow_the_kind() -> None:
     assert [sliding.unit(s) for s in SIGNALS] == (
         ["s", "m", "m/s", "N", "1", "m", "m", "°C", "N·m", "A"]
     )
-    with pytest.raises(InputError, match="'torqe' is no signal, did you mean 'torque'"):
+    with pytest.raises(InputError, match="signal: 'torqe' is not a signal; did you mean 'torque'"):
         turning.unit("torqe")
 
 
@@ -172,10 +178,10 @@ def test_crop_includes_both_ends_and_keeps_derived_velocity() -> None:
 @pytest.mark.parametrize(
     ("start", "stop", "message"),
     [
-        (0.0, 0.065, r"crop from 0\.0 s to 0\.065 s leaves 7 samples of 12"),
+        (0.0, 0.065, r"0\.0 s to 0\.065 s leaves 7 samples of 12"),
         (5.0, 4.0, "leaves 0 samples"),
-        (np.nan, 4.0, "crop: start is nan"),
-        (0.0, "end", "crop: stop is 'end'"),
+        (np.nan, 4.0, "start is nan"),
+        (0.0, "end", "stop is 'end'"),
     ],
 )
 def test_crop_refuses(start: Any, stop: Any, message: str) -> None:

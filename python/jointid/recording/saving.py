@@ -1,4 +1,4 @@
-"""Writing a recording: .npz, .csv and .csv.gz, which `load` reads back bit for bit."""
+"""Writing a recording: .csv, .csv.gz and .npz, which `load` reads back bit for bit."""
 
 import gzip
 import io
@@ -76,7 +76,14 @@ _WRITERS: dict[str, Callable[["Recording"], bytes]] = {
 
 
 def saved_attributes(text: str, place: str) -> dict[str, object]:
-    """Return what a saved recording says of itself besides its signals.
+    """Return the attributes of a saved recording: name, kind, torque hold, metadata, ...
+
+    Parameters
+    ----------
+    text : str
+        JSON, as `save_recording` writes it.
+    place : str
+        File and line, for messages.
 
     Raises
     ------
@@ -86,16 +93,20 @@ def saved_attributes(text: str, place: str) -> dict[str, object]:
     try:
         attributes = json.loads(text)
     except (ValueError, RecursionError):
-        raise InputError(f"{place}: the description of the recording is damaged JSON") from None
+        raise InputError("the description of the recording is damaged JSON", place=place) from None
     if not isinstance(attributes, dict):
-        raise InputError(f"{place}: the description of the recording is not a JSON object")
+        raise InputError("the description of the recording is not a JSON object", place=place)
     schema = attributes.get("schema")
     if schema != SCHEMA:
         raise InputError(
-            f"{place}: the recording has the schema {schema!r}, this version reads {SCHEMA}; "
-            "a later jointid may have written it"
+            f"this version reads {SCHEMA}; a later jointid may have written the recording",
+            argument="schema",
+            value=schema,
+            place=place,
         )
     kind = attributes.get("kind", KINDS[0])
     if kind not in KINDS:
-        raise InputError(f"{place}: kind is {kind!r}; {' or '.join(map(repr, KINDS))} is expected")
+        raise InputError(
+            f"{' or '.join(KINDS)} is expected", argument="kind", value=kind, place=place
+        )
     return {key: attributes[key] for key in _ATTRIBUTES if key in attributes}

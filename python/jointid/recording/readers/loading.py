@@ -12,6 +12,7 @@ from jointid.recording.columns import column_index
 from jointid.recording.contents import read_contents
 from jointid.recording.readers.registry import endings, reader_of
 from jointid.recording.recording import Recording
+from jointid.recording.runs import one_run
 from jointid.recording.table import Table
 
 
@@ -49,17 +50,18 @@ def load(
         Signal → unit, e.g. ``{"position": "deg"}``, whatever the header says.
         Default: the header's.
     scale : mapping of str to float, optional
-        Signal → SI value of the file's 1, whatever the header says: for encoder counts
+        Signal → factor from file units to SI, whatever the header says: for encoder counts
         (``{"position": 2 * math.pi / 4096}``), a voltage that drives a known force, a sign.
-        Noted in ``metadata["scale"]``. Default: units tell.
+        Saved in ``metadata["scale"]``. Default: the factor of the unit.
     where : mapping of str to number or str, optional
         Header → value: only rows with this value are kept. Default: all rows.
     kind : {"revolute", "prismatic"}, optional
-        Default: what the units tell, ``"prismatic"`` for metres or newtons, else ``"revolute"``.
+        Default: from the units, ``"prismatic"`` for metres or newtons, else ``"revolute"``.
     torque_hold : {"zoh", "linear"}, optional
-        How the torque lives between samples. Default: what was saved, else not known.
+        How the torque varies between samples: held (zero-order hold) or linearly.
+        Default: as saved, else not known.
     name : str, optional
-        Default: what was saved, else the file's name without its ending.
+        Default: as saved, else the file's name without its ending.
 
     Returns
     -------
@@ -68,8 +70,8 @@ def load(
     Raises
     ------
     InputError
-        The file cannot be read or its columns hold no recording: one sentence that names the
-        file, the line or the header, and what would be right.
+        The file cannot be read, or its columns are not a recording. The error names the file, the
+        line or the header, and what is expected.
     """
     file = require_path("path", path)
     contents = read_contents(
@@ -78,8 +80,7 @@ def load(
     if where:
         fields = contents.fields(contents.rows_where(where))
     else:
-        advice = ' (of several runs in a file choose one, where={"run": 1}, or take load_runs)'
-        fields = contents.fields(time_advice=advice)
+        fields = contents.fields(time_remedy=lambda: one_run(contents))
     return _recording(file, fields, name)
 
 
@@ -94,19 +95,19 @@ def load_runs(
     torque_hold: str | None = None,
     name: str | None = None,
 ) -> tuple[Recording, ...]:
-    """Return the recordings of a file that holds several runs one below the other.
+    """Return the recordings of a file that holds several runs, one after the other.
 
     Parameters
     ----------
     path : path-like
         As in `load`.
     by : str or int
-        Header or 0-based number of the column that tells the runs apart: rows with the same
-        value are one run.
+        Header or 0-based number of the column that numbers the runs: rows with the same value
+        are one run.
     columns, units, scale, kind, torque_hold
         As in `load`.
     name : str, optional
-        What the runs' names begin with. Default: as in `load`.
+        Beginning of the runs' names. Default: as in `load`.
 
     Returns
     -------
@@ -130,7 +131,13 @@ def load_runs(
             fields = contents.fields(rows)
             runs.append(_recording(file, fields, f"{_name(file, fields, name)} {run}".lstrip()))
         except InputError as error:
-            raise InputError(f"{error} (the run {run})") from None
+            raise InputError(
+                error.reason,
+                argument=error.argument,
+                value=error.value,
+                place=f"{error.place} ({run})",
+                remedy=error.remedy,
+            ) from None
     return tuple(runs)
 
 
@@ -165,4 +172,4 @@ def _recording(file: Path, fields: Mapping[str, Any], name: str | None) -> Recor
     try:
         return Recording(**{**fields, "name": _name(file, fields, name)})
     except InputError as error:
-        raise InputError(f"{file}: {error}") from None
+        raise error.at(str(file)) from None
