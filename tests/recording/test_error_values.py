@@ -70,6 +70,8 @@ def test_parts(
         "t,q_Nm,v,x",
         "t,q [furlong],v,x",
         "t,q,vel_A,x",
+        "t,q_counts,v,x",
+        "t,q,tau_V,x",
         "t,q,vel [furlong],x",
     ],
 )

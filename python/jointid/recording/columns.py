@@ -269,7 +269,12 @@ def _wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputEr
     else:
         problem = f"is in {column.unit.name} ({column.unit.dimension})"
     if column.unit and column.unit.dimension in ("raw reading", "voltage"):
-        remedy: str | Action = "give the scale, the factor from file units to SI"
+        remedy = Action(
+            "call",
+            {"scale": {signal: 1.0}},
+            function="load",
+            text="with the factor from file units to SI instead of 1.0",
+        )
     else:
         remedy = Action(
             "call", {"units": {signal: known[0]}}, function="load", text="if this is its unit"
