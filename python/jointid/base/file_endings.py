@@ -1,8 +1,9 @@
-"""The endings of file names: which of several a name has, and how they are listed in a text."""
+"""The endings of file names: which of several a name has."""
 
 from collections.abc import Sequence
 from pathlib import Path
 
+from jointid.base.error_text import alternatives
 from jointid.base.errors import InputError
 
 
@@ -31,15 +32,3 @@ def ending_of(path: Path, endings: Sequence[str]) -> str:
     raise InputError(
         f"a file name that ends in {alternatives(endings)} is expected", place=str(path)
     )
-
-
-def alternatives(names: Sequence[str]) -> str:
-    """Return names as alternatives in a sentence.
-
-    Examples
-    --------
-    >>> alternatives((".csv", ".npz", ".mat"))
-    '.csv, .npz or .mat'
-    """
-    *others, last = names
-    return f"{', '.join(others)} or {last}" if others else last

@@ -3,7 +3,8 @@
 from importlib import import_module
 from pathlib import Path
 
-from jointid.base.file_endings import alternatives, ending_of
+from jointid.base.error_text import alternatives
+from jointid.base.file_endings import ending_of
 from jointid.recording.readers.reader import Reader
 
 # Each module defines `READER`; messages and help list the endings in this order.
