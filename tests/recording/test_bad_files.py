@@ -1,4 +1,4 @@
-"""Files that cannot be used: each gives one sentence with the file, the place and the way out."""
+"""Files that cannot be used: each raises an error of one sentence with file, place and remedy."""
 
 import gzip
 import io
@@ -29,7 +29,7 @@ from jointid.base.errors import InputError
 from jointid.recording.readers.loading import load
 from jointid.recording.recording import Recording
 
-# Name of the file, what it holds, arguments, and what the sentence says after the file's name.
+# File name, content, arguments, and a pattern of the message after the file name.
 Bad = tuple[str, Any, Mapping[str, Any], str]
 BAD: list[Bad] = [
     ("a.csv", with_line(5, "0.03,abc,1,2"), {}, "line 5, column 'position_rad': 'abc' is not"),
@@ -220,9 +220,9 @@ def test_bad_file_gives_one_sentence(
         npz(path, **content)
     elif content is not None:
         written(path, content)
-    said = refusal(path, **arguments)
-    assert_one_sentence(said, path)
-    assert re.search(message, said), said
+    error_text = refusal(path, **arguments)
+    assert_one_sentence(error_text, path)
+    assert re.search(message, error_text), error_text
 
 
 def test_what_is_wrong_with_the_arguments(tmp_path: Path) -> None:
@@ -239,9 +239,9 @@ def test_what_is_wrong_with_the_arguments(tmp_path: Path) -> None:
 def test_folder(tmp_path: Path) -> None:
     for name in ("a.csv", "a.npz"):
         (tmp_path / name).mkdir()
-        said = refusal(tmp_path / name)
-        assert_one_sentence(said, tmp_path / name)
-        assert "this is a folder" in said
+        error_text = refusal(tmp_path / name)
+        assert_one_sentence(error_text, tmp_path / name)
+        assert "this is a folder" in error_text
 
 
 @pytest.mark.parametrize(
@@ -258,9 +258,9 @@ def test_folder(tmp_path: Path) -> None:
 def test_damaged_gzip(spoil: Callable[[bytes], bytes], message: str, tmp_path: Path) -> None:
     path = tmp_path / "a.csv.gz"
     path.write_bytes(spoil(gzip.compress("\n".join(GOOD).encode(), mtime=0)))
-    said = refusal(path)
-    assert_one_sentence(said, path)
-    assert message in said
+    error_text = refusal(path)
+    assert_one_sentence(error_text, path)
+    assert message in error_text
 
 
 def test_npz_member_that_is_no_array(tmp_path: Path) -> None:
@@ -286,12 +286,12 @@ def test_damaged_npz_is_refused_or_read(
     for _ in range(data.draw(st.integers(1, 4))):
         raw[data.draw(st.integers(0, len(raw) - 1))] = data.draw(st.integers(0, 255))
     path.write_bytes(raw[: data.draw(st.integers(0, len(raw)))])
-    said = ""
+    error_text = ""
     try:
         load(path)
     except InputError as error:
-        said = str(error)
-    assert "\n" not in said
+        error_text = str(error)
+    assert "\n" not in error_text
 
 
 cell = st.one_of(
@@ -336,13 +336,13 @@ fuzzed = st.one_of(
 def test_any_text_loads_or_is_refused(text: str, tmp_path_factory: pytest.TempPathFactory) -> None:
     path = tmp_path_factory.getbasetemp() / "fuzzed.csv"
     path.write_bytes(text.encode("utf-8", "surrogatepass"))
-    said = str(path)
+    error_text = str(path)
     try:
         loaded = load(path)
     except InputError as error:
-        said = str(error)
+        error_text = str(error)
     else:
         assert len(loaded) >= 8
         assert all(np.isfinite(getattr(loaded, name)).all() for name in loaded.signals)
-    assert said.startswith(str(path))
-    assert "\n" not in said
+    assert error_text.startswith(str(path))
+    assert "\n" not in error_text

@@ -198,9 +198,9 @@ def test_bad_text_gives_one_sentence(
     name: str, content: Any, arguments: Mapping[str, Any], message: str, tmp_path: Path
 ) -> None:
     path = written(tmp_path / name, content)
-    said = refusal(path, **arguments)
-    assert_one_sentence(said, path)
-    assert re.search(message.replace("^", r"\^"), said), said
+    error_text = refusal(path, **arguments)
+    assert_one_sentence(error_text, path)
+    assert re.search(message.replace("^", r"\^"), error_text), error_text
 
 
 finite = st.floats(allow_nan=False, allow_infinity=False).map(repr)

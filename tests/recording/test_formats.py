@@ -85,21 +85,21 @@ def bad_parquets() -> list[tuple[dict[str, Any], str]]:
 def test_bad_parquet_gives_one_sentence(number: int, tmp_path: Path) -> None:
     columns, message = bad_parquets()[number]
     path = parquet(tmp_path / "a.parquet", **columns)
-    said = refusal(path)
-    assert_one_sentence(said, path)
-    assert re.search(message, said), said
+    error_text = refusal(path)
+    assert_one_sentence(error_text, path)
+    assert re.search(message, error_text), error_text
 
 
 @pytest.mark.parametrize("content", [b"", b"PAR1", b"PAR1" + bytes(50) + b"PAR1", b"t,q\n1,2\n"])
 def test_no_parquet_at_all(content: bytes, tmp_path: Path) -> None:
     pytest.importorskip("pyarrow")
     path = written(tmp_path / "a.parquet", content)
-    said = refusal(path)
-    assert_one_sentence(said, path)
-    assert "the file is not a .parquet file, or is damaged (" in said
+    error_text = refusal(path)
+    assert_one_sentence(error_text, path)
+    assert "the file is not a .parquet file, or is damaged (" in error_text
 
 
-def test_without_pyarrow_the_sentence_says_what_to_install(
+def test_without_pyarrow_the_message_names_the_extra(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for name in [name for name in sys.modules if name.partition(".")[0] == "pyarrow"]:
@@ -113,9 +113,12 @@ def test_without_pyarrow_the_sentence_says_what_to_install(
 
     monkeypatch.setattr(builtins, "__import__", without)
     path = written(tmp_path / "a.parquet", b"PAR1")
-    said = refusal(path)
-    assert_one_sentence(said, path)
-    assert "needs pyarrow, which is not installed; pip install 'jointid[parquet]' or save" in said
+    error_text = refusal(path)
+    assert_one_sentence(error_text, path)
+    assert (
+        "needs pyarrow, which is not installed; pip install 'jointid[parquet]' or save"
+        in error_text
+    )
 
 
 @pytest.mark.parametrize("name", ["a.mat", "a.parquet"])
@@ -129,16 +132,16 @@ def test_missing_file_and_folder(name: str, tmp_path: Path) -> None:
 
 
 def assert_loads_or_is_refused(path: Path) -> None:
-    said = str(path)
+    error_text = str(path)
     try:
         loaded = load(path)
     except InputError as error:
-        said = str(error)
+        error_text = str(error)
     else:
         assert len(loaded) >= 8
         assert all(np.isfinite(getattr(loaded, name)).all() for name in loaded.signals)
-    assert said.startswith(str(path))
-    assert "\n" not in said
+    assert error_text.startswith(str(path))
+    assert "\n" not in error_text
 
 
 @given(raw=st.binary(max_size=400))

@@ -80,7 +80,7 @@ def test_si_is_assumed_and_noted(tmp_path: Path) -> None:
         ("t,pos_m,position_ref_m,motor_torque_Nm", "prismatic"),
     ],
 )
-def test_units_tell_the_kind(header: str, kind: str, tmp_path: Path) -> None:
+def test_units_show_the_kind(header: str, kind: str, tmp_path: Path) -> None:
     assert load(written(tmp_path / "a.csv", lines(header))).kind == kind
 
 
@@ -253,13 +253,16 @@ def test_shared_recordings(
     assert load(tmp_path / "again.csv") == loaded
 
 
-def test_several_axes_are_refused_with_the_way_out(shared_data: Path) -> None:
-    said = refusal(shared_data / "kr300" / "kr300_A.csv.gz")
-    assert said.count("motor_encoder_pos_") > 6
-    assert f"columns={{'position': '{POSITION}'}}" in said
+def test_several_axes_are_refused_with_a_remedy(shared_data: Path) -> None:
+    error_text = refusal(shared_data / "kr300" / "kr300_A.csv.gz")
+    assert error_text.count("motor_encoder_pos_") > 6
+    assert f"columns={{'position': '{POSITION}'}}" in error_text
 
 
-def test_several_runs_are_refused_with_the_way_out(shared_data: Path) -> None:
-    said = refusal(shared_data / "xl330" / "bam_xl330.csv.gz")
-    assert "line 1126, column 'time_s'" in said
-    assert "; load with where={'run_index': 0} (one run) or load_runs with by='run_index'" in said
+def test_several_runs_are_refused_with_a_remedy(shared_data: Path) -> None:
+    error_text = refusal(shared_data / "xl330" / "bam_xl330.csv.gz")
+    assert "line 1126, column 'time_s'" in error_text
+    assert (
+        "; load with where={'run_index': 0} (one run) or load_runs with by='run_index'"
+        in error_text
+    )

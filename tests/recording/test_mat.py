@@ -54,9 +54,9 @@ def test_structs_one_level_deep(tmp_path: Path) -> None:
 def test_structs_that_share_names(tmp_path: Path) -> None:
     one, two = ({"t": TIME, "q": sign * ANGLE} for sign in (1, -1))
     path = mat(tmp_path / "a.mat", {"one": one, "two": two})
-    said = refusal(path)
-    assert_one_sentence(said, path)
-    assert "no column is recognised as time; candidates are 'one.t', 'one.q', 'two.t'" in said
+    error_text = refusal(path)
+    assert_one_sentence(error_text, path)
+    assert "no column is recognised as time; candidates are 'one.t', 'one.q', 'two.t'" in error_text
     loaded = load(path, columns={"time": "two.t", "position": "two.q"})
     assert loaded.position.tolist() == (-ANGLE).tolist()
 
@@ -128,8 +128,8 @@ def test_either_order_of_bytes_and_objects_left_out(order: str, tmp_path: Path) 
     assert loaded.position.tolist() == [0.5] * 10
     assert "only 'tabl'; save" in refusal(written(tmp_path / "a.mat", level_5(order, opaque)))
     wrong = variable(order, "q", 6, 9, struct.pack(f"{order}3d", 1, 2, 3), 10)
-    said = refusal(written(tmp_path / "a.mat", level_5(order, times, wrong)))
-    assert "damaged or truncated (the variable 'q' has 3 values for [1, 10])" in said
+    error_text = refusal(written(tmp_path / "a.mat", level_5(order, times, wrong)))
+    assert "damaged or truncated (the variable 'q' has 3 values for [1, 10])" in error_text
 
 
 def test_a_file_nested_without_end_is_left_alone(tmp_path: Path) -> None:
@@ -215,10 +215,10 @@ def test_bad_mat_gives_one_sentence(
         written(path, content)
     else:
         mat(path, content)
-    said = refusal(path, **arguments)
-    if not said.startswith("scale: "):
-        assert_one_sentence(said, path)
-    assert re.search(message, said), said
+    error_text = refusal(path, **arguments)
+    if not error_text.startswith("scale: "):
+        assert_one_sentence(error_text, path)
+    assert re.search(message, error_text), error_text
 
 
 # --- EMPS, as its authors publish it ---
@@ -241,7 +241,7 @@ def test_emps_from_its_mat_file(shared_data: Path) -> None:
     assert made.metadata["scale"] == FORCE
 
 
-def test_emps_identifies_alike_from_both_files(shared_data: Path) -> None:
+def test_emps_gives_the_same_estimate_from_both_files(shared_data: Path) -> None:
     folder = shared_data / "emps"
     text = load(folder / "emps_train.csv.gz")
     made = load(folder / "DATA_EMPS.mat", columns=EMPS, scale=FORCE, kind="prismatic")

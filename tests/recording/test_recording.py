@@ -201,7 +201,7 @@ def test_equality_is_bit_for_bit() -> None:
     assert hash(recording()) == hash(recording())
 
 
-def test_fingerprint_tells_values_and_names_apart() -> None:
+def test_fingerprint_depends_on_values_and_names() -> None:
     made = [
         recording(),
         recording(torque=None),
@@ -334,7 +334,7 @@ def test_where_nothing_can_be_saved(name: str, message: str, tmp_path: Path) -> 
         recording().save(tmp_path / name)
 
 
-def test_arrays_that_nobody_can_write_to_are_taken_as_they_are() -> None:
+def test_read_only_arrays_are_not_copied() -> None:
     time, position = np.arange(10.0), np.sin(np.arange(10.0))
     time.flags.writeable = False
     recording = Recording(time=time, position=position, torque=np.zeros(10))

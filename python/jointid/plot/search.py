@@ -40,15 +40,15 @@ def adaptation(
     require_kind("options", options, GaOptions)
     axes = axes_or_new(axes)
     corner = [0.0, options.diversity_low, options.diversity_high, 1.0]
-    for number, (name, apart, alike) in enumerate(
+    for number, (name, diverse, equal) in enumerate(
         (
             ("crossover", options.crossover_probability, options.crossover_probability_alike),
             ("mutation", options.mutation_probability, options.mutation_probability_alike),
         )
     ):
-        end = alike if options.adaptive else apart
+        end = equal if options.adaptive else diverse
         keywords = line_style(number)
-        axes.plot(corner, [apart, apart, end, end], label=f"{name} probability", **keywords)
+        axes.plot(corner, [diverse, diverse, end, end], label=f"{name} probability", **keywords)
         if generations:
             axes.plot(
                 [generation.diversity for generation in generations],

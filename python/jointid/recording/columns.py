@@ -1,8 +1,7 @@
 """The column, unit and scale of each signal: from the headers, and from `columns`, `units` and `scale`."""
 
 import math
-import operator
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,15 +9,15 @@ import numpy as np
 from jointid.base.advice import Action
 from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
+from jointid.recording.column_lookup import column_index, listed
 from jointid.recording.headers import ALIASES, parsed, plain
-from jointid.recording.signals import SIGNALS, FloatArray, check_signal_name, closest, dimensions
+from jointid.recording.signals import SIGNALS, FloatArray, check_signal_name, dimensions
 from jointid.recording.table import Table
 from jointid.recording.units import Unit, unit_named, unit_names
 
 # Signals whose dimension shows the kind of joint, the clearest first.
 _SHOWING_KIND = ("position", "link_position", "reference", "velocity", "torque")
 _LIKELY = {"time": ("time", "stamp", "clock"), "position": ("pos", "ang", "travel")}
-_SHOWN = 8  # headers listed in a message
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -135,64 +134,6 @@ def _check_scale(table: Table, signal: str, factor: object, units: Mapping[str, 
         )
 
 
-def column_index(table: Table, column: object, argument: str) -> int:
-    """Return the number of the column that a header or a number names.
-
-    Parameters
-    ----------
-    table : Table
-    column : object
-        A header, in upper or lower case, or a 0-based column number.
-    argument : str
-        The argument that it was given for.
-
-    Raises
-    ------
-    InputError
-        There is no such column, or the header is not unique.
-    """
-    if isinstance(column, str):
-        return _by_header(table, column, argument)
-    if isinstance(column, bool) or not hasattr(column, "__index__"):
-        raise InputError(
-            "a header or a 0-based column number is expected", argument=argument, value=column
-        )
-    index = operator.index(column)
-    if not 0 <= index < len(table.headers):
-        raise InputError(
-            f"the columns are 0 to {len(table.headers) - 1}",
-            argument=argument,
-            value=index,
-            place=table.header_place,
-        )
-    return index
-
-
-def _by_header(table: Table, header: str, argument: str) -> int:
-    for same in (str.strip, lambda text: text.strip().casefold()):
-        found = [k for k, each in enumerate(table.headers) if same(each) == same(header)]
-        if len(found) == 1:
-            return found[0]
-        if found:
-            raise InputError(
-                f"columns {' and '.join(map(str, found))} have this header",
-                argument=argument,
-                value=header,
-                place=table.header_place,
-                remedy="give the number of the column",
-            )
-    if header in table.other_names:
-        return table.other_names[header]
-    close = closest(header, table.headers)
-    raise InputError(
-        "no such header",
-        argument=argument,
-        value=header,
-        place=table.header_place,
-        remedy=f"did you mean {close!r}" if close else f"headers are {_listed(table.headers)}",
-    )
-
-
 def _candidates(table: Table, columns: Mapping[str, str | int | None]) -> dict[str, list[Column]]:
     """Return the columns that `columns` or a header assigns to each signal."""
     chosen: dict[int, str] = {}
@@ -301,13 +242,7 @@ def _missing(table: Table, signal: str) -> InputError:
     unrecognised = [header for header in table.headers if parsed(header)[0] not in ALIASES]
     shown = likely or unrecognised or list(table.headers)
     return InputError(
-        f"no column is recognised as {signal}; candidates are {_listed(shown) or 'none'}",
+        f"no column is recognised as {signal}; candidates are {listed(shown) or 'none'}",
         place=table.header_place,
         remedy=Action("call", {"columns": {signal: shown[0]}}, function="load") if shown else (),
     )
-
-
-def _listed(headers: Sequence[str]) -> str:
-    shown = ", ".join(repr(header[:60]) for header in headers[:_SHOWN])
-    rest = len(headers) - _SHOWN
-    return f"{shown} and {rest} more" if rest > 0 else shown

@@ -11,7 +11,8 @@ from jointid.base.advice import Action
 from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
 from jointid.recording.attributes import check_kind, check_torque_hold
-from jointid.recording.columns import Column, column_index, match_columns
+from jointid.recording.column_lookup import column_index
+from jointid.recording.columns import Column, match_columns
 from jointid.recording.signals import FloatArray, check_signals
 from jointid.recording.table import Table
 from jointid.recording.truncated import unrecorded

@@ -122,7 +122,7 @@ class Recording:
             raise InputError(
                 "true or false is expected", argument="velocity_derived", value=velocity_derived
             )
-        given: dict[str, npt.ArrayLike | None] = {
+        arguments: dict[str, npt.ArrayLike | None] = {
             "time": time,
             "position": position,
             "velocity": velocity,
@@ -135,15 +135,15 @@ class Recording:
             "current": current,
         }
         for needed in ("time", "position"):
-            if given[needed] is None:
+            if arguments[needed] is None:
                 raise InputError("a recording needs time and position", argument=needed, value=None)
         arrays = {
             signal: signal_array(signal, values)
-            for signal, values in given.items()
+            for signal, values in arguments.items()
             if values is not None
         }
         check_signals(arrays)
-        # Frozen: attributes are set here, past __setattr__, and nowhere else.
+        # Read-only: attributes are set only here, without __setattr__.
         vars(self).update(dict.fromkeys(SIGNALS), **arrays)
         vars(self).update(
             kind=kind,
@@ -216,7 +216,7 @@ class Recording:
 
     @functools.cached_property
     def fingerprint(self) -> str:
-        """First 16 hexadecimal digits of the SHA-256 of the signals' names and bytes."""
+        """First 16 hexadecimal digits of the SHA-256 hash of the signals' names and bytes."""
         digest = hashlib.sha256()
         for name in self.signals:
             digest.update(f"{name}:{len(self)};".encode())
@@ -367,7 +367,7 @@ class Recording:
         raise AttributeError(f"a recording is read-only, '{name}' cannot be deleted")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Through the constructor: pickles of arrays forget that they are read-only.
+        # By the constructor: unpickled arrays are writable again.
         return functools.partial(type(self), **self._fields()), ()
 
     def _part(self, kept: slice, **changes: Any) -> Self:

@@ -8,7 +8,7 @@ from typing import Any
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.file_endings import ending_of
-from jointid.recording.columns import column_index
+from jointid.recording.column_lookup import column_index
 from jointid.recording.contents import read_contents
 from jointid.recording.readers.registry import endings, reader_of
 from jointid.recording.recording import Recording

@@ -26,7 +26,7 @@ def endings() -> tuple[str, ...]:
 
 
 def endings_text() -> str:
-    """Return the endings as they stand in a sentence: ``".csv, .csv.gz or .npz"``."""
+    """Return the endings as alternatives in a sentence: ``".csv, .csv.gz or .npz"``."""
     return alternatives(endings())
 
 
