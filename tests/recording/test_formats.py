@@ -277,7 +277,9 @@ def test_the_advice_on_several_runs_can_be_followed(name: Any, tmp_path: Path) -
 
 
 def test_no_advice_where_no_column_numbers_the_runs(tmp_path: Path) -> None:
-    path = written(tmp_path / "a.csv", ["t,q,n", *(f"{k % 9},{k},{k}" for k in range(18))])
+    # Neither a counter of samples nor a setting that several runs share.
+    rows = [f"{k % 18},{k},{k},{int(k % 18 < 9)}" for k in range(36)]
+    path = written(tmp_path / "a.csv", ["t,q,n,set", *rows])
     with pytest.raises(InputError, match=r"strictly increase$") as caught:
         load(path)
     assert caught.value.remedy == ()

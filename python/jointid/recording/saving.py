@@ -27,7 +27,7 @@ _ATTRIBUTES = ("name", "kind", "torque_hold", "velocity_derived", "metadata", "t
 def save_recording(recording: "Recording", path: str | os.PathLike[str]) -> None:
     """Write a recording to a file: see `Recording.save`."""
     target = require_path("path", path)
-    writer = _WRITERS[ending_of(target, tuple(_WRITERS))]
+    writer = _WRITERS[ending_of(target, ENDINGS)]
     if not target.parent.is_dir():
         raise InputError(
             f"the folder '{target.parent}' does not exist",
@@ -73,6 +73,7 @@ _WRITERS: dict[str, Callable[["Recording"], bytes]] = {
     ".csv.gz": _compressed_csv,
     ".npz": _npz,
 }
+ENDINGS = tuple(_WRITERS)  # of the files that a recording can be written to
 
 
 def saved_attributes(text: str, place: str) -> dict[str, object]:

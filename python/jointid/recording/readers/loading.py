@@ -29,20 +29,20 @@ def load(
 ) -> Recording:
     """Return the recording that a file holds.
 
-    Headers are a signal's name with its unit: ``position_rad``, ``velocity [deg/s]``,
-    ``torque_Nm``, ``time_ms``; any case. Known names are time (t), position (pos, angle, q),
+    Headers are a signal's name with its unit, in upper or lower case: ``position_rad``,
+    ``velocity [deg/s]``, ``torque_Nm``, ``time_ms``. Known names are time (t), position (pos, angle, q),
     velocity (vel, speed), torque (tau, force, motor_force, motor_torque_output, output_torque),
     sensor (sensor_raw, torque_sensor), reference (position_ref, position_reference,
     goal_position), link_position, temperature, motor_torque and current (motor_current).
-    A signal without a unit is taken as SI and listed in ``metadata["assumed_units"]``.
+    A signal without a unit is assumed to be in SI units and listed in ``metadata["assumed_units"]``.
 
     Parameters
     ----------
     path : path-like
-        A ``.csv``, ``.csv.gz`` or ``.npz`` file, foreign or written by `Recording.save`; a
+        A ``.csv``, ``.csv.gz`` or ``.npz`` file, from any program or from `Recording.save`; a
         MATLAB ``.mat`` file up to version 7 (vectors, also in a struct, by their names); a
-        ``.parquet`` file (needs pyarrow). Commas, semicolons or tabs separate a text's cells;
-        with the latter two, decimal commas are read as well.
+        ``.parquet`` file (needs pyarrow). The cells of a text are separated by commas, semicolons
+        or tabs; with the latter two, decimal commas are read as well.
     columns : mapping of str to str, int or None, optional
         Signal → header or 0-based number of its column; None leaves the signal out (a velocity
         left out is derived from position). Default: by the headers, also for signals not mapped.
@@ -72,6 +72,11 @@ def load(
     InputError
         The file cannot be read, or its columns are not a recording. The error names the file, the
         line or the header, and what is expected.
+
+    Examples
+    --------
+    >>> recording = jid.load("run.csv")
+    >>> recording = jid.load("log.csv", columns={"position": "enc1"}, units={"position": "deg"})
     """
     file = require_path("path", path)
     contents = read_contents(
@@ -117,7 +122,11 @@ def load_runs(
     Raises
     ------
     InputError
-        As `load`.
+        As `load`; the place names the run.
+
+    Examples
+    --------
+    >>> slow, fast = jid.load_runs("week.csv", by="run")
     """
     file = require_path("path", path)
     contents = read_contents(
