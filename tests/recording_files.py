@@ -3,6 +3,7 @@
 import gzip
 import io
 import math
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,8 @@ from jointid.base.errors import InputError
 from jointid.recording.readers.loading import load
 
 N = 10
+# What a reason must not contain: the command line shows it too.
+_PYTHON = re.compile(r"\b(columns|units|scale|where|kind|name|path|by)=|\bjid\.|\bjointid\.")
 ROWS = [[k * 0.01, math.sin(k), 0.5 * k, -1.25] for k in range(N)]
 
 
@@ -67,6 +70,7 @@ def marked(attributes: str) -> list[str]:
 def refusal(path: Path, **arguments: Any) -> str:
     with pytest.raises(InputError) as caught:
         load(path, **arguments)
+    assert not _PYTHON.search(caught.value.reason), caught.value.reason
     return str(caught.value)
 
 

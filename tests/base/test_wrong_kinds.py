@@ -1,4 +1,4 @@
-"""Arguments of the wrong kind end in one sentence that says what was given and what is expected."""
+"""Arguments of the wrong kind raise an error of one sentence with the value and what is expected."""
 
 from collections.abc import Callable
 from typing import Any
@@ -24,7 +24,7 @@ def estimate(run: jid.Recording) -> jid.Estimate:
     return jid.identify(run, JOINT)
 
 
-def told(call: Callable[[], Any]) -> str:
+def message_of(call: Callable[[], Any]) -> str:
     with pytest.raises(jid.InputError) as refused:
         call()
     sentence = str(refused.value)
@@ -46,11 +46,11 @@ def test_mappings(run: jid.Recording, wrong: Any) -> None:
         ("parameters", lambda: jid.sweep(run, JOINT, grid={"parameters": {"a": wrong}})),
         ("truth", lambda: jid.sweep(run, JOINT, grid=GRID, truth=wrong)),
     ):
-        assert told(call).startswith(f"{name} is {shown}: a mapping"), name
+        assert message_of(call).startswith(f"{name} is {shown}: a mapping"), name
 
 
 def test_parameters_as_a_list_of_a_grid(run: jid.Recording) -> None:
-    assert told(lambda: jid.sweep(run, JOINT, grid={"parameters": [1]})).startswith(
+    assert message_of(lambda: jid.sweep(run, JOINT, grid={"parameters": [1]})).startswith(
         "parameters is 1: a mapping"
     )
 
@@ -80,7 +80,7 @@ def test_names_of_files(run: jid.Recording, estimate: jid.Estimate, wrong: Any) 
         lambda: save_report(estimate, wrong),
         lambda: jid.Study.load(wrong),
     ):
-        assert told(call) == f"path is {wrong!r}: the name of a file is expected".replace(
+        assert message_of(call) == f"path is {wrong!r}: the name of a file is expected".replace(
             repr(b"run.csv"), "a bytes"
         )
 
@@ -88,7 +88,7 @@ def test_names_of_files(run: jid.Recording, estimate: jid.Estimate, wrong: Any) 
 @pytest.mark.parametrize("name", ["checkpoint", "resume"])
 def test_names_of_a_searchs_files(run: jid.Recording, name: str) -> None:
     given: dict[str, Any] = {name: 5}
-    assert told(lambda: jid.identify(run, JOINT, search=jid.Search(**given))).startswith(
+    assert message_of(lambda: jid.identify(run, JOINT, search=jid.Search(**given))).startswith(
         f"{name} is 5: the name"
     )
 
@@ -96,8 +96,11 @@ def test_names_of_a_searchs_files(run: jid.Recording, name: str) -> None:
 def test_one_for_the_other(run: jid.Recording, estimate: jid.Estimate) -> None:
     wrong: Any = run
     swapped: Any = estimate
-    assert told(lambda: jid.control_estimates(wrong)) == "joint is a Recording: a Joint is expected"
-    assert told(lambda: jid.plot.friction_map(swapped, wrong)) == (
+    assert (
+        message_of(lambda: jid.control_estimates(wrong))
+        == "joint is a Recording: a Joint is expected"
+    )
+    assert message_of(lambda: jid.plot.friction_map(swapped, wrong)) == (
         "recording is an Estimate: a Recording is expected"
     )
     for call in (
@@ -113,17 +116,19 @@ def test_one_for_the_other(run: jid.Recording, estimate: jid.Estimate) -> None:
         lambda: jid.compare_models(run, JOINT, models=5),  # type: ignore[arg-type]
         lambda: jid.Estimate.from_json(5),  # type: ignore[arg-type]
     ):
-        assert "expected" in told(call)
+        assert "expected" in message_of(call)
 
 
 @pytest.mark.parametrize("wrong", ["sensor_offset", 5])
 def test_per_recording_is_a_list(run: jid.Recording, wrong: Any) -> None:
-    sentence = told(lambda: jid.identify([run, run], JOINT, model=jid.Model(per_recording=wrong)))
+    sentence = message_of(
+        lambda: jid.identify([run, run], JOINT, model=jid.Model(per_recording=wrong))
+    )
     assert sentence == (
         f"per_recording is {wrong!r}: a list of coefficients like [sensor_offset] is expected"
     )
 
 
 def test_an_unknown_truth_is_not_passed_over(run: jid.Recording) -> None:
-    sentence = told(lambda: jid.sweep(run, JOINT, grid=GRID, trials=1, truth={"colomb": 3.0}))
+    sentence = message_of(lambda: jid.sweep(run, JOINT, grid=GRID, trials=1, truth={"colomb": 3.0}))
     assert sentence == "truth: colomb: there is no such parameter; did you mean 'coulomb'?"

@@ -70,7 +70,7 @@ def test_a_killed_session_has_left_its_rows(
     assert kept >= rows
     missing = handed[kept:]
     assert not missing or handed[-1] - missing[0] <= 1e9 * BOUND
-    assert left.metadata["torn"] is True
+    assert left.metadata["truncated"] is True
     for name in ("time", "position", "torque", "sensor", "reference", "current"):
         assert np.array_equal(getattr(left, name), getattr(whole, name)[:kept]), name
     # The frames, to the last whole line.

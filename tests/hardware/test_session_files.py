@@ -45,7 +45,7 @@ def test_a_whole_file_gives_the_sessions_recording(session: tuple[jid.Recording,
         assert np.array_equal(getattr(loaded, name), getattr(recording, name)), name
     assert loaded.metadata["stop"] is None
     assert loaded.metadata["timing"] == recording.metadata["timing"]
-    assert "torn" not in loaded.metadata
+    assert "truncated" not in loaded.metadata
 
 
 @settings(
@@ -66,7 +66,7 @@ def test_a_file_torn_anywhere_gives_a_prefix_or_a_clear_refusal(
             jid.load(torn)
         return
     loaded = jid.load(torn)
-    assert loaded.metadata["torn"] is True
+    assert loaded.metadata["truncated"] is True
     for name in ("time", "position", "torque", "sensor", "reference", "current"):
         assert np.array_equal(getattr(loaded, name), getattr(recording, name)[:rows]), name
 

@@ -1,7 +1,11 @@
-"""Pictures say what the numbers are: curves, units, legends; what cannot be drawn is refused in a sentence."""
+"""Plots show the numbers: curves, units, legends; input that cannot be drawn raises InputError."""
 
+import dataclasses
+import inspect
 import math
-from collections.abc import Iterator
+import re
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -13,6 +17,7 @@ from matplotlib import pyplot
 from matplotlib.axes import Axes
 
 import jointid as jid
+from jointid.plot.units import parameter_unit
 
 TRUE = thesis_joint().with_parameters(TRUTH)
 
@@ -76,11 +81,11 @@ def test_sensitivity_reaches_beyond_the_bounds() -> None:
 
 def test_convergence_claims_no_polish_that_was_not(run: jid.SimulatedRecording) -> None:
     options = jid.GaOptions(population=20, generations=5)
-    for polish, told in ((True, "after the polish"), (False, "the answer, not polished")):
+    for polish, label in ((True, "result, with polish"), (False, "result, without polish")):
         estimate = jid.identify(
             run, thesis_joint(), search=jid.Search(ga=options.replace(polish=polish))
         )
-        assert _legend(jid.plot.convergence(estimate))[-1] == told
+        assert _legend(jid.plot.convergence(estimate))[-1] == label
 
 
 def test_style_leaves_a_notebook_drawing() -> None:
@@ -96,11 +101,11 @@ def test_style_leaves_a_notebook_drawing() -> None:
         matplotlib.interactive(before)
 
 
-def test_tracking_error_tells_its_root_mean_square(run: jid.SimulatedRecording) -> None:
+def test_tracking_error_shows_its_rms(run: jid.SimulatedRecording) -> None:
     axes = jid.plot.tracking_error({"before": run})
     late = run.tracking_error()[len(run.time) // 6 :]
     assert f"{1e3 * math.sqrt(float(np.mean(late**2))):.2g}" in _legend(axes)[0]
-    assert axes.get_ylabel() == "position less reference [mrad]"
+    assert axes.get_ylabel() == "tracking error [mrad]"
     drawn = np.asarray(axes.lines[0].get_ydata(), dtype=float)
     assert drawn == pytest.approx(1e3 * run.tracking_error())
 
@@ -112,7 +117,7 @@ def test_subtracting_the_sensor_leaves_friction_and_drive(run: jid.SimulatedReco
     drawn = np.asarray(axes.lines[0].get_ydata(), dtype=float)
     fast = np.abs(run.velocity) > 0.2
     assert drawn[fast] == pytest.approx(left[fast], abs=1.0)  # of 60
-    assert axes.get_ylabel() == "torque less sensed link torque [N·m]"
+    assert axes.get_ylabel() == "torque minus sensed link torque [N·m]"
 
 
 def test_adaptation_draws_the_law_that_acts(run: jid.SimulatedRecording) -> None:
@@ -136,21 +141,78 @@ def test_trajectory_and_signal_carry_units(run: jid.SimulatedRecording) -> None:
     assert jid.plot.signal({"a": run, "b": run}, "torque").get_ylabel() == "torque [N·m]"
 
 
-def test_what_cannot_be_drawn_is_told(run: jid.SimulatedRecording) -> None:
+@pytest.mark.parametrize(
+    ("draw", "message", "argument"),
+    [
+        (lambda p: jid.plot.tracking_error(p), "^runs: .* no reference", "runs"),
+        (lambda p: jid.plot.tracking_error({"a": p}), "no reference", "runs.a"),
+        (lambda _: jid.plot.tracking_error({}), "no recording to draw", "runs"),
+        (lambda p: jid.plot.signal({"b": p}, "sensor"), "has no sensor; it has time, ", "runs.b"),
+        (lambda p: jid.plot.signal(p, "speed"), "name is 'speed': position, .* or", "name"),
+        (lambda p: jid.plot.signal(p, "acceleration"), "is 'acceleration': position", "name"),
+        (lambda _: jid.plot.trajectory(well_excited(), "jerk"), "what is 'jerk': position", "what"),
+        (lambda _: jid.plot.friction_curves({}), "at least one joint", "joints"),
+        (
+            lambda _: jid.plot.friction_curves({"empty": jid.thesis_joint()}),
+            *("no values for its friction", "joints.empty"),
+        ),
+        (
+            lambda _: jid.plot.sensitivity(TRUE, "stribeck_velocity"),
+            *("is 'stribeck_velocity': it has no value; .* are .*coulomb", "parameter"),
+        ),
+        (
+            lambda p: jid.plot.torque_over_velocity(p, sensed_by=TRUE),
+            *("no sensor that could be subtracted", "recording"),
+        ),
+        (
+            lambda p: jid.plot.torque_over_velocity(p, curve=jid.thesis_joint()),
+            *("no values for its friction", "curve"),
+        ),
+        (lambda p: jid.plot.residuals(p), "an Estimate is expected", "estimate"),
+        (lambda p: jid.plot.window_means(p), "an Estimate is expected", "estimate"),
+        (lambda p: jid.plot.convergence(p), "an Estimate is expected", "estimate"),
+        (lambda p: jid.plot.adaptation(p), "a GaOptions is expected", "options"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused_before_a_figure_is_made(
+    draw: Callable[[Any], object], message: str, argument: str, run: jid.SimulatedRecording
+) -> None:
     plain = jid.Recording(time=run.time, position=run.position, torque=run.torque)
-    with pytest.raises(jid.InputError, match="no reference"):
-        jid.plot.tracking_error(plain)
-    with pytest.raises(jid.InputError, match="sensor cannot be subtracted"):
-        jid.plot.torque_over_velocity(plain, sensed_by=TRUE)
-    with pytest.raises(jid.InputError, match="no values for its friction"):
-        jid.plot.friction_curves({"empty": jid.thesis_joint()})
-    with pytest.raises(jid.InputError, match="'stribeck_velocity' has no value"):
-        jid.plot.sensitivity(TRUE, "stribeck_velocity")
-    with pytest.raises(jid.InputError, match="has no sensor"):
-        jid.plot.signal(plain, "sensor")
-    with pytest.raises(jid.InputError, match="'speed' is not known"):
-        jid.plot.signal(run, "speed")
-    with pytest.raises(jid.InputError, match="'jerk'"):
-        jid.plot.trajectory(well_excited(), "jerk")
-    with pytest.raises(jid.InputError, match="no recording"):
-        jid.plot.tracking_error({})
+    with pytest.raises(jid.InputError, match=message) as caught:
+        draw(plain)
+    assert caught.value.argument == argument
+    assert pyplot.get_fignums() == []
+
+
+def test_torque_and_the_sensors_parameters_must_be_there(run: jid.SimulatedRecording) -> None:
+    bare = jid.Recording(time=run.time, position=run.position)
+    with pytest.raises(jid.InputError, match="recording: it has no torque"):
+        jid.plot.torque_over_velocity(bare)
+    with pytest.raises(jid.InputError, match="sensed_by: values of sensor_gain and sensor_offset"):
+        jid.plot.torque_over_velocity(run, sensed_by=jid.thesis_joint())
+
+
+def test_convergence_of_another_search_is_refused(run: jid.SimulatedRecording) -> None:
+    estimate = dataclasses.replace(jid.identify(run, thesis_joint()), convergence=None)
+    with pytest.raises(jid.InputError, match="estimate: it was made without a genetic search"):
+        jid.plot.convergence(estimate)
+
+
+@pytest.mark.parametrize("name", jid.plot.__all__)
+def test_docstrings_are_complete(name: str) -> None:
+    """Every parameter, what is returned and what is raised."""
+    function = getattr(jid.plot, name)
+    text = inspect.getdoc(function) or ""
+    signature = inspect.signature(function)
+    for parameter in signature.parameters:
+        assert re.search(rf"^(\w+, )*{parameter}(, \w+)* : ", text, re.MULTILINE), parameter
+    if "axes" in signature.parameters:
+        assert "\nReturns\n" in text
+        assert "\nRaises\n" in text
+        assert "Default: new axes." in text
+
+
+def test_parameters_have_the_units_of_the_terms() -> None:
+    assert parameter_unit("stribeck") == "s²/rad²"
+    assert parameter_unit("viscous", "prismatic") == "N·s/m"
+    assert parameter_unit("penalty") == ""

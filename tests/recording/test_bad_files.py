@@ -1,4 +1,4 @@
-"""Files that cannot be used: each gives one sentence with the file, the place and the way out."""
+"""Files that cannot be used: each raises an error of one sentence with file, place and remedy."""
 
 import gzip
 import io
@@ -29,7 +29,7 @@ from jointid.base.errors import InputError
 from jointid.recording.readers.loading import load
 from jointid.recording.recording import Recording
 
-# Name of the file, what it holds, arguments, and what the sentence says after the file's name.
+# File name, content, arguments, and a pattern of the message after the file name.
 Bad = tuple[str, Any, Mapping[str, Any], str]
 BAD: list[Bad] = [
     ("a.csv", with_line(5, "0.03,abc,1,2"), {}, "line 5, column 'position_rad': 'abc' is not"),
@@ -37,10 +37,20 @@ BAD: list[Bad] = [
     ("a.csv", with_line(5, "0.03,1_0,1,2"), {}, "line 5, column 'position_rad': '1_0' is not"),
     ("a.csv", with_line(4, "0.02,nan,1,2"), {}, "line 4, column 'position_rad': position is nan"),
     ("a.csv", with_line(4, "0.02,1,1e999,2"), {}, "line 4, column 'velocity_rad_s': .* is inf"),
-    ("a.csv", with_line(6, "0.03,1,1,2"), {}, "line 6, column 'time_s': time is 0.03 after 0.03"),
+    (
+        "a.csv",
+        with_line(6, "0.03,1,1,2"),
+        {},
+        "line 6, column 'time_s': time is 0.03: the sample before is at 0.03, ",
+    ),
     ("a.csv", with_line(3, "0.01,1,1"), {}, "line 3: 3 cells where the header names 4"),
-    ("a.csv", with_line(11, "0.09,1"), {}, "line 11: 2 cells .*the last line, perhaps cut off"),
-    ("a.csv", with_line(3, "0,01,0,5,1,2"), {}, "line 3: 6 cells .*a decimal point, no comma"),
+    ("a.csv", with_line(11, "0.09,1"), {}, "line 11: 2 cells .*the last line, which may be trunc"),
+    (
+        "a.csv",
+        with_line(3, "0,01,0,5,1,2"),
+        {},
+        "line 3: 6 cells .*write decimal points, not commas",
+    ),
     ("a.csv", with_line(3, '0.01,"1,1,2'), {}, "line 3: quotation marks do not match"),
     ("a.csv", with_line(3, '0.01,"1,2",1,2'), {}, "line 3, column 'position_rad': '1,2' is not"),
     ("a.csv", with_line(3, "# stop"), {}, "line 3: 1 cells where the header names 4"),
@@ -48,11 +58,11 @@ BAD: list[Bad] = [
     ("a.csv", " \n\n", {}, "the file is empty"),
     ("a.csv", "# note\n", {}, "the file has no header and no rows"),
     ("a.csv", GOOD[:1], {}, "line 1: a header, but no rows below it"),
-    ("a.csv", GOOD[:6], {}, "time has 5 samples; a recording needs at least 8"),
+    ("a.csv", GOOD[:6], {}, "time: 5 samples; a recording needs at least 8"),
     ("a.csv", GOOD[1:], {}, r"line 1 \(numbers, no header\): no column is recognised as time"),
-    ("a.csv", "\n".join(GOOD).encode("utf-16"), {}, "line 1: the byte 0xff is no UTF-8 text"),
-    ("a.csv", headed("t,q,v,ü")[0].encode("cp437"), {}, "line 1: the byte 0x81 is no UTF-8"),
-    ("a.csv", with_line(4, "0.02,\0,1,2"), {}, "line 4: a zero byte is no text"),
+    ("a.csv", "\n".join(GOOD).encode("utf-16"), {}, "line 1: the byte 0xff is not UTF-8 text"),
+    ("a.csv", headed("t,q,v,ü")[0].encode("cp437"), {}, "line 1: the byte 0x81 is not UTF-8"),
+    ("a.csv", with_line(4, "0.02,\0,1,2"), {}, "line 4: a zero byte is not text"),
     ("a.csv", gzip.compress(b"t,q"), {}, r"compressed by gzip; its name must end in \.csv\.gz"),
     (
         "a.csv",
@@ -71,70 +81,100 @@ BAD: list[Bad] = [
         "a.csv",
         headed("t,q,angle,x"),
         {},
-        r"'q' \(column 1\) and 'angle' \(column 2\) both look like",
+        r"'q' \(column 1\) and 'angle' \(column 2\) are both recog",
     ),
-    ("a.csv", headed("t,q_rad,q_mm,x"), {}, "'q_rad' and 'q_mm' both look like position, of a rev"),
-    ("a.csv", headed("t,q_Nm,v,x"), {}, r"column 'q_Nm', is in Nm \(torque\); angle is expected"),
+    (
+        "a.csv",
+        headed("t,q_rad,q_mm,x"),
+        {},
+        "'q_rad' and 'q_mm' are both recognised as position, of a rev",
+    ),
+    (
+        "a.csv",
+        headed("t,q_Nm,v,x"),
+        {},
+        r"column 'q_Nm': position .* is in Nm \(torque\); angle is",
+    ),
     (
         "a.csv",
         headed("t,q_m,tau_Nm,x"),
         {},
-        r"torque of a prismatic .* 'tau_Nm', is in Nm \(torque\)",
+        r"column 'tau_Nm': torque of a prismatic joint is in Nm \(torque\)",
     ),
     (
         "a.csv",
         headed("t,q [furlong],v,x"),
         {},
-        "names the unknown unit 'furlong'; .* rad, mrad, deg",
+        "has the unknown unit 'furlong'; .* rad, mrad, deg",
     ),
-    ("a.csv", GOOD, {"kind": "prismatic"}, "'position_rad', is in rad .angle.; length is expected"),
-    ("a.csv", GOOD, {"units": {"position": "ell"}}, "unknown unit 'ell'; known are rad, mrad"),
+    ("a.csv", GOOD, {"kind": "prismatic"}, "'position_rad': .* is in rad .angle.; length is exp"),
+    (
+        "a.csv",
+        GOOD,
+        {"units": {"position": "ell"}},
+        "position is 'ell': unknown unit; known are rad, mrad",
+    ),
     ("a.csv", GOOD, {"units": {"position": "Nm"}}, r"is in Nm \(torque\); angle is expected"),
-    ("a.csv", GOOD, {"units": {"sensor": "raw"}}, "units names 'sensor', but no column is recog"),
+    (
+        "a.csv",
+        GOOD,
+        {"units": {"sensor": "raw"}},
+        "units.sensor: no column is recognised as sensor",
+    ),
     ("a.csv", GOOD, {"columns": {"position": "positon_rad"}}, "no such header; did you mean 'posi"),
-    ("a.csv", GOOD, {"columns": {"position": 4}}, "is column 4; the columns are 0 to 3"),
-    ("a.csv", GOOD, {"columns": {"position": -1}}, "is column -1; the columns are 0 to 3"),
+    ("a.csv", GOOD, {"columns": {"position": 4}}, "position is 4: the columns are 0 to 3"),
+    ("a.csv", GOOD, {"columns": {"position": -1}}, "position is -1: the columns are 0 to 3"),
     ("a.csv", GOOD, {"columns": {"position": None}}, "no column is recognised as position"),
     (
         "a.csv",
         GOOD,
         {"columns": {"sensor": 1, "current": 1}},
-        "'position_rad' to 'sensor' and 'curr",
+        "columns.current is 1: this column is also sensor; one",
     ),
     (
         "a.csv",
         headed("t,q,x,x"),
         {"columns": {"sensor": "x"}},
-        "the header of columns 2 and 3; give",
+        "columns.sensor is 'x': columns 2 and 3 have this header; give",
     ),
     (
         "a.csv",
         GOOD,
         {"where": {"torque_Nm": 7}},
-        "no row has 7 in column 'torque_Nm'; it holds -1.25",
+        "where.torque_Nm is 7: no row has this value; the column holds -1.25",
     ),
     (
         "a.csv",
         GOOD,
         {"where": {"torque_Nm": "x"}},
-        "no row has 'x' in column 'torque_Nm'; it holds",
+        "where.torque_Nm is 'x': no row has this value; the column",
     ),
-    ("a.csv", GOOD, {"where": {"run": 1}}, "line 1: where is 'run', no such header; headers are"),
-    ("a.csv", GOOD, {"where": {"time_s": [1]}}, r"where\['time_s'\] is \[1\]; a number or text"),
-    ("a.csv", GOOD, {"where": {"time_s": 0, "velocity_rad_s": 0.5}}, "no row meets all of where="),
+    ("a.csv", GOOD, {"where": {"run": 1}}, "line 1: where is 'run': no such header; headers are"),
+    ("a.csv", GOOD, {"where": {"time_s": [1]}}, r"where\.time_s is \[1\]: a number or text"),
+    (
+        "a.csv",
+        GOOD,
+        {"where": {"time_s": 0, "velocity_rad_s": 0.5}},
+        r"where is \{'time_s': 0, .*\}: no row has all",
+    ),
     ("a.csv", marked("{"), {}, "line 1: the description of the recording is damaged JSON"),
     ("a.csv", marked("[]"), {}, "line 1: the description of the recording is not a JSON object"),
-    ("a.csv", marked('{"schema": 2}'), {}, "line 1: the recording has the schema 2, .* reads 1"),
-    ("a.csv", marked('{"schema": 1, "kind": "x"}'), {}, "kind is 'x'; 'revolute' or 'prismatic'"),
-    ("a.csv", marked('{"schema": 1, "name": 3}'), {}, "name is 3; a string is expected"),
+    ("a.csv", marked('{"schema": 2}'), {}, "line 1: schema is 2: this version reads 1"),
+    (
+        "a.csv",
+        marked('{"schema": 1, "kind": "x"}'),
+        {},
+        "line 1: kind is 'x': revolute or prismatic is",
+    ),
+    ("a.csv", marked('{"schema": 1, "name": 3}'), {}, "name is 3: a string is expected"),
     (
         *("a.csv", marked('{"schema": 1, "kind": "revolute"}'), {"kind": "prismatic"}),
-        "the recording was saved as revolute, not prismatic",
+        "kind is 'prismatic': the recording was saved as revolute; leave it out",
     ),
     ("a.csv", None, {}, "there is no such file"),
-    ("a.txt", GOOD, {}, r"a name that ends in '\.txt' is not known; \.csv, .* \.parquet are"),
-    ("a.gz", GOOD, {}, r"a name that ends in '\.gz' is not known"),
-    ("a.npz", GOOD, {}, r"no \.npz archive"),
+    ("a.txt", GOOD, {}, r"a file name that ends in \.csv, .* or \.parquet is expected"),
+    ("a.gz", GOOD, {}, r"a file name that ends in \.csv, "),
+    ("a.npz", GOOD, {}, r"not a \.npz archive"),
     ("a.npz", {}, {}, "the archive is empty; arrays time and position are expected"),
     (
         "a.npz",
@@ -144,25 +184,30 @@ BAD: list[Bad] = [
     ),
     (
         *("a.npz", {"time": np.arange(9), "position": np.array([None] * 9)}, {}),
-        r"member 'position' holds Python objects \(a pickle\), which are never read",
+        r"member 'position': it holds Python objects \(a pickle\), which are never read",
     ),
     (
         *("a.npz", {"time": np.arange(9), "position": np.ones((9, 2))}, {}),
-        r"member 'position' has the shape \(9, 2\)",
+        r"member 'position': the shape is \(9, 2\)",
     ),
     (
         *("a.npz", {"time": np.arange(9), "position": np.array(["x"] * 9)}, {}),
-        "member 'position' does not hold numbers",
+        "member 'position': an array of numbers is expected",
     ),
     (
         *("a.npz", {"time": np.arange(9), "position": np.ones(8)}, {}),
-        "position has 8 samples and time has 9",
+        "position: 8 samples, but time has 9",
     ),
     (
         *("a.npz", {"time": np.arange(9), "position": np.full(9, np.inf)}, {}),
         "member 'position', index 0: position is inf",
     ),
-    ("a.npz", {"jointid_recording": np.array("{}")}, {}, "member 'jointid_recording': the recor"),
+    (
+        "a.npz",
+        {"jointid_recording": np.array("{}")},
+        {},
+        "member 'jointid_recording': schema is None",
+    ),
 ]
 
 
@@ -175,18 +220,18 @@ def test_bad_file_gives_one_sentence(
         npz(path, **content)
     elif content is not None:
         written(path, content)
-    said = refusal(path, **arguments)
-    assert_one_sentence(said, path)
-    assert re.search(message, said), said
+    error_text = refusal(path, **arguments)
+    assert_one_sentence(error_text, path)
+    assert re.search(message, error_text), error_text
 
 
 def test_what_is_wrong_with_the_arguments(tmp_path: Path) -> None:
     path = written(tmp_path / "a.csv", GOOD)
-    assert "columns: 'torqe' is no signal, did you mean 'torque'" in refusal(
+    assert "columns: 'torqe' is not a signal; did you mean 'torque'" in refusal(
         path, columns={"torqe": 1}
     )
-    assert "units: 'pos' is no signal" in refusal(path, units={"pos": "deg"})
-    assert "columns['position'] is 1.5; a header or" in refusal(path, columns={"position": 1.5})
+    assert "units: 'pos' is not a signal" in refusal(path, units={"pos": "deg"})
+    assert "columns.position is 1.5: a header or" in refusal(path, columns={"position": 1.5})
     assert "kind is 'x'" in refusal(path, kind="x")
     assert "torque_hold is 'x'" in refusal(path, torque_hold="x")
 
@@ -194,16 +239,16 @@ def test_what_is_wrong_with_the_arguments(tmp_path: Path) -> None:
 def test_folder(tmp_path: Path) -> None:
     for name in ("a.csv", "a.npz"):
         (tmp_path / name).mkdir()
-        said = refusal(tmp_path / name)
-        assert_one_sentence(said, tmp_path / name)
-        assert "this is a folder" in said
+        error_text = refusal(tmp_path / name)
+        assert_one_sentence(error_text, tmp_path / name)
+        assert "this is a folder" in error_text
 
 
 @pytest.mark.parametrize(
     ("spoil", "message"),
     [
-        (lambda raw: raw[:-20], "the compressed file ends in the middle"),
-        (lambda raw: raw[:12], "the compressed file ends in the middle"),
+        (lambda raw: raw[:-20], "the compressed file is truncated"),
+        (lambda raw: raw[:12], "the compressed file is truncated"),
         (lambda raw: raw[:-8] + b"12345678", "the compressed file is damaged (CRC"),
         (lambda raw: raw[:20] + bytes(20) + raw[40:], "the compressed file is damaged ("),
         (lambda _: b"time,position", "the file is not compressed by gzip"),
@@ -213,9 +258,9 @@ def test_folder(tmp_path: Path) -> None:
 def test_damaged_gzip(spoil: Callable[[bytes], bytes], message: str, tmp_path: Path) -> None:
     path = tmp_path / "a.csv.gz"
     path.write_bytes(spoil(gzip.compress("\n".join(GOOD).encode(), mtime=0)))
-    said = refusal(path)
-    assert_one_sentence(said, path)
-    assert message in said
+    error_text = refusal(path)
+    assert_one_sentence(error_text, path)
+    assert message in error_text
 
 
 def test_npz_member_that_is_no_array(tmp_path: Path) -> None:
@@ -224,8 +269,8 @@ def test_npz_member_that_is_no_array(tmp_path: Path) -> None:
         archive.writestr("time", b"0,1,2")
         archive.writestr("position.npy", b"\x93NUMPY\x01\x00\x05\x00{'a'}")
     path = written(tmp_path / "a.npz", stream.getvalue())
-    assert "member 'time' is not an array" in refusal(path)
-    assert "member 'position' cannot be read (" in refusal(
+    assert "member 'time': it is not an array" in refusal(path)
+    assert "member 'position': it cannot be read (" in refusal(
         path, columns={"time": "position", "position": "time"}
     )
 
@@ -241,12 +286,12 @@ def test_damaged_npz_is_refused_or_read(
     for _ in range(data.draw(st.integers(1, 4))):
         raw[data.draw(st.integers(0, len(raw) - 1))] = data.draw(st.integers(0, 255))
     path.write_bytes(raw[: data.draw(st.integers(0, len(raw)))])
-    said = ""
+    error_text = ""
     try:
         load(path)
     except InputError as error:
-        said = str(error)
-    assert "\n" not in said
+        error_text = str(error)
+    assert "\n" not in error_text
 
 
 cell = st.one_of(
@@ -291,13 +336,13 @@ fuzzed = st.one_of(
 def test_any_text_loads_or_is_refused(text: str, tmp_path_factory: pytest.TempPathFactory) -> None:
     path = tmp_path_factory.getbasetemp() / "fuzzed.csv"
     path.write_bytes(text.encode("utf-8", "surrogatepass"))
-    said = str(path)
+    error_text = str(path)
     try:
         loaded = load(path)
     except InputError as error:
-        said = str(error)
+        error_text = str(error)
     else:
         assert len(loaded) >= 8
         assert all(np.isfinite(getattr(loaded, name)).all() for name in loaded.signals)
-    assert said.startswith(str(path))
-    assert "\n" not in said
+    assert error_text.startswith(str(path))
+    assert "\n" not in error_text

@@ -12,6 +12,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from recording_files import ROWS, N, assert_one_sentence, column, headed, mat, npz, refusal, written
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.readers.loading import load, load_runs
 from jointid.recording.recording import Recording
@@ -64,13 +65,16 @@ def bad_parquets() -> list[tuple[dict[str, Any], str]]:
     return [
         (
             {"t": stamps, "q": ANGLE},
-            r"column 't' holds timestamp\[us\]; .* seconds since the start",
+            r"column 't': the column holds timestamp\[us\]; .* seconds since the start",
         ),
         ({"t": TIME, "q": [1.0, None] * 5}, "row 1, column 'q': the cell is empty; a number is"),
-        ({"t": TIME, "q": ["x"] * N}, "column 'q' is 'x' at index 0; a number is expected"),
-        ({"t": TIME, "q": [{"a": 1}] * N}, "column 'q' is .* at index 0; a number is expected"),
-        ({"t": TIME, "q": [[1.0]] * N}, "column 'q' is .* at index 0; a number is expected"),
-        ({"t": [decimal.Decimal(1)] * N, "q": ANGLE}, "row 1, column 't': time is 1.0 after 1.0"),
+        ({"t": TIME, "q": ["x"] * N}, "column 'q': 'x' at index 0 is not a number"),
+        ({"t": TIME, "q": [{"a": 1}] * N}, "column 'q': .* at index 0 is not a number"),
+        ({"t": TIME, "q": [[1.0]] * N}, "column 'q': .* at index 0 is not a number"),
+        (
+            {"t": [decimal.Decimal(1)] * N, "q": ANGLE},
+            "row 1, column 't': time is 1.0: the sample before is at 1.0",
+        ),
         ({"t": TIME, "q": [np.inf] * N}, "row 0, column 'q': position is inf"),
         ({"x": TIME}, "no column is recognised as time; candidates are 'x'"),
         ({}, "the file has no columns; time and position are expected"),
@@ -81,21 +85,21 @@ def bad_parquets() -> list[tuple[dict[str, Any], str]]:
 def test_bad_parquet_gives_one_sentence(number: int, tmp_path: Path) -> None:
     columns, message = bad_parquets()[number]
     path = parquet(tmp_path / "a.parquet", **columns)
-    said = refusal(path)
-    assert_one_sentence(said, path)
-    assert re.search(message, said), said
+    error_text = refusal(path)
+    assert_one_sentence(error_text, path)
+    assert re.search(message, error_text), error_text
 
 
 @pytest.mark.parametrize("content", [b"", b"PAR1", b"PAR1" + bytes(50) + b"PAR1", b"t,q\n1,2\n"])
 def test_no_parquet_at_all(content: bytes, tmp_path: Path) -> None:
     pytest.importorskip("pyarrow")
     path = written(tmp_path / "a.parquet", content)
-    said = refusal(path)
-    assert_one_sentence(said, path)
-    assert "the file is no .parquet file, or is damaged (" in said
+    error_text = refusal(path)
+    assert_one_sentence(error_text, path)
+    assert "the file is not a .parquet file, or is damaged (" in error_text
 
 
-def test_without_pyarrow_the_sentence_says_what_to_install(
+def test_without_pyarrow_the_message_names_the_extra(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for name in [name for name in sys.modules if name.partition(".")[0] == "pyarrow"]:
@@ -104,14 +108,17 @@ def test_without_pyarrow_the_sentence_says_what_to_install(
 
     def without(name: str, *rest: Any) -> Any:
         if name.partition(".")[0] == "pyarrow":
-            raise ModuleNotFoundError(name)
+            raise ModuleNotFoundError(name, name=name)
         return original(name, *rest)
 
     monkeypatch.setattr(builtins, "__import__", without)
     path = written(tmp_path / "a.parquet", b"PAR1")
-    said = refusal(path)
-    assert_one_sentence(said, path)
-    assert "needs pyarrow; pip install 'jointid[parquet]', or save the file as .csv" in said
+    error_text = refusal(path)
+    assert_one_sentence(error_text, path)
+    assert (
+        "needs pyarrow, which is not installed; pip install 'jointid[parquet]' or save"
+        in error_text
+    )
 
 
 @pytest.mark.parametrize("name", ["a.mat", "a.parquet"])
@@ -125,16 +132,16 @@ def test_missing_file_and_folder(name: str, tmp_path: Path) -> None:
 
 
 def assert_loads_or_is_refused(path: Path) -> None:
-    said = str(path)
+    error_text = str(path)
     try:
         loaded = load(path)
     except InputError as error:
-        said = str(error)
+        error_text = str(error)
     else:
         assert len(loaded) >= 8
         assert all(np.isfinite(getattr(loaded, name)).all() for name in loaded.signals)
-    assert said.startswith(str(path))
-    assert "\n" not in said
+    assert error_text.startswith(str(path))
+    assert "\n" not in error_text
 
 
 @given(raw=st.binary(max_size=400))
@@ -241,17 +248,46 @@ def test_runs_in_order_of_appearance(tmp_path: Path) -> None:
 
 def test_bad_runs_name_the_run(tmp_path: Path) -> None:
     path = runs_file(tmp_path / "a.csv", rows=20)
-    with pytest.raises(InputError, match=r"time has 2 samples.* at least 8 \(the run run=2\)$"):
+    with pytest.raises(InputError, match=r"a\.csv \(run=2\): time: 2 samples.* at least 8$"):
         load_runs(path, by="run")
-    with pytest.raises(InputError, match=r"by is 'runs', no such header; did you mean 'run'$"):
+    with pytest.raises(InputError, match=r"by is 'runs': no such header; did you mean 'run'$"):
         load_runs(path, by="runs")
-    with pytest.raises(InputError, match=r"line 11, column 't_s': time is .*or take load_runs"):
+    with pytest.raises(
+        InputError, match=r"line 11, column 't_s': time is .*\{'run': 0\}"
+    ) as caught:
         load(path)
+    one, *others = caught.value.remedy  # the third run is too short to be loaded
+    assert isinstance(one, Action)
+    assert len(load(path, **one.arguments)) == 9
+    assert others == []
 
 
-def test_runs_told_apart_by_a_column_of_another_length(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "name", [lambda k: k // 9, lambda k: "cab"[k // 9], lambda k: 1.5 + k // 9]
+)
+def test_the_advice_on_several_runs_can_be_followed(name: Any, tmp_path: Path) -> None:
+    path = runs_file(tmp_path / "a.csv", name)
+    with pytest.raises(InputError, match=r"one run.* or load_runs with by='run'") as caught:
+        load(path)
+    one, every = caught.value.remedy
+    assert isinstance(one, Action)
+    assert isinstance(every, Action)
+    assert len(load(path, **one.arguments)) == 9
+    assert len(load_runs(path, **every.arguments)) == 3
+
+
+def test_no_advice_where_no_column_numbers_the_runs(tmp_path: Path) -> None:
+    # Neither a counter of samples nor a setting that several runs share.
+    rows = [f"{k % 18},{k},{k},{int(k % 18 < 9)}" for k in range(36)]
+    path = written(tmp_path / "a.csv", ["t,q,n,set", *rows])
+    with pytest.raises(InputError, match=r"strictly increase$") as caught:
+        load(path)
+    assert caught.value.remedy == ()
+
+
+def test_a_column_of_another_length_does_not_number_runs(tmp_path: Path) -> None:
     path = npz(tmp_path / "a.npz", time=TIME, position=ANGLE, run=np.arange(3))
-    with pytest.raises(InputError, match="'run' has 3 samples, time has 10; the rows are told"):
+    with pytest.raises(InputError, match="'run' has 3 samples, but time has 10; rows are selected"):
         load_runs(path, by="run")
 
 

@@ -80,7 +80,7 @@ def test_si_is_assumed_and_noted(tmp_path: Path) -> None:
         ("t,pos_m,position_ref_m,motor_torque_Nm", "prismatic"),
     ],
 )
-def test_units_tell_the_kind(header: str, kind: str, tmp_path: Path) -> None:
+def test_units_show_the_kind(header: str, kind: str, tmp_path: Path) -> None:
     assert load(written(tmp_path / "a.csv", lines(header))).kind == kind
 
 
@@ -120,7 +120,9 @@ def test_where_keeps_matching_rows(tmp_path: Path) -> None:
     choices: list[dict[str, float | str]] = [{"run": 1}, {"name": "b"}, {"RUN": 1.0, "name": "b"}]
     for where in choices:
         assert load(path, where=where).position.tolist() == [100.0 + k for k in range(9)]
-    with pytest.raises(InputError, match=r"line 11, column 't_s': time is .* where="):
+    with pytest.raises(
+        InputError, match=r"line 11, column 't_s': time is .* with where=\{'run': 0\} "
+    ):
         load(path)
 
 
@@ -191,10 +193,13 @@ def test_from_dataframe() -> None:
             lambda f: f.assign(pos_deg=np.nan),
             "data frame, row 0, column 'pos_deg': position is nan",
         ),
-        (lambda f: f.assign(pos_deg="x"), "data frame: column 'pos_deg' is 'x' at index 0"),
-        (lambda f: f.astype({"t_s": "datetime64[ns]"}), "column 't_s' does not hold numbers"),
+        (lambda f: f.assign(pos_deg="x"), "data frame, column 'pos_deg': 'x' at index 0 is not"),
+        (
+            lambda f: f.astype({"t_s": "datetime64[ns]"}),
+            "column 't_s': an array of numbers is expected",
+        ),
         (lambda f: f.drop(columns="t_s"), "data frame: no column is recognised as time"),
-        (lambda f: f.to_numpy(), "a data frame with columns is expected, not a ndarray"),
+        (lambda f: f.to_numpy(), "df is a ndarray: a data frame with columns is expected"),
     ],
 )
 def test_bad_frames(change: Callable[[Any], Any], message: str) -> None:
@@ -248,13 +253,16 @@ def test_shared_recordings(
     assert load(tmp_path / "again.csv") == loaded
 
 
-def test_several_axes_are_refused_with_the_way_out(shared_data: Path) -> None:
-    said = refusal(shared_data / "kr300" / "kr300_A.csv.gz")
-    assert said.count("motor_encoder_pos_") > 6
-    assert f"columns={{'position': '{POSITION}'}}" in said
+def test_several_axes_are_refused_with_a_remedy(shared_data: Path) -> None:
+    error_text = refusal(shared_data / "kr300" / "kr300_A.csv.gz")
+    assert error_text.count("motor_encoder_pos_") > 6
+    assert f"columns={{'position': '{POSITION}'}}" in error_text
 
 
-def test_several_runs_are_refused_with_the_way_out(shared_data: Path) -> None:
-    said = refusal(shared_data / "xl330" / "bam_xl330.csv.gz")
-    assert "line 1126, column 'time_s'" in said
-    assert "where=" in said
+def test_several_runs_are_refused_with_a_remedy(shared_data: Path) -> None:
+    error_text = refusal(shared_data / "xl330" / "bam_xl330.csv.gz")
+    assert "line 1126, column 'time_s'" in error_text
+    assert (
+        "; load with where={'run_index': 0} (one run) or load_runs with by='run_index'"
+        in error_text
+    )

@@ -51,7 +51,7 @@ def test_every_number_is_the_nearest_double(
 
 
 @pytest.mark.parametrize(
-    ("row", "told"),
+    ("row", "message"),
     [
         ("17.0,1.0,2.0", "line 17002: 3 cells where the header names 4"),
         ("17.0,1.0,2.0,3.0,4.0", "line 17002: 5 cells"),
@@ -62,9 +62,9 @@ def test_every_number_is_the_nearest_double(
         ("1.0,1.0,2.0,3.0", "line 17002"),
     ],
 )
-def test_a_bad_row_is_named(tmp_path: Path, rows: list[str], row: str, told: str) -> None:
+def test_a_bad_row_is_named(tmp_path: Path, rows: list[str], row: str, message: str) -> None:
     path = file_of(tmp_path, [*rows[:17_000], row, *rows[17_001:]])
-    with pytest.raises(jid.InputError, match="long.csv, " + told):
+    with pytest.raises(jid.InputError, match="long.csv, " + message):
         jid.load(path)
 
 

@@ -54,9 +54,9 @@ def test_structs_one_level_deep(tmp_path: Path) -> None:
 def test_structs_that_share_names(tmp_path: Path) -> None:
     one, two = ({"t": TIME, "q": sign * ANGLE} for sign in (1, -1))
     path = mat(tmp_path / "a.mat", {"one": one, "two": two})
-    said = refusal(path)
-    assert_one_sentence(said, path)
-    assert "no column is recognised as time; candidates are 'one.t', 'one.q', 'two.t'" in said
+    error_text = refusal(path)
+    assert_one_sentence(error_text, path)
+    assert "no column is recognised as time; candidates are 'one.t', 'one.q', 'two.t'" in error_text
     loaded = load(path, columns={"time": "two.t", "position": "two.q"})
     assert loaded.position.tolist() == (-ANGLE).tolist()
 
@@ -128,8 +128,8 @@ def test_either_order_of_bytes_and_objects_left_out(order: str, tmp_path: Path) 
     assert loaded.position.tolist() == [0.5] * 10
     assert "only 'tabl'; save" in refusal(written(tmp_path / "a.mat", level_5(order, opaque)))
     wrong = variable(order, "q", 6, 9, struct.pack(f"{order}3d", 1, 2, 3), 10)
-    said = refusal(written(tmp_path / "a.mat", level_5(order, times, wrong)))
-    assert "damaged or cut off (the variable 'q' has 3 values for [1, 10])" in said
+    error_text = refusal(written(tmp_path / "a.mat", level_5(order, times, wrong)))
+    assert "damaged or truncated (the variable 'q' has 3 values for [1, 10])" in error_text
 
 
 def test_a_file_nested_without_end_is_left_alone(tmp_path: Path) -> None:
@@ -152,15 +152,23 @@ BAD_MAT: list[tuple[Any, Mapping[str, Any], str]] = [
     (
         HDF5,
         {},
-        r"a MATLAB 7\.3 file \(HDF5\) is not read; in MATLAB save it with '-v7', or .* h5py",
+        r"a MATLAB 7\.3 file \(HDF5\) is not read; in MATLAB save it with '-v7' or .* h5py",
     ),
     (HDF5[512:], {}, r"a MATLAB 7\.3 file"),
-    (b"", {}, r"the file is no \.mat file of version 5 to 7 \(or is cut off\); in MATLAB save it"),
-    (b"MATLAB 5.0 MAT-file", {}, r"the file is no \.mat file of version 5 to 7"),
-    (bytes(300), {}, r"the file is no \.mat file of version 5 to 7"),
-    (b"t,q\n" * 99, {}, r"the file is no \.mat file of version 5 to 7"),
-    (HEAD + b"\x0f\0\0\0\x09\0\0\0notzipped", {}, r"damaged or cut off \(a compressed variable is"),
-    (HEAD + b"\x09\0\0\0\0\0\0\0", {}, r"\(an element of the kind 9 stands where a variable"),
+    (
+        b"",
+        {},
+        r"the file is not a \.mat file of version 5 to 7, or is truncated; in MATLAB save it",
+    ),
+    (b"MATLAB 5.0 MAT-file", {}, r"the file is not a \.mat file of version 5 to 7"),
+    (bytes(300), {}, r"the file is not a \.mat file of version 5 to 7"),
+    (b"t,q\n" * 99, {}, r"the file is not a \.mat file of version 5 to 7"),
+    (
+        HEAD + b"\x0f\0\0\0\x09\0\0\0notzipped",
+        {},
+        r"damaged or truncated \(a compressed variable is",
+    ),
+    (HEAD + b"\x09\0\0\0\0\0\0\0", {}, r"\(an element of the kind 9 is in the place of a variable"),
     (HEAD + b"\x0e\0\0\0\x09\0\0\0", {}, r"\(an element reaches beyond its end\)"),
     (HEAD + b"\x0e\0\0", {}, r"\(it ends inside the head of an element\)"),
     (HEAD, {}, "no vectors of numbers are found, only nothing; save time"),
@@ -169,24 +177,32 @@ BAD_MAT: list[tuple[Any, Mapping[str, Any], str]] = [
     ({"log": {"data": {"t": TIME}}}, {}, "no vectors of numbers .* nested structs"),
     ({"c": np.array([TIME, "x"], dtype=object)}, {}, "no vectors of numbers are found, only 'c'"),
     ({"t": TIME, "x": ANGLE}, {}, "no column is recognised as position; candidates are 'x'"),
-    ({"t": TIME, "q": ANGLE * 1j}, {}, "variable 'q' does not hold numbers"),
-    ({"t": TIME, "q": ANGLE[1:]}, {}, "position has 9 samples and time has 10"),
+    ({"t": TIME, "q": ANGLE * 1j}, {}, "variable 'q': an array of numbers is expected"),
+    ({"t": TIME, "q": ANGLE[1:]}, {}, "position: 9 samples, but time has 10"),
     ({"t": TIME, "q": ANGLE / [1] * np.nan}, {}, "variable 'q', index 0: position is nan"),
     ({"t": TIME[::-1], "q": ANGLE}, {}, "variable 't', index 1: time is .* strictly increase"),
-    ({"t": TIME, "q": ANGLE, "pos": ANGLE}, {}, r"'q' .column 1. and 'pos' .column 2. both look"),
-    (GOOD_MAT, {"columns": {"position": "qm"}}, "is 'qm', no such header; did you mean 'q'"),
-    (GOOD_MAT, {"scale": {"torque": 2.0}}, "scale names 'torque', but no column is recognised"),
-    (GOOD_MAT, {"scale": {"torqe": 2.0}}, "'torqe' is no signal, did you mean 'torque'"),
-    (GOOD_MAT, {"scale": {"position": 0}}, r"scale\['position'\] is 0; a finite number other than"),
-    (GOOD_MAT, {"scale": {"position": True}}, r"scale\['position'\] is True; a finite number"),
-    (GOOD_MAT, {"scale": {"position": "deg"}}, r"scale\['position'\] is 'deg'; a finite number"),
-    (GOOD_MAT, {"scale": {"position": np.inf}}, r"scale\['position'\] is inf; a finite number"),
-    (GOOD_MAT, {"scale": {"time": -1.0}}, "index 1: time is -0.01 after -0.0; .* increase"),
+    (
+        {"t": TIME, "q": ANGLE, "pos": ANGLE},
+        {},
+        r"'q' .column 1. and 'pos' .column 2. are both recog",
+    ),
+    (GOOD_MAT, {"columns": {"position": "qm"}}, "is 'qm': no such header; did you mean 'q'"),
+    (GOOD_MAT, {"scale": {"torque": 2.0}}, "scale.torque: no column is recognised as torque"),
+    (GOOD_MAT, {"scale": {"torqe": 2.0}}, "'torqe' is not a signal; did you mean 'torque'"),
+    (GOOD_MAT, {"scale": {"position": 0}}, r"scale\.position is 0: a finite number other than"),
+    (GOOD_MAT, {"scale": {"position": True}}, r"scale\.position is True: a finite number"),
+    (GOOD_MAT, {"scale": {"position": "deg"}}, r"scale\.position is 'deg': a finite number"),
+    (GOOD_MAT, {"scale": {"position": np.inf}}, r"scale\.position is inf: a finite number"),
+    (
+        GOOD_MAT,
+        {"scale": {"time": -1.0}},
+        "index 1: time is -0.01: the sample before is at -0.0, .* increase",
+    ),
     (
         *(GOOD_MAT, {"scale": {"position": 2.0}, "units": {"position": "deg"}}),
-        "'position' is in units= and in scale=; one of them",
+        "scale.position is 2.0: position also has the unit 'deg'; give one of them",
     ),
-    (GOOD_MAT, {"where": {"q": [1]}}, r"where\['q'\] is \[1\]; a number or text"),
+    (GOOD_MAT, {"where": {"q": [1]}}, r"where\.q is \[1\]: a number or text"),
 ]
 
 
@@ -199,10 +215,10 @@ def test_bad_mat_gives_one_sentence(
         written(path, content)
     else:
         mat(path, content)
-    said = refusal(path, **arguments)
-    if not said.startswith("scale: "):
-        assert_one_sentence(said, path)
-    assert re.search(message, said), said
+    error_text = refusal(path, **arguments)
+    if not error_text.startswith("scale: "):
+        assert_one_sentence(error_text, path)
+    assert re.search(message, error_text), error_text
 
 
 # --- EMPS, as its authors publish it ---
@@ -225,7 +241,7 @@ def test_emps_from_its_mat_file(shared_data: Path) -> None:
     assert made.metadata["scale"] == FORCE
 
 
-def test_emps_identifies_alike_from_both_files(shared_data: Path) -> None:
+def test_emps_gives_the_same_estimate_from_both_files(shared_data: Path) -> None:
     folder = shared_data / "emps"
     text = load(folder / "emps_train.csv.gz")
     made = load(folder / "DATA_EMPS.mat", columns=EMPS, scale=FORCE, kind="prismatic")

@@ -122,7 +122,9 @@ def test_what_is_no_unit(text: str) -> None:
 
 
 def test_unknown_unit_lists_the_known_ones() -> None:
-    with pytest.raises(InputError, match=r"^run\.csv: unknown unit 'furlong'; known are m, cm"):
+    with pytest.raises(
+        InputError, match=r"^run\.csv: unit is 'furlong': unknown unit; known are m, cm"
+    ):
         unit_named("furlong", dimensions=("length",), place="run.csv")
 
 

@@ -632,9 +632,9 @@ def test_a_plot_shows_each_cell(study: jid.Study) -> None:
         assert max(float(text.get_text()) for text in worst.texts) == pytest.approx(
             max(errors), rel=0.01
         )
-        with pytest.raises(jid.InputError, match="has not swept 'windows'"):
+        with pytest.raises(jid.InputError, match="x is 'windows': not a swept setting"):
             jid.plot.sweep(study, "windows")
-        with pytest.raises(jid.InputError, match="knows no truth of"):
+        with pytest.raises(jid.InputError, match="the study has no true value"):
             jid.plot.sweep(study, value="error.inertia")
     finally:
         pyplot.close("all")

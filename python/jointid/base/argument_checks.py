@@ -1,4 +1,4 @@
-"""What a call was given is of the right kind, or one sentence says what would be."""
+"""Checks that an argument is of the expected kind."""
 
 import numbers
 import os
@@ -9,25 +9,43 @@ from typing import Any
 from jointid.base.errors import InputError
 
 
-def require_path(what: str, value: object) -> Path:
-    """Return a file's name as a path, or refuse it."""
+def require_path(argument: str, value: object) -> Path:
+    """Return a file name as a path.
+
+    Raises
+    ------
+    InputError
+        It is neither text nor a path.
+    """
     if not isinstance(value, str | os.PathLike) or not isinstance(os.fspath(value), str):
-        raise InputError("the name of a file is expected", argument=what, value=value)
+        raise InputError("the name of a file is expected", argument=argument, value=value)
     return Path(value)
 
 
-def require_mapping(what: str, value: object, example: str) -> Mapping[Any, Any]:
-    """Return a mapping, or refuse what is none; `example` shows a right one."""
+def require_mapping(argument: str, value: object, example: str) -> Mapping[Any, Any]:
+    """Return a value that is a mapping; `example` shows a correct one in the message.
+
+    Raises
+    ------
+    InputError
+        It is not a mapping.
+    """
     if not isinstance(value, Mapping):
-        raise InputError(f"a mapping is expected, e.g. {example}", argument=what, value=value)
+        raise InputError(f"a mapping is expected, e.g. {example}", argument=argument, value=value)
     return value
 
 
-def require_kind(what: str, value: object, *kinds: type) -> None:
-    """Refuse what is none of these."""
+def require_kind(argument: str, value: object, *kinds: type) -> None:
+    """Check that a value is of one of these types.
+
+    Raises
+    ------
+    InputError
+        It is of none of them.
+    """
     if not isinstance(value, kinds):
         names = " or ".join(kind.__name__ for kind in kinds)
-        raise InputError(f"{_article(names)} is expected", argument=what, value=value)
+        raise InputError(f"{_article(names)} is expected", argument=argument, value=value)
 
 
 def whole_number(name: str, value: object, lowest: int, highest: int) -> int:

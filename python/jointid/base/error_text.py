@@ -1,7 +1,21 @@
-"""What another library says of a damaged file, short enough to stand in one sentence."""
+"""Parts of error messages: another library's reason in brief, and names as alternatives."""
+
+from collections.abc import Sequence
 
 
 def reason_of(error: BaseException) -> str:
-    """Return an error's first sentence on one line, or its kind when it says nothing."""
-    said = " ".join(str(error).split()).partition(". ")[0]
-    return said[:120].rstrip(". ") or type(error).__name__
+    """Return the first sentence of an error's text on one line, or its type if it has no text."""
+    text = " ".join(str(error).split()).partition(". ")[0]
+    return text[:120].rstrip(". ") or type(error).__name__
+
+
+def alternatives(names: Sequence[str]) -> str:
+    """Return names as alternatives in a sentence.
+
+    Examples
+    --------
+    >>> alternatives((".csv", ".npz", ".mat"))
+    '.csv, .npz or .mat'
+    """
+    *others, last = names
+    return f"{', '.join(others)} or {last}" if others else last

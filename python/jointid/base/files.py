@@ -1,4 +1,4 @@
-"""Files are written whole or not at all."""
+"""Writing a file completely or not at all."""
 
 import errno
 import os
@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def write_whole(path: Path, content: bytes) -> None:
-    """Write a file so that a reader, or a crash, sees the old one or the new one, never a part.
+    """Write a file so that a reader, or a crash, finds the old one or the new one, never a part.
 
     Parameters
     ----------
@@ -18,12 +18,13 @@ def write_whole(path: Path, content: bytes) -> None:
     Raises
     ------
     OSError
-        The folder does not exist or cannot be written; the old file is untouched.
+        The path is a folder, or its folder does not exist or cannot be written. The old file is
+        unchanged.
     """
     target = path.resolve()
     if target.is_dir():
         raise IsADirectoryError(
-            errno.EISDIR, "this is a folder; a file's name is expected", str(path)
+            errno.EISDIR, "this is a folder; a file name is expected", str(path)
         )
     mode = target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~_umask()
     handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")

@@ -135,21 +135,23 @@ def _add_info(commands: Any) -> None:
         epilog="example:\n  jointid info run.csv",
         formatter_class=TEXT,
     )
-    info.add_argument(
-        "recording", type=Path, help="recording: .csv, .csv.gz, .npz, .mat or .parquet"
-    )
+    from jointid.recording.readers.registry import endings_text
+
+    info.add_argument("recording", type=Path, help=f"recording: {endings_text()}")
     reading_arguments(info)
     info.add_argument("--json", action="store_true", help="for machines")
 
 
 def several_recordings(command: argparse.ArgumentParser) -> None:
     """Add recordings and how they are read."""
+    from jointid.recording.readers.registry import endings_text
+
     command.add_argument(
         "recordings",
         type=Path,
         nargs="+",
         metavar="recording",
-        help="recording: .csv, .csv.gz, .npz, .mat or .parquet; several are read alike",
+        help=f"recording: {endings_text()}; several are read alike",
     )
     reading_arguments(command)
 

@@ -29,6 +29,9 @@ TRAJECTORIES = ("thesis", "sine", "multisine", "sigmoid", "step", "trapezoid")
 
 def add_simulate(commands: Any) -> None:
     """Add the command's grammar."""
+    from jointid.base.error_text import alternatives
+    from jointid.recording.saving import ENDINGS
+
     simulate = commands.add_parser(
         "simulate",
         help="simulate a joint that a controller moves",
@@ -46,7 +49,7 @@ def add_simulate(commands: Any) -> None:
     scenario_arguments(simulate)
     simulate.add_argument("--seed", type=whole_seed, default=0, help="of the sensors' noise (0)")
     simulate.add_argument(
-        "--output", type=Path, help="write the recording here: .csv, .csv.gz or .npz"
+        "--output", type=Path, help=f"write the recording here: {alternatives(ENDINGS)}"
     )
     simulate.add_argument("--json", action="store_true", help="print the outcome as JSON")
 

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 def add_sweep(commands: Any) -> None:
     """Add the command's grammar."""
+    from jointid.recording.readers.registry import endings_text
+
     sweep = commands.add_parser(
         "sweep",
         help="identify with many settings, several times each",
@@ -47,7 +49,7 @@ def add_sweep(commands: Any) -> None:
         type=Path,
         nargs="*",
         metavar="recording",
-        help="recording: .csv, .csv.gz, .npz, .mat or .parquet; several are fitted as one",
+        help=f"recording: {endings_text()}; several are fitted as one",
     )
     reading_arguments(sweep)
     sweep.add_argument(

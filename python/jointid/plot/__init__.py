@@ -1,4 +1,4 @@
-"""Pictures of recordings and estimates: one style, units on the axes, Matplotlib axes in and out."""
+"""Plots of recordings, estimates and studies: one style, units on the axes, Matplotlib axes in and out."""
 
 from jointid.plot.appearance import line_style, style
 from jointid.plot.estimate import convergence, friction_map, residuals, window_means

@@ -1,4 +1,4 @@
-"""One style for all pictures: told apart by colour, dash and marker, so also in print and by the colour-blind."""
+"""One style for all plots: curves differ in colour, dash and marker, also in print and for the colour-blind."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# Okabe and Ito's palette: told apart by the colour-blind, and in grey print by lightness.
+# Okabe and Ito's palette: distinct for the colour-blind, and in grey print by lightness.
 MEASURED = "#999999"
 FITTED = "#D55E00"
 SECOND = "#0072B2"
@@ -36,7 +36,13 @@ _STYLE: dict[str, Any] = {
 
 @contextmanager
 def style() -> Iterator[None]:
-    """Matplotlib settings of all our pictures, for the time of a `with` block."""
+    """Apply the Matplotlib settings of all our plots within a `with` block.
+
+    Examples
+    --------
+    >>> with jid.plot.style():
+    ...     figure, axes = pyplot.subplots()
+    """
     from matplotlib import interactive, is_interactive, rc_context
 
     drawing = is_interactive()
@@ -47,12 +53,12 @@ def style() -> Iterator[None]:
             finally:
                 drawing = is_interactive()
     finally:
-        # A notebook's back end is loaded with the first figure and turns this on, here perhaps.
+        # A notebook's back end is loaded with the first figure, perhaps here, and turns this on.
         interactive(drawing)
 
 
-def given_or_new(axes: Axes | None) -> Axes:
-    """The axes to draw into."""
+def axes_or_new(axes: Axes | None) -> Axes:
+    """Return these axes, or new ones in our style for None."""
     if axes is not None:
         return axes
     from matplotlib import pyplot
@@ -62,7 +68,19 @@ def given_or_new(axes: Axes | None) -> Axes:
 
 
 def line_style(number: int, count: int = 0) -> dict[str, Any]:
-    """Keywords of the curve with this number: colour and dash, with `count` samples also spaced markers."""
+    """Return the keywords of `Axes.plot` for a curve: colour and dash, and with `count` spaced markers.
+
+    Parameters
+    ----------
+    number : int
+        Of the curve, from 0; styles repeat after six.
+    count : int
+        Samples of the curve; markers are set at about twelve of them. Default 0: no markers.
+
+    Returns
+    -------
+    dict of str to object
+    """
     colour, dash, marker = _LINES[number % len(_LINES)]
     keywords: dict[str, Any] = {"color": colour, "linestyle": dash, "linewidth": 1.2}
     if count:

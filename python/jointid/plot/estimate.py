@@ -1,4 +1,4 @@
-"""Pictures of recordings and estimates: one style, units on the axes, Matplotlib axes in and out."""
+"""Plots of an estimate: friction map, window means, residuals, convergence of the search."""
 
 from __future__ import annotations
 
@@ -7,30 +7,27 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jointid.base.argument_checks import require_kind
+from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import FrictionCurve
-from jointid.plot.appearance import FITTED, MEASURED, SECOND
-from jointid.plot.appearance import given_or_new as _axes
+from jointid.plot.appearance import FITTED, MEASURED, SECOND, axes_or_new
+from jointid.plot.units import torque_unit, velocity_label
 from jointid.recording.recording import Recording
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def _torque_unit(estimate: Estimate) -> str:
-    return "N" if estimate.settings["kind"] == "prismatic" else "N·m"
-
-
-def _compared(estimate: Estimate) -> tuple[str, str]:
-    """What the residual is compared with, and its unit."""
+def _measured(estimate: Estimate) -> tuple[str, str]:
+    """Return the quantity that the model is fitted to, and its unit."""
     if estimate.settings["residual"] == "sensor":
         return "sensor reading", "sensor units"
-    prismatic = estimate.settings["kind"] == "prismatic"
-    return ("force", "N") if prismatic else ("torque", "N·m")
+    kind = estimate.settings["kind"]
+    return "force" if kind == "prismatic" else "torque", torque_unit(kind)
 
 
 def _speeds(peak: float) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """Speeds from rest to the peak, dense near rest where friction bends."""
+    """Return velocities up to the peak in both directions, dense near rest, where friction is nonlinear."""
     half = peak * np.linspace(0.0, 1.0, 400) ** 3
     half[0] = 1e-9 * peak
     return np.concatenate([-half[::-1], half])
@@ -51,20 +48,34 @@ def _draw_curve(axes: Axes, curve: FrictionCurve) -> None:
 
 
 def friction_map(recording: Recording | None, estimate: Estimate, axes: Axes | None = None) -> Axes:
-    """Friction over velocity: a point a window, and the identified curve with its band.
+    """Draw friction over velocity: one point per window, and the identified curve with its 95 % band.
 
     Parameters
     ----------
     recording : Recording or None
-        Points come from this recording; None: from the windows the estimate was made of.
+        The recording that the points come from; None: the windows that the estimate was fitted to.
     estimate : Estimate
     axes : Axes, optional
-        Drawn into; default: new ones.
+        Drawn into. Default: new axes.
+
+    Returns
+    -------
+    Axes
+        Velocity [rad/s] or [m/s], friction [N·m] or [N].
+
+    Raises
+    ------
+    InputError
+        An argument of another kind, or a recording that the estimate cannot predict.
+
+    Examples
+    --------
+    >>> jid.plot.friction_map(recording, estimate).figure.savefig("friction.png")
     """
     if recording is not None:
         require_kind("recording", recording, Recording)
     require_kind("estimate", estimate, Estimate)
-    axes = _axes(axes)
+    axes = axes_or_new(axes)
     windows = estimate.windows if recording is None else estimate.predict(recording).windows
     whole = windows.duration > 0.5 * float(np.median(windows.duration))
     axes.plot(
@@ -73,23 +84,41 @@ def friction_map(recording: Recording | None, estimate: Estimate, axes: Axes | N
         ".",
         color=MEASURED,
         markersize=3,
-        label="measured, mean over a window",
+        label="measured, window mean",
         rasterized=True,
     )
     peak = float(np.abs(windows.velocity).max())
     _draw_curve(axes, estimate.friction(_speeds(peak)))
-    prismatic = estimate.settings["kind"] == "prismatic"
-    axes.set_xlabel("velocity [m/s]" if prismatic else "velocity [rad/s]")
-    axes.set_ylabel(f"friction [{_torque_unit(estimate)}]")
+    kind = estimate.settings["kind"]
+    axes.set_xlabel(velocity_label(kind))
+    axes.set_ylabel(f"friction [{torque_unit(kind)}]")
     axes.legend(loc="upper left", frameon=False)
     return axes
 
 
 def window_means(estimate: Estimate, axes: Axes | None = None) -> Axes:
-    """What was measured over each window, as a mean, and what the model makes of it."""
-    axes = _axes(axes)
+    """Draw the measured and the fitted mean of each window over time.
+
+    Parameters
+    ----------
+    estimate : Estimate
+    axes : Axes, optional
+        Drawn into. Default: new axes.
+
+    Returns
+    -------
+    Axes
+        Time [s]; the sensor's reading, or torque [N·m] or force [N].
+
+    Raises
+    ------
+    InputError
+        Not an estimate.
+    """
+    require_kind("estimate", estimate, Estimate)
+    axes = axes_or_new(axes)
     windows = estimate.windows
-    signal, unit = _compared(estimate)
+    signal, unit = _measured(estimate)
     centre = _centres(estimate)
     axes.plot(
         centre,
@@ -100,7 +129,7 @@ def window_means(estimate: Estimate, axes: Axes | None = None) -> Axes:
         label="measured",
     )
     axes.plot(
-        *_broken(estimate, windows.fitted / windows.duration),
+        *_with_gaps(estimate, windows.fitted / windows.duration),
         color=FITTED,
         linewidth=1.0,
         label="fitted",
@@ -112,10 +141,28 @@ def window_means(estimate: Estimate, axes: Axes | None = None) -> Axes:
 
 
 def residuals(estimate: Estimate, axes: Axes | None = None) -> Axes:
-    """Measured less fitted, as a mean over each window."""
-    axes = _axes(axes)
+    """Draw the residual (measured minus fitted) of each window over time, as a mean.
+
+    Parameters
+    ----------
+    estimate : Estimate
+    axes : Axes, optional
+        Drawn into. Default: new axes.
+
+    Returns
+    -------
+    Axes
+        Time [s]; the sensor's reading, or torque [N·m] or force [N].
+
+    Raises
+    ------
+    InputError
+        Not an estimate.
+    """
+    require_kind("estimate", estimate, Estimate)
+    axes = axes_or_new(axes)
     windows = estimate.windows
-    _, unit = _compared(estimate)
+    _, unit = _measured(estimate)
     axes.axhline(0.0, color="black", linewidth=0.6)
     axes.plot(
         _centres(estimate), windows.residual / windows.duration, ".", color=SECOND, markersize=3
@@ -126,51 +173,65 @@ def residuals(estimate: Estimate, axes: Axes | None = None) -> Axes:
 
 
 def _centres(estimate: Estimate) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """Window centres on one time axis; recordings follow one another."""
+    """Return the window centres on one time axis, on which recordings follow one another."""
     windows = estimate.windows
     centre = 0.5 * (windows.start + windows.stop)
     begin = 0.0
     for run in np.unique(windows.recording):
-        mine = windows.recording == run
-        first, last = float(windows.start[mine].min()), float(windows.stop[mine].max())
+        same = windows.recording == run
+        first, last = float(windows.start[same].min()), float(windows.stop[same].max())
         if begin:
-            centre[mine] += begin - first
+            centre[same] += begin - first
         begin += last - first if begin else last
     return np.asarray(centre)
 
 
-def _broken(
+def _with_gaps(
     estimate: Estimate, values: np.ndarray[tuple[int], np.dtype[np.float64]]
 ) -> tuple[
     np.ndarray[tuple[int], np.dtype[np.float64]], np.ndarray[tuple[int], np.dtype[np.float64]]
 ]:
-    """A line that is interrupted where windows are missing, so that it does not claim what nobody saw."""
+    """Return a line that is interrupted where windows are missing: nothing was measured there."""
     centre = _centres(estimate)
     breaks = np.flatnonzero(np.diff(centre) > 2.5 * float(np.median(np.diff(centre)))) + 1
     return np.insert(centre, breaks, np.nan), np.insert(values, breaks, np.nan)
 
 
 def convergence(estimate: Estimate, axes: Axes | None = None) -> Axes:
-    """Penalty over generations: best so far, population mean, and the polished end.
+    """Draw the penalty over generations: best so far, population mean, and the final result.
+
+    Parameters
+    ----------
+    estimate : Estimate
+        Of a genetic search.
+    axes : Axes, optional
+        Drawn into. Default: new axes.
+
+    Returns
+    -------
+    Axes
+        Generation; penalty [(N·m·s)²], [(N·s)²] or [(sensor units·s)²], logarithmic.
 
     Raises
     ------
-    ValueError
-        The estimate was made without a genetic search.
+    InputError
+        The estimate was made without a genetic search, so there is no convergence to draw.
     """
+    require_kind("estimate", estimate, Estimate)
     if estimate.convergence is None:
-        raise ValueError(
-            "the estimate was made without a genetic search: there is no convergence to draw"
+        raise InputError(
+            "it was made without a genetic search, so there is no convergence to draw",
+            argument="estimate",
         )
-    axes = _axes(axes)
+    axes = axes_or_new(axes)
     history = estimate.convergence
     axes.semilogy(history.generation, history.mean, color=MEASURED, label="population mean")
     axes.semilogy(history.generation, history.best, color=SECOND, label="best so far")
     polished = (estimate.settings["ga"] or {}).get("polish") and estimate.settings["method"] == "ga"
-    last = "after the polish" if polished else "the answer, not polished"
+    last = "result, with polish" if polished else "result, without polish"
     axes.axhline(estimate.penalty, color=FITTED, linestyle="--", label=last)
     axes.set_xlabel("generation")
-    unit = _compared(estimate)[1]
+    unit = _measured(estimate)[1]
     axes.set_ylabel(f"penalty [({unit}·s)²]")
     axes.legend(loc="best", frameon=False)
     return axes

@@ -1,4 +1,4 @@
-"""Pictures of friction over velocity: models side by side, what a parameter does, what a run shows raw."""
+"""Plots of friction over velocity: models compared, the effect of one parameter, the samples of a recording."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.friction_map import friction_torque
 from jointid.joint.joint import Joint
-from jointid.plot.appearance import MEASURED, SECOND, given_or_new, line_style
+from jointid.plot.appearance import MEASURED, SECOND, axes_or_new, line_style
+from jointid.plot.units import torque_unit, velocity_label
 from jointid.recording.recording import Recording
 
 if TYPE_CHECKING:
@@ -27,25 +28,39 @@ _SENSOR = ("sensor_gain", "sensor_offset")
 def friction_curves(
     joints: Mapping[str, Joint | Estimate], axes: Axes | None = None, *, peak: float = 1.0
 ) -> Axes:
-    """Friction over velocity of joints whose parameters have values, or of estimates, side by side.
+    """Draw friction over velocity of several joints or estimates, for comparison.
 
     Parameters
     ----------
     joints : mapping of str to Joint or Estimate
+        Label → a joint whose friction parameters have values, or an estimate.
     axes : Axes, optional
-        Drawn into; default: new ones.
+        Drawn into. Default: new axes.
     peak : float
-        Largest speed [rad/s or m/s]. Default 1.
+        Largest speed [rad/s] or [m/s]. Default 1.
+
+    Returns
+    -------
+    Axes
+        Velocity [rad/s] or [m/s], friction [N·m] or [N].
 
     Raises
     ------
     InputError
-        A joint without a value for any friction parameter.
+        No joint, or a joint without a value for any friction parameter.
+
+    Examples
+    --------
+    >>> jid.plot.friction_curves({"first guess": joint, "identified": estimate}, peak=0.5)
     """
     require_mapping("joints", joints, "{'before': joint}")
     for each in joints.values():
         require_kind("joints", each, Joint, Estimate)
-    axes = given_or_new(axes)
+    if not joints:
+        raise InputError("at least one joint or estimate is expected", argument="joints", value={})
+    for name, joint in joints.items():
+        _check_friction(_values(_joint(joint)), f"joints.{name}")
+    axes = axes_or_new(axes)
     for number, (name, joint) in enumerate(joints.items()):
         _draw(axes, _values(_joint(joint)), peak, number, name)
     kinds = {_joint(joint).kind for joint in joints.values()}
@@ -63,11 +78,11 @@ def sensitivity(
     peak: float = 0.6,
     reading: float = 5.0,
 ) -> Axes:
-    """The torque at constant speed and constant sensor reading, and how a parameter's error moves it.
+    """Draw the torque at constant speed and sensor reading, and how an error of a parameter changes it.
 
     This is the drive's torque by (4-20) without acceleration: friction + gain · reading + offset.
-    Where the three curves part, a recording tells of the parameter. Forward motion is shown; backward,
-    friction changes its sign.
+    Where the three curves differ, a recording contains information on the parameter. Forward motion
+    is shown; backward, friction changes its sign.
 
     Parameters
     ----------
@@ -76,29 +91,41 @@ def sensitivity(
     parameter : str
         A friction parameter, `sensor_gain` or `sensor_offset`.
     axes : Axes, optional
-        Drawn into; default: new ones.
+        Drawn into. Default: new axes.
     share : float
         Relative change of the parameter. Default 0.1.
     peak : float
-        Largest speed [rad/s or m/s]. Default 0.6.
+        Largest speed [rad/s] or [m/s]. Default 0.6.
     reading : float
-        Of the torque sensor, raw. Default 5.
+        Raw reading of the torque sensor. Default 5.
+
+    Returns
+    -------
+    Axes
+        Velocity [rad/s] or [m/s], torque [N·m] or force [N].
 
     Raises
     ------
     InputError
-        The parameter has no value.
+        The parameter has no value, or the joint has none for its friction.
+
+    Examples
+    --------
+    >>> jid.plot.sensitivity(joint, "viscous", share=0.2)
     """
     require_kind("joint", joint, Joint)
-    axes = given_or_new(axes)
     values = _values(joint)
     if parameter not in values:
         raise InputError(
-            f"parameter '{parameter}' has no value; with one are {', '.join(values) or 'none'}"
+            f"it has no value; parameters with a value are {', '.join(values) or 'none'}",
+            argument="parameter",
+            value=parameter,
         )
+    _check_friction(values, "joint")
+    axes = axes_or_new(axes)
     for number, (name, factor) in enumerate(
         (
-            ("as it is", 1.0),
+            ("nominal", 1.0),
             (f"+{100.0 * share:g} %", 1.0 + share),
             (f"−{100.0 * share:g} %", 1.0 - share),
         )
@@ -120,37 +147,47 @@ def torque_over_velocity(
     sensed_by: Joint | Estimate | None = None,
     curve: Joint | Estimate | None = None,
 ) -> Axes:
-    """The recorded torque over the velocity, sample by sample: the friction map as it comes.
+    """Draw the recorded torque over velocity, sample by sample: a friction map without a fit.
 
     Parameters
     ----------
     recording : Recording
+        With a torque.
     axes : Axes, optional
-        Drawn into; default: new ones.
+        Drawn into. Default: new axes.
     sensed_by : Joint or Estimate, optional
-        Whose gain and offset turn the sensor's reading into the link's torque, which is then subtracted.
+        Its sensor gain and offset convert the sensor's reading to the link's torque, which is
+        subtracted. Default: nothing is subtracted.
     curve : Joint or Estimate, optional
-        Whose friction is drawn over it.
+        Its friction is drawn over the samples. Default: no curve.
+
+    Returns
+    -------
+    Axes
+        Velocity [rad/s] or [m/s], torque [N·m] or force [N].
 
     Raises
     ------
     InputError
-        The recording has no torque, or nothing to subtract.
+        The recording has no torque, or no sensor to subtract; a joint lacks values.
     """
     require_kind("recording", recording, Recording)
     if recording.torque is None:
-        raise InputError("the recording has no torque; drawing it over velocity needs one")
-    axes = given_or_new(axes)
+        raise InputError("it has no torque", argument="recording")
+    if curve is not None:
+        _check_friction(_values(_joint(curve)), "curve")
     torque, what = recording.torque, "torque"
     if sensed_by is not None:
         known = _values(_joint(sensed_by))
-        if recording.sensor is None or not set(_SENSOR) <= set(known):
+        if recording.sensor is None:
+            raise InputError("it has no sensor that could be subtracted", argument="recording")
+        if not set(_SENSOR) <= set(known):
             raise InputError(
-                "the sensor cannot be subtracted: it takes a recorded sensor and values for "
-                "sensor_gain and sensor_offset"
+                f"values of {' and '.join(_SENSOR)} are expected", argument="sensed_by"
             )
         torque = torque - known["sensor_gain"] * recording.sensor - known["sensor_offset"]
-        what = "torque less sensed link torque"
+        what = "torque minus sensed link torque"
+    axes = axes_or_new(axes)
     axes.plot(
         recording.velocity,
         torque,
@@ -162,7 +199,7 @@ def torque_over_velocity(
     )
     if curve is not None:
         peak = float(np.abs(recording.velocity).max())
-        _draw(axes, _values(_joint(curve)), peak, 0, "friction, model", colour=SECOND)
+        _draw(axes, _values(_joint(curve)), peak, 0, "friction of the model", colour=SECOND)
     _label(axes, what, recording.kind)
     axes.legend(loc="lower right", frameon=False, markerscale=4.0, fontsize="small")
     return axes
@@ -176,18 +213,22 @@ def _values(joint: Joint) -> dict[str, float]:
     return {name: p.value for name, p in joint.parameters.items() if p.value is not None}
 
 
-def _friction(values: Mapping[str, float], velocity: Array) -> Array:
-    """Friction of the terms for whose coefficient and shapes there are values."""
-    terms = [
+def _terms(values: Mapping[str, float]) -> list[str]:
+    """Return the friction terms whose coefficient and shapes have values."""
+    return [
         term.key
         for term in _core.terms()
         if term.friction and not term.family and {term.name, *term.shapes} <= set(values)
     ]
-    if not terms:
+
+
+def _check_friction(values: Mapping[str, float], argument: str) -> None:
+    if not _terms(values):
         raise InputError(
-            "the joint has no values for its friction; give them with joint.with_parameters({...})"
+            "the joint has no values for its friction",
+            argument=argument,
+            remedy=("give its parameters values", "use an estimate"),
         )
-    return friction_torque(terms, values, velocity)
 
 
 def _draw(
@@ -201,11 +242,11 @@ def _draw(
     forward: bool = False,
     colour: str | None = None,
 ) -> None:
-    """One curve, broken at rest, where friction takes any value in between."""
-    speed = peak * np.linspace(0.0, 1.0, 300) ** 2  # dense near rest, where friction bends
+    """Draw one curve, interrupted at rest, where friction takes any value in between."""
+    speed = peak * np.linspace(0.0, 1.0, 300) ** 2  # dense near rest, where friction is nonlinear
     speed[0] = 1e-9 * peak
     velocity = np.concatenate([-speed[::-1], speed])
-    torque = _friction(values, velocity) + above
+    torque = friction_torque(_terms(values), values, velocity) + above
     keywords = line_style(number)
     if colour is not None:
         keywords["color"] = colour
@@ -216,6 +257,5 @@ def _draw(
 
 
 def _label(axes: Axes, what: str, kind: str) -> None:
-    prismatic = kind == "prismatic"
-    axes.set_xlabel("velocity [m/s]" if prismatic else "velocity [rad/s]")
-    axes.set_ylabel(f"{what} [N]" if prismatic else f"{what} [N·m]")
+    axes.set_xlabel(velocity_label(kind))
+    axes.set_ylabel(f"{what} [{torque_unit(kind)}]")

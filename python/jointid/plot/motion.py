@@ -1,4 +1,4 @@
-"""Pictures of runs over time: how far a joint misses its reference, its signals, what was asked of it."""
+"""Plots over time: the tracking error of runs, their signals, and a desired trajectory."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jointid.base.argument_checks import require_kind, require_mapping
+from jointid.base.error_text import alternatives
 from jointid.base.errors import InputError
-from jointid.plot.appearance import given_or_new, line_style
+from jointid.plot.appearance import axes_or_new, line_style
 from jointid.recording.recording import Recording
 from jointid.simulation.simulated_recording import SimulatedRecording
 from jointid.simulation.trajectory import FloatArray, Trajectory
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Runs = Recording | Mapping[str, Recording]
-# Unit of a rotating joint, and of a linear one.
+# Unit for a revolute joint, and for a prismatic one.
 _UNITS = {
     "position": ("rad", "m"),
     "velocity": ("rad/s", "m/s"),
@@ -29,67 +30,87 @@ _UNITS = {
     "sensor": ("raw", "raw"),
     "reference": ("rad", "m"),
 }
+_SIGNALS = tuple(name for name in _UNITS if name != "acceleration")
 
 
 def tracking_error(runs: Runs, axes: Axes | None = None, *, settling: float | None = None) -> Axes:
-    """Position less reference over time, with its root mean square in the legend.
+    """Draw the tracking error (position minus reference) over time, with its RMS in the legend.
 
     Parameters
     ----------
     runs : Recording or mapping of str to Recording
-        One run, or several by name, e.g. ``{"before": a, "after": b}``. Of a simulated run the true
-        position counts, not the encoder's.
+        One run, or several by name, e.g. ``{"before": a, "after": b}``. For a simulated run the
+        true position is used, not the encoder's.
     axes : Axes, optional
-        Drawn into; default: new ones.
+        Drawn into. Default: new axes.
     settling : float, optional
-        Time at the start that the root mean square leaves out [s]. Default: a sixth of each run.
+        Time at the start that the RMS excludes [s]. Default: a sixth of each run.
+
+    Returns
+    -------
+    Axes
+        Time from the start of each run [s], tracking error [mrad] or [mm].
 
     Raises
     ------
     InputError
-        A run without a reference.
+        No run, or a run without a reference.
+
+    Examples
+    --------
+    >>> jid.plot.tracking_error({"first guess": before, "identified": after})
     """
-    axes = given_or_new(axes)
     named = _named(runs)
-    for number, (name, run) in enumerate(named.items()):
-        error = 1e3 * _error(run, name)
+    errors = [1e3 * _error(run, name) for name, run in named.items()]
+    axes = axes_or_new(axes)
+    for number, ((name, run), error) in enumerate(zip(named.items(), errors, strict=True)):
         elapsed = run.time - run.time[0]
         later = elapsed >= (elapsed[-1] / 6.0 if settling is None else settling)
         size = float(np.sqrt(np.mean(error[later] ** 2)))
-        told = f"rms {size:.3g} {_small(run)}"
-        label = f"{name}: {told}" if name else told
+        text = f"RMS {size:.3g} {_small_unit(run)}"
+        label = f"{name}: {text}" if name else text
         axes.plot(elapsed, error, label=label, **line_style(number, len(elapsed)))
     axes.set_xlabel("time [s]")
-    axes.set_ylabel(f"position less reference [{_small(next(iter(named.values())))}]")
+    axes.set_ylabel(f"tracking error [{_small_unit(next(iter(named.values())))}]")
     _room_for_legend(axes)
     axes.legend(loc="upper right", frameon=False)
     return axes
 
 
 def signal(runs: Runs, name: str, axes: Axes | None = None) -> Axes:
-    """One signal over time, of a run or of several.
+    """Draw one signal of a run, or of several, over time.
 
     Parameters
     ----------
     runs : Recording or mapping of str to Recording
+        One run, or several by name.
     name : str
         "position", "velocity", "torque", "motor_torque", "current", "sensor" or "reference".
     axes : Axes, optional
-        Drawn into; default: new ones.
+        Drawn into. Default: new axes.
+
+    Returns
+    -------
+    Axes
+        Time [s]; the signal in SI units, the sensor's raw reading.
 
     Raises
     ------
     InputError
-        A signal that no recording has, or that this one lacks.
+        No run, an unknown signal, or one that a run lacks.
     """
-    if name not in _UNITS:
-        raise InputError(f"signal '{name}' is not known; known are {', '.join(_UNITS)}")
-    axes = given_or_new(axes)
+    if name not in _SIGNALS:
+        raise InputError(f"{alternatives(_SIGNALS)} is expected", argument="name", value=name)
     named = _named(runs)
+    for label, run in named.items():
+        if getattr(run, name) is None:
+            raise InputError(
+                f"the recording has no {name}; it has {', '.join(run.signals)}",
+                argument=_argument(label),
+            )
+    axes = axes_or_new(axes)
     for number, (label, run) in enumerate(named.items()):
-        values = getattr(run, name, None)
-        if values is None:
-            raise InputError(f"the recording {label!r} has no {name}; it has {run.signals}")
+        values = getattr(run, name)
         count = len(run.time) if len(named) > 1 else 0
         axes.plot(run.time, values, label=label, **line_style(number, count))
     unit = _UNITS[name][next(iter(named.values())).kind == "prismatic"]
@@ -103,27 +124,33 @@ def signal(runs: Runs, name: str, axes: Axes | None = None) -> Axes:
 def trajectory(
     wanted: Trajectory, what: str = "position", axes: Axes | None = None, *, label: str = ""
 ) -> Axes:
-    """A desired motion over time.
+    """Draw a desired motion over time.
 
     Parameters
     ----------
     wanted : Trajectory
-    what : str
-        "position" (default), "velocity" or "acceleration".
+        Of a revolute joint.
+    what : {"position", "velocity", "acceleration"}
+        Default "position".
     axes : Axes, optional
-        Drawn into; default: new ones. Several motions in one picture take turns in colour and dash.
+        Drawn into; several motions in the same axes differ in colour and dash. Default: new axes.
     label : str
-        For a legend.
+        For the legend. Default: no legend.
+
+    Returns
+    -------
+    Axes
+        Time [s]; [rad], [rad/s] or [rad/s²].
 
     Raises
     ------
     InputError
-        Another word for `what`.
+        Another value of `what`.
     """
     derivatives = ("position", "velocity", "acceleration")
     if what not in derivatives:
-        raise InputError(f"what is {what!r}; one of {', '.join(derivatives)} is expected")
-    axes = given_or_new(axes)
+        raise InputError(f"{alternatives(derivatives)} is expected", argument="what", value=what)
+    axes = axes_or_new(axes)
     time = np.linspace(0.0, wanted.duration, 1201)
     values = wanted.sample(time)[derivatives.index(what)]
     axes.plot(time, values, label=label or None, **line_style(len(axes.lines)))
@@ -136,7 +163,7 @@ def trajectory(
 
 
 def _room_for_legend(axes: Axes) -> None:
-    """Room above the curves, of all axes that share the scale."""
+    """Make room for a legend above the curves, in all axes that share the scale."""
     family = axes.get_shared_y_axes().get_siblings(axes)
     drawn = [other for other in family if other.lines]
     low = min(float(other.dataLim.ymin) for other in drawn)
@@ -155,7 +182,11 @@ def _named(runs: Runs) -> Mapping[str, Recording]:
     for run in named.values():
         require_kind("runs", run, Recording)
     if not named:
-        raise InputError("there is no recording to draw; give one, or several by name")
+        raise InputError(
+            "there is no recording to draw; one is expected, or several by name",
+            argument="runs",
+            value=runs,
+        )
     return named
 
 
@@ -163,9 +194,16 @@ def _error(run: Recording, name: str) -> FloatArray:
     if isinstance(run, SimulatedRecording):
         return run.tracking_error()
     if run.reference is None:
-        raise InputError(f"the recording {name!r} has no reference, so there is no tracking error")
+        raise InputError(
+            "the recording has no reference, so there is no tracking error",
+            argument=_argument(name),
+        )
     return np.asarray(run.position - run.reference)
 
 
-def _small(run: Recording) -> str:
+def _argument(name: str) -> str:
+    return f"runs.{name}" if name else "runs"
+
+
+def _small_unit(run: Recording) -> str:
     return "mm" if run.kind == "prismatic" else "mrad"

@@ -1,4 +1,4 @@
-"""Pictures of the search's own settings."""
+"""Plot of the adaptive probabilities of the genetic search."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from jointid._core import GaOptions, Generation
-from jointid.plot.appearance import given_or_new, line_style
+from jointid.base.argument_checks import require_kind
+from jointid.plot.appearance import axes_or_new, line_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,28 +16,39 @@ if TYPE_CHECKING:
 def adaptation(
     options: GaOptions, generations: Sequence[Generation] = (), axes: Axes | None = None
 ) -> Axes:
-    """Crossover and mutation probability over the diversity measure (3.2.2).
+    """Draw the crossover and mutation probabilities over the diversity measure (3.2.2).
 
     Parameters
     ----------
     options : GaOptions
-        Adaptive ones; of others both lines are level.
+        If they are not adaptive, both lines are constant.
     generations : sequence of Generation
-        Of a search with these options: a point each, to be seen on the lines.
+        Of a search with these options; each adds one point to both lines. Default: none.
     axes : Axes, optional
-        Drawn into; default: new ones.
+        Drawn into. Default: new axes.
+
+    Returns
+    -------
+    Axes
+        Diversity measure [–], probability [–], logarithmic.
+
+    Raises
+    ------
+    InputError
+        `options` is not a `GaOptions`.
     """
-    axes = given_or_new(axes)
+    require_kind("options", options, GaOptions)
+    axes = axes_or_new(axes)
     corner = [0.0, options.diversity_low, options.diversity_high, 1.0]
-    for number, (name, apart, alike) in enumerate(
+    for number, (name, diverse, equal) in enumerate(
         (
             ("crossover", options.crossover_probability, options.crossover_probability_alike),
             ("mutation", options.mutation_probability, options.mutation_probability_alike),
         )
     ):
-        end = alike if options.adaptive else apart
+        end = equal if options.adaptive else diverse
         keywords = line_style(number)
-        axes.plot(corner, [apart, apart, end, end], label=f"{name} probability", **keywords)
+        axes.plot(corner, [diverse, diverse, end, end], label=f"{name} probability", **keywords)
         if generations:
             axes.plot(
                 [generation.diversity for generation in generations],
@@ -45,9 +57,9 @@ def adaptation(
                 color=keywords["color"],
                 markersize=4,
                 markerfacecolor="none",
-                label=f"{name}, generations of a search",
+                label=f"{name} in a search",
             )
-    axes.set_xlabel("diversity measure, 1 where all are alike [–]")
+    axes.set_xlabel("diversity measure (1: all individuals equal) [–]")
     axes.set_ylabel("probability [–]")
     axes.set_yscale("log")
     axes.set_ylim(0.01, 1.3)

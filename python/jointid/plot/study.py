@@ -1,4 +1,4 @@
-"""Pictures of a study: a quantity over one or two swept settings."""
+"""Plot of a study: a quantity over one or two swept settings."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.argument_checks import require_kind
+from jointid.base.error_text import alternatives
 from jointid.base.errors import InputError
-from jointid.plot.appearance import MEASURED, given_or_new, line_style
+from jointid.plot.appearance import MEASURED, axes_or_new, line_style
+from jointid.plot.units import parameter_unit
 from jointid.study.study_result import Study
 
 if TYPE_CHECKING:
@@ -42,43 +44,60 @@ def sweep(
     ----------
     study : Study
     x, y : str, optional
-        Swept settings. Default: the first, and the second if there is one and it is not `x`. Trials of
-        the other settings are taken together.
+        Swept settings. Default: the first two; `y` none if only one is swept or `axes` are given.
+        Trials of the other settings are combined.
     value : str
         A column of the study's table (``"penalty"``, a parameter, ``"tracking_after"``, …), or
         ``"error.NAME"``: a parameter's relative error [%]; ``"error.worst"``: the largest of them.
         Default ``"penalty"``.
     statistic : str
-        "median" (default), "mean", "spread", "best" or "worst" of the trials; for an error, of its size.
+        "median" (default), "mean", "spread", "best" or "worst" of the trials; of an error, its
+        magnitude.
     axes : Axes, optional
-        Drawn into; default: new ones.
+        Drawn into. Default: new axes.
+
+    Returns
+    -------
+    Axes
+        Over one setting: the quantity over the setting. Over two: the settings, the quantity as
+        colour and number.
 
     Raises
     ------
     InputError
-        Something that the study has not swept, or does not hold.
+        A setting that was not swept, an unknown quantity or statistic, an error without true values.
+
+    Examples
+    --------
+    >>> jid.plot.sweep(study, "ga.population", value="error.sensor_gain")
     """
     require_kind("study", study, Study)
     if statistic not in STATISTICS:
-        raise InputError(f"statistic '{statistic}' is not known; use {', '.join(STATISTICS)}")
+        raise InputError(
+            f"{alternatives(tuple(STATISTICS))} is expected", argument="statistic", value=statistic
+        )
     if not study.swept:
-        raise InputError("the study has swept nothing, so there is nothing to draw it over")
+        raise InputError("no setting was swept", argument="study")
     x = study.swept[0] if x is None else x
     if y is None and len(study.swept) > 1 and axes is None:
         y = next((name for name in study.swept if name != x), None)
-    for name in (x, y):
+    for argument, name in (("x", x), ("y", y)):
         if name is not None and name not in study.swept:
-            raise InputError(f"the study has not swept '{name}'; it has {', '.join(study.swept)}")
+            raise InputError(
+                f"not a swept setting; swept are {', '.join(study.swept)}",
+                argument=argument,
+                value=name,
+            )
     values, title = _values(study, value)
     across = _labels(study, x)
-    axes = given_or_new(axes)
+    axes = axes_or_new(axes)
     if y is None:
         _line(axes, study, x, across, values, statistic)
         axes.set_ylabel(title)
-        if _wide(values):
+        if _needs_log_scale(values):
             axes.set_yscale("log")
         return axes
-    _map(axes, study, (x, across), (y, _labels(study, y)), values, statistic)
+    _heat_map(axes, study, (x, across), (y, _labels(study, y)), values, statistic)
     axes.set_title(f"{title}, {statistic} of the trials", fontsize="medium")
     return axes
 
@@ -88,45 +107,46 @@ def _values(study: Study, value: str) -> tuple[Array, str]:
     if kind != "error" or not name:
         column = study.column(value)
         if column.dtype.kind not in "fiu":
-            raise InputError(f"'{value}' is a column of texts; one of numbers can be drawn")
+            raise InputError("a column of numbers is expected", argument="value", value=value)
         return column.astype(np.float64), _title(study, value)
     if name == "worst":
         known = sorted(set(study.truth_of(0)) & set(study.parameters))
         if not known:
-            raise InputError("the study knows no truth; give sweep(truth={...})")
+            raise _no_truth(value)
         return np.max([_values(study, f"error.{n}")[0] for n in known], axis=0), "worst error [%]"
     found = study.column(name).astype(np.float64)
-    try:
-        true = np.array([study.truth_of(row.cell)[name] for row in study.rows])
-    except KeyError:
-        raise InputError(f"the study knows no truth of '{name}'; draw '{name}' itself") from None
+    truths = [study.truth_of(row.cell) for row in study.rows]
+    if not all(name in truth for truth in truths):
+        raise _no_truth(value, f"draw {name} itself")
+    true = np.array([truth[name] for truth in truths])
     return 100.0 * np.abs(found / true - 1.0), f"error of {name} [%]"
+
+
+def _no_truth(value: str, *remedies: str) -> InputError:
+    return InputError(
+        "the study has no true value, so there is no error",
+        argument="value",
+        value=value,
+        remedy=("give the truth to the sweep", *remedies),
+    )
 
 
 def _title(study: Study, value: str) -> str:
     if value == "penalty":
         sensor = "sensor_gain" in study.parameters
         return "penalty [(sensor units·s)²]" if sensor else "penalty [(N·m·s)²]"
-    units = {
-        "evaluations": "[–]",
-        "generations": "[–]",
-        "inertia": "[kg·m²]",
-        "coulomb": "[N·m]",
-        "static": "[N·m]",
-        "stribeck": "[s²/rad²]",
-        "viscous": "[N·m·s/rad]",
-        "torque_offset": "[N·m]",
-    }
-    base = value.removesuffix("_stderr")
-    unit = "[rad]" if value.startswith("tracking_") else units.get(base, "")
-    return f"{value} {unit}".strip()
+    if value in ("evaluations", "generations"):
+        return f"{value} [–]"
+    tracking = value.startswith("tracking_")
+    unit = "rad" if tracking else parameter_unit(value.removesuffix("_stderr"))
+    return f"{value} [{unit}]" if unit else value
 
 
 def _labels(study: Study, name: str) -> list[Any]:
     return list(dict.fromkeys(cell[name] for cell in study.cells))
 
 
-def _of(study: Study, name: str, label: Any) -> NDArray[np.bool_]:
+def _trials_with(study: Study, name: str, label: Any) -> NDArray[np.bool_]:
     return np.array([study.cells[row.cell][name] == label for row in study.rows])
 
 
@@ -135,8 +155,8 @@ def _statistic(statistic: str, values: Array) -> float:
     return float(STATISTICS[statistic](known)) if len(known) else np.nan
 
 
-def _wide(values: Array) -> bool:
-    """Whether only a logarithm shows it all."""
+def _needs_log_scale(values: Array) -> bool:
+    """Return whether the values are positive and span more than a factor of 20."""
     known = values[np.isfinite(values)]
     return len(known) > 0 and bool(known.min() > 0.0 and known.max() > 20.0 * known.min())
 
@@ -148,22 +168,22 @@ def _line(
     places = labels if numbers else list(range(len(labels)))
     line = []
     for place, label in zip(places, labels, strict=True):
-        mine = values[_of(study, x, label)]
-        axes.plot([place] * len(mine), mine, ".", color=MEASURED, markersize=4, zorder=1)
-        line.append(_statistic(statistic, mine))
-    # Between words there is nothing to draw a line through.
+        trials = values[_trials_with(study, x, label)]
+        axes.plot([place] * len(trials), trials, ".", color=MEASURED, markersize=4, zorder=1)
+        line.append(_statistic(statistic, trials))
+    # Settings that are not numbers have no scale: no line between them.
     look = line_style(2) if numbers else line_style(2) | {"linestyle": "none"}
     axes.plot(places, line, marker="o", markersize=5, label=statistic, **look)
-    if numbers and _wide(np.array(labels, dtype=np.float64)):
+    if numbers and _needs_log_scale(np.array(labels, dtype=np.float64)):
         axes.set_xscale("log")
     if not numbers:
         axes.set_xticks(places, [str(label) for label in labels])
-    axes.plot([], [], ".", color=MEASURED, label="a trial")
+    axes.plot([], [], ".", color=MEASURED, label="single trial")
     axes.set_xlabel(x)
     axes.legend(loc="best", frameon=False)
 
 
-def _map(
+def _heat_map(
     axes: Axes,
     study: Study,
     across: tuple[str, list[Any]],
@@ -177,7 +197,9 @@ def _map(
     table = np.array(
         [
             [
-                _statistic(statistic, values[_of(study, y, line) & _of(study, x, column)])
+                _statistic(
+                    statistic, values[_trials_with(study, y, line) & _trials_with(study, x, column)]
+                )
                 for column in columns
             ]
             for line in lines
@@ -185,7 +207,7 @@ def _map(
     )
     known = table[np.isfinite(table)]
     low, high = (known.min(), known.max()) if len(known) else (0.0, 1.0)
-    norm = LogNorm(low, high) if _wide(table) else Normalize(low, high)
+    norm = LogNorm(low, high) if _needs_log_scale(table) else Normalize(low, high)
     image = axes.imshow(table, norm=norm, cmap="cividis_r", aspect="auto", origin="lower")
     for row, column in np.ndindex(table.shape):
         number = table[row, column]

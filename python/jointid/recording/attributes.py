@@ -1,4 +1,4 @@
-"""What a recording says of itself besides its signals, and what makes it usable."""
+"""The attributes of a recording besides its signals: kind, torque hold, metadata and truth, checked."""
 
 import json
 from collections.abc import Mapping
@@ -10,37 +10,46 @@ from jointid.recording.signals import KINDS
 
 
 def check_kind(kind: object) -> None:
-    """Refuse a kind of joint that does not exist."""
+    """Raise `InputError` for a kind of joint that does not exist."""
     if kind not in KINDS:
-        raise InputError(f"kind is {kind!r}; 'revolute' or 'prismatic' is expected")
+        raise InputError("revolute or prismatic is expected", argument="kind", value=kind)
 
 
 def check_torque_hold(torque_hold: object) -> None:
-    """Refuse a way of holding the torque that does not exist."""
+    """Raise `InputError` for a course of the torque between samples that does not exist."""
     if torque_hold not in (None, "zoh", "linear"):
         raise InputError(
-            f"torque_hold is {torque_hold!r}; 'zoh' (held between samples), 'linear' or None "
-            "(not known) is expected"
+            "zoh (held between samples) or linear is expected, or nothing if it is not known",
+            argument="torque_hold",
+            value=torque_hold,
         )
 
 
 def json_mapping(argument: str, mapping: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return a read-only copy of a mapping, as JSON would give it back, or refuse it."""
+    """Return a read-only copy of a mapping, as JSON gives it back.
+
+    Raises
+    ------
+    InputError
+        It is no mapping, a key is no string, or a value is not representable in JSON.
+    """
     if not isinstance(mapping, Mapping):
-        raise InputError(f"{argument} is a {type(mapping).__name__}; a mapping is expected")
+        raise InputError("a mapping is expected", argument=argument, value=mapping)
     for key in mapping:
         if not isinstance(key, str):
-            raise InputError(f"{argument}: the key {key!r} is not a string")
+            raise InputError(f"the key {key!r} is not a string", argument=argument)
     try:
-        return MappingProxyType(json.loads(json.dumps(dict(mapping), allow_nan=False)))
+        text = json.dumps(dict(mapping), allow_nan=False)
     except (TypeError, ValueError, RecursionError):
-        culprit = next((key for key, value in mapping.items() if not _holds(value)), "all of it")
+        unusable = [key for key, value in mapping.items() if not _is_json(value)]
         raise InputError(
-            f"{argument}: {culprit!r} holds no JSON value (text, finite number, list, mapping)"
+            "a JSON value is expected (text, finite number, list, mapping)",
+            argument=f"{argument}.{unusable[0]}" if unusable else argument,
         ) from None
+    return MappingProxyType(json.loads(text))
 
 
-def _holds(value: object) -> bool:
+def _is_json(value: object) -> bool:
     try:
         json.dumps(value, allow_nan=False)
     except (TypeError, ValueError, RecursionError):

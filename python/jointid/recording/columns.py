@@ -1,72 +1,23 @@
-"""Which column is which signal, and in what unit: headers, `columns=`, `units=`, `scale=`."""
+"""The column, unit and scale of each signal: from the headers, and from `columns`, `units` and `scale`."""
 
 import math
-import operator
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
 
 import numpy as np
 
+from jointid.base.advice import Action
 from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
-from jointid.recording.signals import SIGNALS, FloatArray, check_signal_name, closest, dimensions
-from jointid.recording.units import Unit, find_unit, unit_named, unit_names
+from jointid.recording.column_lookup import column_index, listed
+from jointid.recording.headers import ALIASES, parsed, plain
+from jointid.recording.signals import SIGNALS, FloatArray, check_signal_name, dimensions
+from jointid.recording.table import Table
+from jointid.recording.units import Unit, unit_named, unit_names
 
-_ALIASES: dict[str, str] = {
-    alias: signal
-    for signal, aliases in {
-        "time": "time t",
-        "position": "position pos angle q",
-        "velocity": "velocity vel speed",
-        "torque": "torque tau force motor_force motor_torque_output output_torque",
-        "sensor": "sensor sensor_raw torque_sensor",
-        "reference": "reference position_ref position_reference goal_position",
-        "link_position": "link_position",
-        "temperature": "temperature",
-        "motor_torque": "motor_torque",
-        "current": "current motor_current",
-    }.items()
-    for alias in aliases.split()
-}
-# Signals whose dimension tells the kind of joint, the most telling first.
-_TELLING = ("position", "link_position", "reference", "velocity", "torque")
+# Signals whose dimension shows the kind of joint, the clearest first.
+_SHOWING_KIND = ("position", "link_position", "reference", "velocity", "torque")
 _LIKELY = {"time": ("time", "stamp", "clock"), "position": ("pos", "ang", "travel")}
-_SHOWN = 8  # headers listed in a message
-
-
-class Table(Protocol):
-    """Named columns, wherever they come from."""
-
-    @property
-    def source(self) -> str:
-        """What the messages call it."""
-
-    @property
-    def headers(self) -> tuple[str, ...]:
-        """One for each column."""
-
-    @property
-    def other_names(self) -> Mapping[str, int]:
-        """Names that `columns=` may use besides the headers → their columns."""
-
-    @property
-    def header_place(self) -> str:
-        """Where the headers stand, for messages."""
-
-    @property
-    def saved(self) -> Mapping[str, Any] | None:
-        """What a saved recording says of itself; None for a foreign table."""
-
-    def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
-        """Return columns as numbers, or say which cell is none."""
-
-    def text(self, column: int) -> list[str]:
-        """Return a column as text."""
-
-    def place(self, column: int, row: int) -> str:
-        """Return where a cell stands, for messages."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,9 +31,9 @@ class Column:
     unit : Unit or None
         None: no unit is named anywhere, SI is assumed.
     unknown : str
-        What stands where a unit should, but is none. Default: nothing.
+        Text in the unit's place of the header that is no known unit. Default: none.
     scale : float, optional
-        SI value of the file's 1, whatever the unit. Default: the unit tells.
+        Factor from file units to SI; replaces the unit. Default: the unit's factor.
     """
 
     index: int
@@ -94,7 +45,7 @@ class Column:
         """Return the column's values in SI units."""
         if self.scale is None:
             return self.unit.to_si(values) if self.unit else values
-        with np.errstate(over="ignore", under="ignore"):  # inf is refused by name later
+        with np.errstate(over="ignore", under="ignore"):  # inf is refused later, by signal
             return values * self.scale
 
 
@@ -106,7 +57,13 @@ def match_columns(
     scale: Mapping[str, float] | None,
     kind: str | None,
 ) -> tuple[dict[str, Column], str]:
-    """Return the column of each signal present, and the kind of joint their units tell.
+    """Return the column of each signal present, and the kind of joint that their units show.
+
+    Parameters
+    ----------
+    table : Table
+    columns, units, scale, kind
+        As in `load`.
 
     Raises
     ------
@@ -127,129 +84,84 @@ def match_columns(
             raise _missing(table, signal)
     for signal, text in (units or {}).items():
         check_signal_name(signal, "units")
-        if not candidates.get(signal):
-            raise InputError(
-                f"{table.header_place}: units names {signal!r}, but no column is recognised as it"
-            )
+        _check_recognised(table, signal, candidates, f"units.{signal}")
         unit = unit_named(
-            text, dimensions=dimensions(signal, kind), place=f"{table.source}, units[{signal!r}]"
+            text,
+            dimensions=dimensions(signal, kind),
+            argument=f"units.{signal}",
+            place=table.source,
         )
         candidates[signal] = [Column(index=c.index, unit=unit) for c in candidates[signal]]
     for signal, factor in (scale or {}).items():
         check_signal_name(signal, "scale")
         _check_scale(table, signal, factor, units or {})
-        if not candidates.get(signal):
-            raise InputError(
-                f"{table.header_place}: scale names {signal!r}, but no column is recognised as it"
-            )
+        _check_recognised(table, signal, candidates, f"scale.{signal}")
         candidates[signal] = [
             Column(index=c.index, unit=None, scale=float(factor)) for c in candidates[signal]
         ]
     kind = kind or _kind(table, candidates)
     return {
-        signal: _the_one(table, signal, candidates[signal], kind)
+        signal: _only_fitting(table, signal, candidates[signal], kind)
         for signal in SIGNALS
         if candidates.get(signal)
     }, kind
+
+
+def _check_recognised(
+    table: Table, signal: str, candidates: Mapping[str, list[Column]], argument: str
+) -> None:
+    if not candidates.get(signal):
+        raise InputError(
+            f"no column is recognised as {signal}", argument=argument, place=table.header_place
+        )
 
 
 def _check_scale(table: Table, signal: str, factor: object, units: Mapping[str, str]) -> None:
     number = isinstance(factor, int | float | np.number) and not isinstance(factor, bool)
     if not number or factor == 0 or not math.isfinite(factor):  # type: ignore[arg-type]
         raise InputError(
-            f"{table.source}: scale[{signal!r}] is {factor!r}; a finite number other than 0 is "
-            "expected, the SI value of the file's 1"
+            "a finite number other than 0 is expected, the factor from file units to SI",
+            argument=f"scale.{signal}",
+            value=factor,
+            place=table.source,
         )
     if signal in units:
         raise InputError(
-            f"{table.source}: {signal!r} is in units= and in scale=; one of them tells its size"
+            f"{signal} also has the unit {units[signal]!r}; give one of them",
+            argument=f"scale.{signal}",
+            value=factor,
+            place=table.source,
         )
-
-
-def column_index(table: Table, column: object, argument: str) -> int:
-    """Return the number of the column that a header or a number names."""
-    if isinstance(column, str):
-        return _by_header(table, column, argument)
-    try:
-        if isinstance(column, bool):
-            raise TypeError
-        index = operator.index(column)  # type: ignore[arg-type]
-    except TypeError:
-        raise InputError(
-            f"{argument} is {column!r}; a header or a 0-based column number is expected"
-        ) from None
-    if not 0 <= index < len(table.headers):
-        raise InputError(
-            f"{table.header_place}: {argument} is column {index}; "
-            f"the columns are 0 to {len(table.headers) - 1}"
-        )
-    return index
-
-
-def _by_header(table: Table, header: str, argument: str) -> int:
-    for same in (str.strip, lambda text: text.strip().casefold()):
-        found = [k for k, each in enumerate(table.headers) if same(each) == same(header)]
-        if len(found) == 1:
-            return found[0]
-        if found:
-            raise InputError(
-                f"{table.header_place}: {argument} is {header!r}, which is the header of columns "
-                f"{' and '.join(map(str, found))}; give the number"
-            )
-    if header in table.other_names:
-        return table.other_names[header]
-    close = closest(header, table.headers)
-    meant = f"did you mean {close!r}" if close else f"headers are {_listed(table.headers)}"
-    raise InputError(f"{table.header_place}: {argument} is {header!r}, no such header; {meant}")
 
 
 def _candidates(table: Table, columns: Mapping[str, str | int | None]) -> dict[str, list[Column]]:
-    """Return the columns that `columns=` or the header gives to each signal."""
+    """Return the columns that `columns` or a header assigns to each signal."""
     chosen: dict[int, str] = {}
     for signal, column in columns.items():
         check_signal_name(signal, "columns")
         if column is None:  # leave this signal out
             continue
-        index = column_index(table, column, f"columns[{signal!r}]")
+        index = column_index(table, column, f"columns.{signal}")
         if index in chosen:
             raise InputError(
-                f"{table.header_place}: columns gives {table.headers[index]!r} to "
-                f"{chosen[index]!r} and {signal!r}; one column holds one signal"
+                f"this column is also {chosen[index]}; one column holds one signal",
+                argument=f"columns.{signal}",
+                value=column,
+                place=table.header_place,
             )
         chosen[index] = signal
     candidates: dict[str, list[Column]] = {}
     for index, header in enumerate(table.headers):
-        name, unit, unknown = _parsed(header)
-        signal_here = chosen.get(index) or _ALIASES.get(name)
+        name, unit, unknown = parsed(header)
+        signal_here = chosen.get(index) or ALIASES.get(name)
         if signal_here and (index in chosen or signal_here not in columns):
             column_here = Column(index=index, unit=unit, unknown=unknown)
             candidates.setdefault(signal_here, []).append(column_here)
     return candidates
 
 
-def _parsed(header: str) -> tuple[str, Unit | None, str]:
-    """Return a header's plain name, its unit, and what stands for a unit but is none."""
-    if re.search(r"\((\d+,:|:,\d+)\)$", header):  # a part of a matrix: no unit in the brackets
-        return _plain(header), None, ""
-    bracketed = re.fullmatch(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*", header)
-    if bracketed and bracketed[2].strip():
-        unit = find_unit(bracketed[2])
-        return _plain(bracketed[1]), unit, "" if unit else bracketed[2].strip()
-    parts = re.split(r"[_\s,]+", (bracketed[1] if bracketed else header).strip())
-    for first in range(1, len(parts)):  # the longest unit: rad_s before s
-        suffix = "_".join(parts[first:])
-        unit = find_unit(suffix) if suffix and not suffix[0].isdigit() else None
-        if unit:
-            return _plain("_".join(parts[:first])), unit, ""
-    return _plain("_".join(parts)), None, ""
-
-
-def _plain(name: str) -> str:
-    return re.sub(r"[\s_.-]+", "_", name.strip().casefold())
-
-
 def _kind(table: Table, candidates: Mapping[str, list[Column]]) -> str:
-    for signal in _TELLING:
+    for signal in _SHOWING_KIND:
         kinds = {
             kind: column
             for kind in ("revolute", "prismatic")
@@ -259,16 +171,18 @@ def _kind(table: Table, candidates: Mapping[str, list[Column]]) -> str:
         if len(kinds) == 2:
             first, second = (table.headers[column.index] for column in kinds.values())
             raise InputError(
-                f"{table.header_place}: {first!r} and {second!r} both look like {signal}, of a "
-                "revolute and of a prismatic joint; choose with kind= or columns="
+                f"{first!r} and {second!r} are both recognised as {signal}, of a revolute and of a "
+                "prismatic joint",
+                place=table.header_place,
+                remedy=tuple(_chosen(signal, column) for column in kinds.values()),
             )
         if kinds:
             return next(iter(kinds))
     return "revolute"
 
 
-def _the_one(table: Table, signal: str, candidates: list[Column], kind: str) -> Column:
-    """Return the candidate whose unit fits, the only one that may."""
+def _only_fitting(table: Table, signal: str, candidates: list[Column], kind: str) -> Column:
+    """Return the only candidate whose unit fits the signal, or raise `InputError`."""
     fitting = [
         column
         for column in candidates
@@ -282,43 +196,53 @@ def _the_one(table: Table, signal: str, candidates: list[Column], kind: str) -> 
             f"{table.headers[column.index]!r} (column {column.index})" for column in fitting
         )
         raise InputError(
-            f"{table.header_place}: {names} both look like {signal}; choose one with "
-            f"columns={{{signal!r}: {fitting[0].index}}}"
+            f"{names} are both recognised as {signal}",
+            place=table.header_place,
+            remedy=tuple(_chosen(signal, column) for column in fitting[:2]),
         )
-    header, column = table.headers[candidates[0].index], candidates[0]
-    known = ", ".join(unit_names(dimensions(signal, kind)))
+    raise _wrong_unit(table, signal, candidates[0], kind)
+
+
+def _wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputError:
+    known = unit_names(dimensions(signal, kind))
     if column.unit is None:
-        what = f"names the unknown unit {column.unknown!r}"
+        problem = f"has the unknown unit {column.unknown!r}"
     else:
-        what = f"is in {column.unit.name} ({column.unit.dimension})"
-    wanted = " or ".join(dimensions(signal, kind))
-    way_out = "name it with units=, another column with columns="
+        problem = f"is in {column.unit.name} ({column.unit.dimension})"
     if column.unit and column.unit.dimension in ("raw reading", "voltage"):
-        way_out = (
-            f"give the SI value of 1 with scale={{{signal!r}: ...}}, another column with columns="
+        remedy = Action(
+            "call",
+            {"scale": {signal: 1.0}},
+            function="load",
+            text="with the factor from file units to SI instead of 1.0",
         )
-    raise InputError(
-        f"{table.header_place}: {signal} of a {kind} joint, column {header!r}, {what}; {wanted} "
-        f"is expected, in {known}: {way_out}"
+    else:
+        remedy = Action(
+            "call", {"units": {signal: known[0]}}, function="load", text="if this is its unit"
+        )
+    other: str | Action = "choose another column"
+    if signal not in _LIKELY:  # it may be left out
+        other = Action("call", {"columns": {signal: None}}, function="load")
+    return InputError(
+        f"{signal} of a {kind} joint {problem}; {' or '.join(dimensions(signal, kind))} is "
+        f"expected, in {', '.join(known)}",
+        place=f"{table.header_place}, column {table.headers[column.index]!r}",
+        remedy=(remedy, other),
     )
+
+
+def _chosen(signal: str, column: Column) -> Action:
+    return Action("call", {"columns": {signal: column.index}}, function="load")
 
 
 def _missing(table: Table, signal: str) -> InputError:
     likely = [
-        header
-        for header in table.headers
-        if any(part in _plain(header) for part in _LIKELY[signal])
+        header for header in table.headers if any(part in plain(header) for part in _LIKELY[signal])
     ]
-    strange = [header for header in table.headers if _parsed(header)[0] not in _ALIASES]
-    shown = likely or strange or list(table.headers)
-    example = f"columns={{{signal!r}: {shown[0]!r}}}" if shown else "columns="
+    unrecognised = [header for header in table.headers if parsed(header)[0] not in ALIASES]
+    shown = likely or unrecognised or list(table.headers)
     return InputError(
-        f"{table.header_place}: no column is recognised as {signal}; "
-        f"candidates are {_listed(shown)}; choose one with {example}"
+        f"no column is recognised as {signal}; candidates are {listed(shown) or 'none'}",
+        place=table.header_place,
+        remedy=Action("call", {"columns": {signal: shown[0]}}, function="load") if shown else (),
     )
-
-
-def _listed(headers: Sequence[str]) -> str:
-    shown = ", ".join(repr(header[:60]) for header in headers[:_SHOWN])
-    rest = len(headers) - _SHOWN
-    return f"{shown} and {rest} more" if rest > 0 else shown

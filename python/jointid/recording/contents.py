@@ -1,18 +1,21 @@
-"""What a table holds of a recording: its signals in SI units, all rows or some."""
+"""The contents of a table: the signals of a recording in SI units, of all rows or of some."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from jointid.base.advice import Action
 from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
 from jointid.recording.attributes import check_kind, check_torque_hold
-from jointid.recording.columns import Column, Table, column_index, match_columns
+from jointid.recording.column_lookup import column_index
+from jointid.recording.columns import Column, match_columns
 from jointid.recording.signals import FloatArray, check_signals
-from jointid.recording.truncated import untold
+from jointid.recording.table import Table
+from jointid.recording.truncated import unrecorded
 
 Rows = npt.NDArray[np.intp]
 
@@ -27,9 +30,9 @@ class Contents:
     found : mapping of str to Column
         Signal → its column.
     values : mapping of str to ndarray, each of shape (rows of the table,)
-        Signal → what its column holds, in the column's own unit.
+        Signal → the values of its column, in the column's own unit.
     saved : mapping of str to object
-        What a saved recording says of itself, as arguments of `Recording`.
+        Attributes of a saved recording, as arguments of `Recording`.
     kind : str
         ``"revolute"`` or ``"prismatic"``.
     """
@@ -40,15 +43,20 @@ class Contents:
     saved: Mapping[str, Any]
     kind: str
 
-    def fields(self, rows: Rows | None = None, *, time_advice: str = "") -> dict[str, Any]:
+    def fields(
+        self,
+        rows: Rows | None = None,
+        *,
+        time_remedy: Callable[[], tuple[str | Action, ...]] = tuple,
+    ) -> dict[str, Any]:
         """Return the arguments of `Recording` that the table, or some of its rows, hold.
 
         Parameters
         ----------
         rows : ndarray of int, optional
             Default: all.
-        time_advice : str
-            Added to the sentence on time stamps that go back. Default: none.
+        time_remedy : callable
+            Returns what to do about time stamps that go back. Default: nothing.
 
         Raises
         ------
@@ -66,10 +74,10 @@ class Contents:
             row = index if rows is None else int(rows[index])
             return self.table.place(self.found[signal].index, row)
 
-        check_signals(signals, place=place, source=self.table.source, time_advice=time_advice)
+        check_signals(signals, place=place, source=self.table.source, time_remedy=time_remedy)
         fields = {**self.saved, **signals, "kind": self.kind}
         if self.table.saved is None:
-            fields["metadata"] = self._notes()
+            fields["metadata"] = self._metadata()
         return fields
 
     def rows_of(self, by: str | int) -> dict[str, Rows]:
@@ -96,38 +104,48 @@ class Contents:
                 present = [f"{value:g}" for value in dict.fromkeys(numbers.tolist())]
             else:
                 raise InputError(
-                    f"{self.table.source}: where[{header!r}] is {wanted!r}; "
-                    "a number or text is expected"
+                    "a number or text is expected",
+                    argument=f"where.{header}",
+                    value=wanted,
+                    place=self.table.source,
                 )
             self._check_length(header, len(matches))
             if not matches.any():
                 shown = ", ".join(present[:8]) + (", ..." if len(present) > 8 else "")
                 raise InputError(
-                    f"{self.table.source}: no row has {wanted!r} in column {header!r}; "
-                    f"it holds {shown}"
+                    f"no row has this value; the column holds {shown}",
+                    argument=f"where.{header}",
+                    value=wanted,
+                    place=self.table.source,
                 )
             kept &= matches
         if not kept.any():
-            raise InputError(f"{self.table.source}: no row meets all of where={dict(where)!r}")
+            raise InputError(
+                "no row has all of these values",
+                argument="where",
+                value=dict(where),
+                place=self.table.source,
+            )
         return np.flatnonzero(kept)
 
     def _check_length(self, header: str, length: int) -> None:
         if length != len(self.values["time"]):
             raise InputError(
-                f"{self.table.source}: {header!r} has {length} samples, time has "
-                f"{len(self.values['time'])}; the rows are told apart by a column as long as time"
+                f"{header!r} has {length} samples, but time has {len(self.values['time'])}; rows are "
+                "selected by a column as long as time",
+                place=self.table.source,
             )
 
-    def _notes(self) -> dict[str, Any]:
-        # A sensor's reading has no unit of its own: nothing is assumed there.
+    def _metadata(self) -> dict[str, Any]:
+        # A sensor's raw reading has no SI unit: nothing is assumed for it.
         assumed = [
             signal
             for signal, column in self.found.items()
             if column.unit is None and column.scale is None and signal != "sensor"
         ]
         scaled = {signal: column.scale for signal, column in self.found.items() if column.scale}
-        notes = {"assumed_units": assumed, "scale": scaled}
-        return {note: value for note, value in notes.items() if value}
+        metadata = {"assumed_units": assumed, "scale": scaled}
+        return {name: value for name, value in metadata.items() if value}
 
 
 def read_contents(
@@ -139,7 +157,7 @@ def read_contents(
     kind: str | None = None,
     torque_hold: str | None = None,
 ) -> Contents:
-    """Return what a table holds of a recording; parameters are those of `load`.
+    """Return the contents of a table; the parameters are those of `load`.
 
     Raises
     ------
@@ -153,7 +171,11 @@ def read_contents(
     saved_kind = saved.get("kind")
     if kind is not None and saved_kind not in (None, kind):
         raise InputError(
-            f"{table.source}: the recording was saved as {saved_kind}, not {kind}; leave kind= out"
+            f"the recording was saved as {saved_kind}",
+            argument="kind",
+            value=kind,
+            place=table.source,
+            remedy="leave it out",
         )
     found, kind = match_columns(
         table, columns=columns, units=units, scale=scale, kind=kind or saved_kind
@@ -161,7 +183,7 @@ def read_contents(
     values = dict(
         zip(found, table.numbers([column.index for column in found.values()]), strict=True)
     )
-    for missing in untold(saved, values):
+    for missing in unrecorded(saved, values):
         found = {signal: column for signal, column in found.items() if signal != missing}
         del values[missing]
     if columns and "velocity" in columns:

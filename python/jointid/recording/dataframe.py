@@ -31,17 +31,21 @@ class FrameTable:
     def __init__(self, frame: Any) -> None:
         if not hasattr(frame, "columns") or not hasattr(frame, "__getitem__"):
             raise InputError(
-                f"a data frame with columns is expected, not a {type(frame).__name__}; "
-                "arrays go to Recording(time=..., position=...)"
+                "a data frame with columns is expected",
+                argument="df",
+                value=frame,
+                remedy="pass arrays as time and position of a Recording",
             )
         self._frame = frame
         self._labels = list(frame.columns)
         self.headers = tuple(map(str, self._labels))
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
-        """Return columns as arrays of shape (n,), or name the one that is none."""
+        """Return columns as arrays of shape (n,), or raise `InputError`."""
         return [
-            signal_array(f"column {self.headers[k]!r}", self._frame[self._labels[k]], self.source)
+            signal_array(
+                "", self._frame[self._labels[k]], f"{self.source}, column {self.headers[k]!r}"
+            )
             for k in columns
         ]
 

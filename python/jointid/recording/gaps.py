@@ -1,4 +1,4 @@
-"""Gaps in a recording, and a velocity derived without looking across them."""
+"""Gaps in a recording, and the velocity derived within each stretch between them."""
 
 import itertools
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ import numpy as np
 from jointid.base.errors import InputError
 from jointid.recording.signals import FloatArray
 
-_LONG = 3.5  # median sample periods: two lost samples in a row are no gap yet, three are
+_LONG = 3.5  # median sample periods: two lost samples in a row make no gap, three do
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,8 +50,8 @@ def derived_velocity(time: FloatArray, position: FloatArray, gaps: tuple[Gap, ..
     """Return the velocity by second-order differences on the true time stamps.
 
     Central differences inside a gap-free stretch, one-sided ones of the same order at its ends:
-    exact for a quadratic. A stretch of two samples has the slope between them; a sample alone
-    between two gaps has no velocity of its own and gets 0.
+    exact for a quadratic. A stretch of two samples has the slope between them; a single sample
+    between two gaps has no difference to take and gets 0.
 
     Parameters
     ----------
@@ -82,9 +82,11 @@ def derived_velocity(time: FloatArray, position: FloatArray, gaps: tuple[Gap, ..
     if not finite.all():
         index = int(np.argmin(finite))
         raise InputError(
-            f"index {index}: position changes too fast for a velocity to be derived "
-            f"({float(position[index])!r} at {float(time[index])!r} s); "
-            "give the velocity or mend the time stamps"
+            f"it changes too fast for a velocity to be derived (at {float(time[index])!r} s)",
+            argument="position",
+            value=float(position[index]),
+            place=f"index {index}",
+            remedy=("give the velocity", "correct the time stamps"),
         )
     velocity.flags.writeable = False
     return velocity

@@ -41,8 +41,8 @@ class Recording:
         Joint angle [rad] or travel [m].
     velocity : array_like, shape (n,), optional
         [rad/s] or [m/s]. Default: derived from position by second-order differences on the true
-        time stamps, never across a gap (`velocity_derived` is then True). A sample alone between
-        two gaps has no velocity of its own and gets 0; no window can hold it.
+        time stamps, never across a gap (`velocity_derived` is then True). A single sample between
+        two gaps has no difference to take and gets 0; no window includes it.
     torque : array_like, shape (n,), optional
         Torque of the actuator at the output, commanded or from the motor [N·m], or force [N].
     sensor : array_like, shape (n,), optional
@@ -60,7 +60,7 @@ class Recording:
     kind : {"revolute", "prismatic"}
         Default ``"revolute"``.
     torque_hold : {"zoh", "linear"}, optional
-        How the torque lives between samples: held, or on a straight line. Default: not known.
+        How the torque varies between samples: held ("zoh"), or linearly. Default: not known.
     velocity_derived : bool
         Whether the given velocity was derived from position. Default False.
     name : str
@@ -117,10 +117,12 @@ class Recording:
         check_kind(kind)
         check_torque_hold(torque_hold)
         if not isinstance(name, str):
-            raise InputError(f"name is {name!r}; a string is expected")
+            raise InputError("a string is expected", argument="name", value=name)
         if not isinstance(velocity_derived, bool):
-            raise InputError(f"velocity_derived is {velocity_derived!r}; True or False is expected")
-        given: dict[str, npt.ArrayLike | None] = {
+            raise InputError(
+                "true or false is expected", argument="velocity_derived", value=velocity_derived
+            )
+        arguments: dict[str, npt.ArrayLike | None] = {
             "time": time,
             "position": position,
             "velocity": velocity,
@@ -133,15 +135,15 @@ class Recording:
             "current": current,
         }
         for needed in ("time", "position"):
-            if given[needed] is None:
-                raise InputError(f"{needed} is missing; a recording needs time and position")
+            if arguments[needed] is None:
+                raise InputError("a recording needs time and position", argument=needed, value=None)
         arrays = {
             signal: signal_array(signal, values)
-            for signal, values in given.items()
+            for signal, values in arguments.items()
             if values is not None
         }
         check_signals(arrays)
-        # Frozen: attributes are set here, past __setattr__, and nowhere else.
+        # Read-only: attributes are set only here, without __setattr__.
         vars(self).update(dict.fromkeys(SIGNALS), **arrays)
         vars(self).update(
             kind=kind,
@@ -165,7 +167,7 @@ class Recording:
         kind: str | None = None,
         torque_hold: str | None = None,
     ) -> Self:
-        """Return the recording that a table of columns holds (pandas or alike).
+        """Return the recording in a data frame (pandas or similar).
 
         Parameters
         ----------
@@ -214,7 +216,7 @@ class Recording:
 
     @functools.cached_property
     def fingerprint(self) -> str:
-        """First 16 hexadecimal digits of the SHA-256 of the signals' names and bytes."""
+        """First 16 hexadecimal digits of the SHA-256 hash of the signals' names and bytes."""
         digest = hashlib.sha256()
         for name in self.signals:
             digest.update(f"{name}:{len(self)};".encode())
@@ -223,7 +225,7 @@ class Recording:
 
     def unit(self, signal: str) -> str:
         """Return the unit of a signal, e.g. ``"rad/s"``, ``"N·m"``; ``"1"`` for the sensor."""
-        check_signal_name(signal, "unit")
+        check_signal_name(signal, "signal")
         return shown_unit(signal, self.kind)
 
     def crop(self, start: float | None = None, stop: float | None = None) -> Self:
@@ -279,8 +281,8 @@ class Recording:
     def resample(self, *, period: float | None = None, rate: float | None = None) -> Self:
         """Return the recording on a uniform clock.
 
-        `identify` does not need this: it takes the time stamps as they are, and interpolation
-        correlates the noise. It serves what wants equal steps: spectra, filters, other tools.
+        `identify` does not need this: it uses the time stamps as they are, and interpolation
+        correlates the noise. It is for methods that need equal steps: spectra, filters, other tools.
 
         Each gap-free stretch begins at its own first sample and is interpolated linearly, a held
         torque (``torque_hold="zoh"``: torque, motor_torque and current) by its last value; gaps
@@ -303,7 +305,7 @@ class Recording:
         ------
         InputError
             Neither or both are given, one is not positive, too few or too many samples would
-            result, or a gap would not stand out any more.
+            result, or a gap would no longer be recognised.
         """
         signals = resampled(self, period, rate)
         metadata = {**self.metadata, "resampled_from": self.sample_period}
@@ -365,7 +367,7 @@ class Recording:
         raise AttributeError(f"a recording is read-only, '{name}' cannot be deleted")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Through the constructor: pickles of arrays forget that they are read-only.
+        # By the constructor: unpickled arrays are writable again.
         return functools.partial(type(self), **self._fields()), ()
 
     def _part(self, kept: slice, **changes: Any) -> Self:

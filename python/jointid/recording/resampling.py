@@ -13,9 +13,9 @@ from jointid.recording.signals import SHORTEST, FloatArray
 if TYPE_CHECKING:
     from jointid.recording.recording import Recording
 
-_HELD = ("torque", "motor_torque", "current")  # what `torque_hold` speaks of
-_MOST = 50_000_000  # samples: more is a slip in the unit
-_ROUNDING = 1e-6  # periods by which the last sample may miss the clock and still count
+_HELD = ("torque", "motor_torque", "current")  # signals that `torque_hold` describes
+_MOST = 50_000_000  # samples: more come from a wrong unit
+_ROUNDING = 1e-6  # periods by which the last sample may miss the clock and still be included
 
 
 def resampled(
@@ -29,26 +29,29 @@ def resampled(
         As `Recording.resample`.
     """
     step = _step(period, rate)
+    argument = "period" if rate is None else "rate"
     if recording.duration / step > _MOST:
         raise InputError(
-            f"resample: a period of {step!r} s over {recording.duration:.6g} s would give more "
-            f"than {_MOST} samples; seconds are expected"
+            f"a period of {step!r} s over {recording.duration:.6g} s gives more than {_MOST} "
+            "samples; seconds are expected",
+            argument=argument,
         )
     stretches = _stretches(recording)
     clocks = [_clock(recording.time[stretch], step) for stretch in stretches]
     time = np.concatenate(clocks)
     if len(time) < SHORTEST:
         raise InputError(
-            f"resample: a period of {step!r} s over {recording.duration:.6g} s leaves {len(time)} "
-            f"samples; at least {SHORTEST} are needed"
+            f"a period of {step!r} s over {recording.duration:.6g} s leaves {len(time)} "
+            f"samples; at least {SHORTEST} are needed",
+            argument=argument,
         )
-    _check_gaps(recording, time, step)
+    _check_gaps(recording, time, step, argument)
     signals = {"time": time}
     for name in recording.signals[1:]:
         values = getattr(recording, name)
         held = recording.torque_hold == "zoh" and name in _HELD
         take = _held if held else np.interp
-        with np.errstate(all="ignore"):  # what overflows is refused by name
+        with np.errstate(all="ignore"):  # an overflow is refused later, by signal
             signals[name] = np.concatenate(
                 [
                     take(clock, recording.time[stretch], values[stretch])
@@ -60,7 +63,9 @@ def resampled(
 
 def _step(period: float | None, rate: float | None) -> float:
     if (period is None) == (rate is None):
-        raise InputError("resample: give period= [s] or rate= [Hz], one of them")
+        raise InputError(
+            "either a period [s] or a rate [Hz] is expected", argument="period", value=period
+        )
     name, value = ("period", period) if rate is None else ("rate", rate)
     number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
     step = float(value) if number else math.nan  # type: ignore[arg-type]
@@ -68,7 +73,7 @@ def _step(period: float | None, rate: float | None) -> float:
         step = 1.0 / step
     if not (0.0 < step < math.inf):
         unit = "s" if name == "period" else "Hz"
-        raise InputError(f"resample: {name} is {value!r}; a positive number [{unit}] is expected")
+        raise InputError(f"a positive number [{unit}] is expected", argument=name, value=value)
     return step
 
 
@@ -84,23 +89,25 @@ def _clock(time: FloatArray, step: float) -> FloatArray:
 
 
 def _held(clock: FloatArray, time: FloatArray, values: FloatArray) -> FloatArray:
-    # A stamp a rounding error before a sample is that sample's.
+    # A time stamp that is a rounding error before a sample belongs to this sample.
     slack = _ROUNDING * float(clock[1] - clock[0]) if len(clock) > 1 else 0.0
     last = np.searchsorted(time, clock + slack, side="right") - 1
     held: FloatArray = values[last]
     return held
 
 
-def _check_gaps(recording: "Recording", time: FloatArray, step: float) -> None:
+def _check_gaps(recording: "Recording", time: FloatArray, step: float, argument: str) -> None:
     if not (time[1:] > time[:-1]).all():
         raise InputError(
-            f"resample: a period of {step!r} s is below the resolution of time stamps near "
-            f"{float(np.abs(time).max()):.6g} s; a longer one is needed"
+            f"a period of {step!r} s is below the resolution of time stamps near "
+            f"{float(np.abs(time).max()):.6g} s; a longer one is needed",
+            argument=argument,
         )
     if len(find_gaps(time)) != len(recording.gaps):
         shortest = min(recording.gaps, key=lambda gap: gap.duration)
         raise InputError(
-            f"resample: with a period of {step!r} s the gap of {shortest.duration:.6g} s at "
-            f"{shortest.start:.6g} s would not stand out any more; choose a shorter period, or "
-            "split the recording there"
+            f"with a period of {step!r} s the gap of {shortest.duration:.6g} s at "
+            f"{shortest.start:.6g} s is no longer recognised as a gap",
+            argument=argument,
+            remedy=("choose a shorter period", "split the recording there"),
         )

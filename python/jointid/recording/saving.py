@@ -1,17 +1,17 @@
-"""Writing a recording: .npz, .csv and .csv.gz, which `load` reads back bit for bit."""
+"""Writing a recording: .csv, .csv.gz and .npz, which `load` reads back bit for bit."""
 
 import gzip
 import io
 import json
 import os
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
+from jointid.base.file_endings import ending_of
 from jointid.base.files import write_whole
 from jointid.recording.signals import KINDS, header_unit
 
@@ -21,40 +21,22 @@ if TYPE_CHECKING:
 SCHEMA = 1
 CSV_MARK = "# jointid recording "
 NPZ_MEMBER = "jointid_recording"
-ENDINGS = (".csv", ".csv.gz", ".npz")
 _ATTRIBUTES = ("name", "kind", "torque_hold", "velocity_derived", "metadata", "truth")
 
 
 def save_recording(recording: "Recording", path: str | os.PathLike[str]) -> None:
     """Write a recording to a file: see `Recording.save`."""
     target = require_path("path", path)
-    ending = ending_of(target, ENDINGS)
+    writer = _WRITERS[ending_of(target, ENDINGS)]
     if not target.parent.is_dir():
-        raise InputError(f"{target}: the folder '{target.parent}' does not exist; create it first")
+        raise InputError(
+            f"the folder '{target.parent}' does not exist",
+            place=str(target),
+            remedy="create it first",
+        )
     if target.is_dir():
-        raise InputError(f"{target}: this is a folder; the name of a file is expected")
-    if ending == ".npz":
-        write_whole(target, _npz(recording))
-    elif ending == ".csv":
-        write_whole(target, _csv(recording))
-    else:  # no time stamp inside: the same recording gives the same file
-        write_whole(target, gzip.compress(_csv(recording), compresslevel=6, mtime=0))
-
-
-def ending_of(path: Path, endings: Sequence[str]) -> str:
-    """Return which of some endings a file's name has, in any case.
-
-    Raises
-    ------
-    InputError
-        None of them.
-    """
-    for ending in sorted(endings, key=len, reverse=True):
-        if path.name.lower().endswith(ending):
-            return ending
-    raise InputError(
-        f"{path}: a name that ends in {path.suffix!r} is not known; {', '.join(endings)} are"
-    )
+        raise InputError("this is a folder; a file name is expected", place=str(target))
+    write_whole(target, writer(recording))
 
 
 def _attributes(recording: "Recording") -> str:
@@ -81,8 +63,28 @@ def _npz(recording: "Recording") -> bytes:
     return stream.getvalue()
 
 
+def _compressed_csv(recording: "Recording") -> bytes:
+    # No time stamp inside: the same recording gives the same file.
+    return gzip.compress(_csv(recording), compresslevel=6, mtime=0)
+
+
+_WRITERS: dict[str, Callable[["Recording"], bytes]] = {
+    ".csv": _csv,
+    ".csv.gz": _compressed_csv,
+    ".npz": _npz,
+}
+ENDINGS = tuple(_WRITERS)  # of the files that a recording can be written to
+
+
 def saved_attributes(text: str, place: str) -> dict[str, object]:
-    """Return what a saved recording says of itself besides its signals.
+    """Return the attributes of a saved recording: name, kind, torque hold, metadata, ...
+
+    Parameters
+    ----------
+    text : str
+        JSON, as `save_recording` writes it.
+    place : str
+        File and line, for messages.
 
     Raises
     ------
@@ -92,16 +94,20 @@ def saved_attributes(text: str, place: str) -> dict[str, object]:
     try:
         attributes = json.loads(text)
     except (ValueError, RecursionError):
-        raise InputError(f"{place}: the description of the recording is damaged JSON") from None
+        raise InputError("the description of the recording is damaged JSON", place=place) from None
     if not isinstance(attributes, dict):
-        raise InputError(f"{place}: the description of the recording is not a JSON object")
+        raise InputError("the description of the recording is not a JSON object", place=place)
     schema = attributes.get("schema")
     if schema != SCHEMA:
         raise InputError(
-            f"{place}: the recording has the schema {schema!r}, this version reads {SCHEMA}; "
-            "a later jointid may have written it"
+            f"this version reads {SCHEMA}; a later jointid may have written the recording",
+            argument="schema",
+            value=schema,
+            place=place,
         )
     kind = attributes.get("kind", KINDS[0])
     if kind not in KINDS:
-        raise InputError(f"{place}: kind is {kind!r}; {' or '.join(map(repr, KINDS))} is expected")
+        raise InputError(
+            f"{' or '.join(KINDS)} is expected", argument="kind", value=kind, place=place
+        )
     return {key: attributes[key] for key in _ATTRIBUTES if key in attributes}

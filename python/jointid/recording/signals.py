@@ -1,4 +1,4 @@
-"""The signals of a recording: names, dimensions, units, and what makes their values usable."""
+"""The signals of a recording: their names, dimensions and units, and checks of their values."""
 
 import difflib
 from collections.abc import Callable, Collection, Mapping
@@ -7,6 +7,7 @@ from typing import TypeGuard
 import numpy as np
 import numpy.typing as npt
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 
 FloatArray = npt.NDArray[np.float64]
@@ -16,15 +17,15 @@ SIGNALS = (
     *("temperature", "motor_torque", "current"),
 )
 KINDS = ("revolute", "prismatic")
-SHORTEST = 8  # samples: fewer bear no window with a residual left over
+SHORTEST = 8  # samples: fewer give no window with a residual
 
-# By kind, where the kind matters; the first dimension is the one stored.
+# For a revolute and for a prismatic joint; the first dimension is the one stored.
 _DIMENSIONS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "time": (("time",), ("time",)),
     "position": (("angle",), ("length",)),
     "velocity": (("angular velocity",), ("linear velocity",)),
     "torque": (("torque",), ("force",)),
-    # NOTE: the sensor's gain has the unit of torque per reading, so any reading will do.
+    # NOTE: the sensor's gain has the unit of torque per reading, so any kind of reading is accepted.
     "sensor": (("raw reading", "voltage", "torque", "force"),) * 2,
     "reference": (("angle",), ("length",)),
     "link_position": (("angle",), ("length",)),
@@ -32,7 +33,7 @@ _DIMENSIONS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "motor_torque": (("torque",), ("torque",)),
     "current": (("current",), ("current",)),
 }
-# Dimension → the SI unit as shown and as written into a header.
+# Dimension → its SI unit in texts and in headers.
 _SI = {
     "time": ("s", "s"),
     "angle": ("rad", "rad"),
@@ -56,25 +57,35 @@ def dimensions(signal: str, kind: str | None) -> tuple[str, ...]:
 
 
 def shown_unit(signal: str, kind: str) -> str:
-    """Return a signal's SI unit as text is written, e.g. ``"N·m"``."""
+    """Return a signal's SI unit for texts, e.g. ``"N·m"``."""
     return _SI[dimensions(signal, kind)[0]][0]
 
 
 def header_unit(signal: str, kind: str) -> str:
-    """Return a signal's SI unit as headers are written, e.g. ``"Nm"``."""
+    """Return a signal's SI unit for headers, e.g. ``"Nm"``."""
     return _SI[dimensions(signal, kind)[0]][1]
 
 
 def check_signal_name(name: object, argument: str) -> None:
-    """Refuse what is no signal's name, with a suggestion."""
+    """Raise `InputError` for what is no signal's name, with a suggestion.
+
+    Parameters
+    ----------
+    name : object
+    argument : str
+        The argument that the name is part of.
+    """
     if name not in SIGNALS:
         close = closest(name, SIGNALS)
-        meant = f", did you mean {close!r}" if close else f"; signals are {', '.join(SIGNALS)}"
-        raise InputError(f"{argument}: {name!r} is no signal{meant}")
+        raise InputError(
+            f"{name!r} is not a signal",
+            argument=argument,
+            remedy=f"did you mean {close!r}" if close else f"signals are {', '.join(SIGNALS)}",
+        )
 
 
 def closest(name: object, known: Collection[str]) -> str | None:
-    """Return the known name nearest to a misspelt one, or None."""
+    """Return the known name closest to a misspelt one, or None."""
     by_folded = {each.casefold(): each for each in known}
     close = difflib.get_close_matches(str(name).casefold(), by_folded, n=1)
     return by_folded[close[0]] if close else None
@@ -83,7 +94,15 @@ def closest(name: object, known: Collection[str]) -> str | None:
 def signal_array(name: str, values: npt.ArrayLike, place: str = "") -> FloatArray:
     """Return values as a read-only contiguous float64 array of one dimension.
 
-    They are copied, unless nobody can write to them.
+    They are copied, unless they are such an array already.
+
+    Parameters
+    ----------
+    name : str
+        Argument that the values come from; ``""`` where `place` says it.
+    values : array_like, shape (n,)
+    place : str
+        File and column, for messages. Default: none.
 
     Raises
     ------
@@ -92,34 +111,37 @@ def signal_array(name: str, values: npt.ArrayLike, place: str = "") -> FloatArra
     """
     if _frozen(values):
         return values
-    before = f"{place}: " if place else ""
     if isinstance(values, np.ma.MaskedArray) and np.ma.getmaskarray(values).any():
         index = int(np.flatnonzero(np.ma.getmaskarray(values))[0])
-        raise InputError(f"{before}{name} is masked at index {index}; leave such samples out")
+        raise InputError(
+            f"masked at index {index}", argument=name, place=place, remedy="leave such samples out"
+        )
+    no_numbers = InputError("an array of numbers is expected", argument=name, place=place)
     try:
         array = np.asarray(values)
-        if array.dtype.kind not in "biufO":
-            raise TypeError
-        if array.dtype.kind == "O":  # text that looks like a number is still text
-            _check_numbers(name, array, before)
+    except (TypeError, ValueError, OverflowError):  # lists of different lengths
+        raise no_numbers from None
+    if array.dtype.kind not in "biufO":
+        raise no_numbers
+    if array.dtype.kind == "O":  # text that looks like a number is still text
+        _check_numbers(name, array, place)
+    try:
         with np.errstate(over="ignore"):
             copy = np.array(array, dtype=np.float64, order="C", copy=True)
-    except InputError:
-        raise
     except (TypeError, ValueError, OverflowError):
-        raise InputError(
-            f"{before}{name} does not hold numbers; an array of floats is expected"
-        ) from None
+        raise no_numbers from None
     if copy.ndim != 1:
         raise InputError(
-            f"{before}{name} has the shape {copy.shape}; an array of one dimension is expected"
+            f"the shape is {copy.shape}; an array of one dimension is expected",
+            argument=name,
+            place=place,
         )
     copy.flags.writeable = False
     return copy
 
 
 def _frozen(values: object) -> TypeGuard[FloatArray]:
-    """Whether this is a signal's array already: its own memory, closed to writing."""
+    """Whether this is a signal's array already: contiguous, owning its memory, read-only."""
     return (
         type(values) is np.ndarray
         and values.dtype == np.float64
@@ -130,7 +152,7 @@ def _frozen(values: object) -> TypeGuard[FloatArray]:
     )
 
 
-def _check_numbers(name: str, array: npt.NDArray[np.object_], before: str) -> None:
+def _check_numbers(name: str, array: npt.NDArray[np.object_], place: str) -> None:
     for index, value in enumerate(array.flat):
         try:
             number = not isinstance(value, str | bytes) and float(value) is not None
@@ -138,7 +160,7 @@ def _check_numbers(name: str, array: npt.NDArray[np.object_], before: str) -> No
             number = False
         if not number:
             raise InputError(
-                f"{before}{name} is {str(value)[:40]!r} at index {index}; a number is expected"
+                f"{str(value)[:40]!r} at index {index} is not a number", argument=name, place=place
             )
 
 
@@ -147,20 +169,20 @@ def check_signals(
     *,
     place: Callable[[str, int], str] = lambda _signal, index: f"index {index}",
     source: str = "",
-    time_advice: str = "",
+    time_remedy: Callable[[], tuple[str | Action, ...]] = tuple,
 ) -> None:
-    """Refuse signals that no recording can hold.
+    """Raise `InputError` for signals that no recording can hold.
 
     Parameters
     ----------
     signals : mapping of str to ndarray, each of shape (n,)
         ``"time"`` among them.
     place : callable
-        Tells where the sample of a signal at an index stands. Default: ``"index 5"``.
+        Takes a signal and an index, returns where this sample is. Default: ``"index 5"``.
     source : str
-        The file, put before what concerns no single sample. Default: none.
-    time_advice : str
-        Added to the sentence on time stamps that go back. Default: none.
+        The file, the place of what concerns no single sample. Default: none.
+    time_remedy : callable
+        Returns what to do about time stamps that go back. Default: nothing.
 
     Raises
     ------
@@ -168,32 +190,42 @@ def check_signals(
         Different lengths, fewer than 8 samples, a value that is not finite, time stamps that do
         not strictly increase.
     """
-    before = f"{source}: " if source else ""
     time = signals["time"]
     for name, values in signals.items():
         if len(values) != len(time):
             raise InputError(
-                f"{before}{name} has {len(values)} samples and time has {len(time)}; "
-                "all signals need the same number"
+                f"{len(values)} samples, but time has {len(time)}; all signals need the same number",
+                argument=name,
+                place=source,
             )
     if len(time) < SHORTEST:
         raise InputError(
-            f"{before}time has {len(time)} samples; a recording needs at least {SHORTEST}"
+            f"{len(time)} samples; a recording needs at least {SHORTEST}",
+            argument="time",
+            place=source,
         )
     for name, values in signals.items():
         finite = np.isfinite(values)
         if not finite.all():
             index = int(np.argmin(finite))
             raise InputError(
-                f"{place(name, index)}: {name} is {float(values[index])}; "
-                "every sample must be a finite number"
+                "every sample must be a finite number",
+                argument=name,
+                value=float(values[index]),
+                place=place(name, index),
             )
     later = time[1:] > time[:-1]
     if not later.all():
         index = int(np.argmin(later)) + 1
         raise InputError(
-            f"{place('time', index)}: time is {float(time[index])!r} after "
-            f"{float(time[index - 1])!r}; time stamps must strictly increase{time_advice}"
+            f"the sample before is at {float(time[index - 1])!r}, and time stamps must strictly "
+            "increase",
+            argument="time",
+            value=float(time[index]),
+            place=place("time", index),
+            remedy=time_remedy(),
         )
     if not np.isfinite(4.0 * (float(time[-1]) - float(time[0]))):
-        raise InputError(f"{before}time spans more than a double can hold; seconds are expected")
+        raise InputError(
+            "the span is too long for a float; seconds are expected", argument="time", place=source
+        )

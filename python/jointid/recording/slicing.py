@@ -1,4 +1,4 @@
-"""Parts of a recording: which samples lie between two times, or in each of several parts."""
+"""Slices of a recording: the samples between two times, or of each of several parts."""
 
 import itertools
 from collections.abc import Sequence
@@ -16,15 +16,16 @@ def slice_between(time: FloatArray, start: float | None, stop: float | None) -> 
     high = float(time[-1]) if stop is None else stop
     for bound, value in (("start", low), ("stop", high)):
         if not _is_time(value):
-            raise InputError(f"crop: {bound} is {value!r}; a time [s] is expected")
+            raise InputError("a time [s] is expected", argument=bound, value=value)
     kept = slice(
         int(np.searchsorted(time, low, side="left")), int(np.searchsorted(time, high, side="right"))
     )
     left = max(0, kept.stop - kept.start)
     if left < SHORTEST:
         raise InputError(
-            f"crop from {low!s} s to {high!s} s leaves {left} samples of {len(time)} "
-            f"({_span(time)}); at least {SHORTEST} are needed"
+            f"{low!s} s to {high!s} s leaves {left} samples of {len(time)} "
+            f"({_span(time)}); at least {SHORTEST} are needed",
+            argument="stop" if start is None else "start",
         )
     return kept
 
@@ -32,14 +33,19 @@ def slice_between(time: FloatArray, start: float | None, stop: float | None) -> 
 def slices_of(time: FloatArray, parts: int | None, at: Sequence[float] | None) -> tuple[slice, ...]:
     """Return the samples of each part of a recording; see `Recording.split`."""
     if (parts is None) == (at is None):
-        raise InputError("split: give parts=, how many, or at=, the times [s] between them")
+        raise InputError(
+            "either the number of parts or the times [s] between them are expected",
+            argument="parts" if at is None else "at",
+            value=parts if at is None else at,
+        )
     edges = _edges_between(time, at) if at is not None else _even_edges(len(time), parts)
     slices = tuple(itertools.starmap(slice, itertools.pairwise(edges)))
     for number, part in enumerate(slices, start=1):
         if part.stop - part.start < SHORTEST:
             raise InputError(
-                f"split: part {number} of {len(slices)} would have {part.stop - part.start} "
-                f"samples of {len(time)}; at least {SHORTEST} are needed"
+                f"part {number} of {len(slices)} would have {part.stop - part.start} "
+                f"samples of {len(time)}; at least {SHORTEST} are needed",
+                argument="parts" if at is None else "at",
             )
     return slices
 
@@ -48,27 +54,32 @@ def _even_edges(length: int, parts: Any) -> list[int]:
     number = isinstance(parts, int | np.integer) and not isinstance(parts, bool)
     if not number or not 1 <= parts <= length // SHORTEST:
         raise InputError(
-            f"split: parts is {parts!r}; a whole number from 1 to {length // SHORTEST} is "
-            f"expected, for each of {length} samples' parts needs at least {SHORTEST}"
+            f"an integer from 1 to {length // SHORTEST} is expected: of {length} samples, each "
+            f"part needs at least {SHORTEST}",
+            argument="parts",
+            value=parts,
         )
     return [length * part // int(parts) for part in range(int(parts) + 1)]
 
 
 def _edges_between(time: FloatArray, at: Any) -> list[int]:
     if isinstance(at, str) or not np.iterable(at):
-        raise InputError(f"split: at is {at!r}; a list of times [s] is expected")
+        raise InputError("a list of times [s] is expected", argument="at", value=at)
     times = list(at)
     for index, value in enumerate(times):
         if not _is_time(value):
-            raise InputError(f"split: at[{index}] is {value!r}; a time [s] is expected")
+            raise InputError("a time [s] is expected", argument=f"at[{index}]", value=value)
         if not time[0] < value <= time[-1]:
             raise InputError(
-                f"split: at[{index}] is {value!s} s, not inside the recording ({_span(time)})"
+                f"a time inside the recording is expected ({_span(time)})",
+                argument=f"at[{index}]",
+                value=float(value),
             )
         if index and not times[index - 1] < value:
             raise InputError(
-                f"split: at[{index}] is {value!s} s after {times[index - 1]!s} s; "
-                "the times must increase"
+                f"the time before it is {times[index - 1]!s} s, and the times must increase",
+                argument=f"at[{index}]",
+                value=float(value),
             )
     return [0, *np.searchsorted(time, times, side="left").tolist(), len(time)]
 

@@ -1,4 +1,4 @@
-"""What is special in a session's .csv: it may be torn; its first and last lines say how it began and ended."""
+"""Sessions' .csv files: their opening and closing lines, and files that end early (truncated)."""
 
 import json
 from collections.abc import Mapping
@@ -13,7 +13,7 @@ OPENING, CLOSING = "# jointid run ", "# jointid session "
 
 
 def session_text(text: str) -> tuple[str, Mapping[str, Any] | None]:
-    """Leave out of a session's text what is no row: a line cut off, the opening and the closing line.
+    """Remove from a session's text what is no row: a truncated line, the opening and the closing line.
 
     Parameters
     ----------
@@ -23,56 +23,59 @@ def session_text(text: str) -> tuple[str, Mapping[str, Any] | None]:
     Returns
     -------
     str
-        The same text where no session wrote it.
+        The same text if it is not a session's.
     dict or None
-        What the two lines say; with ``"torn": True`` where there is no closing line: the session was
-        killed, or the power failed. None where no session wrote the text.
+        The metadata of the two lines; with ``"truncated": True`` if there is no closing line (the
+        session was killed, or the power failed). None if it is not a session's text.
     """
-    # Not by `metadata`: that stays when the recording is saved anew, whole.
+    # Not by `metadata`: that is kept when the recording is saved again, complete.
     end = text.find("\n")
-    try:
-        said = json.loads(text[len(CSV_MARK) : max(end, 0)])
-        session = said["grown"] is True and isinstance(said["metadata"], dict)
-    except (ValueError, TypeError, KeyError, RecursionError):
+    if not _is_session(_json_object(text[len(CSV_MARK) : max(end, 0)])):
         return text, None
-    if not session:
-        return text, None
-    whole = text[: text.rfind("\n") + 1]  # a number cut off looks like another number
+    whole = text[: text.rfind("\n") + 1]  # a truncated number looks like another number
     last = whole.rfind("\n", 0, len(whole) - 1) + 1
-    notes: dict[str, Any] = {"torn": True}
+    metadata: dict[str, Any] = {"truncated": True}
     if whole.startswith(CLOSING, last):
-        closing = _said(whole[last + len(CLOSING) :])
+        closing = _json_object(whole[last + len(CLOSING) :])
         if closing is None:
             return text, None
-        whole, notes = whole[:last], closing
+        whole, metadata = whole[:last], closing
     first = whole.find("\n", end + 1) + 1
     if first and whole.startswith(OPENING, first):
         behind = whole.find("\n", first)
-        opening = _said(whole[first + len(OPENING) : behind])
+        opening = _json_object(whole[first + len(OPENING) : behind])
         if opening is None:
             return text, None
-        whole, notes = whole[:first] + whole[behind:], opening | notes  # lines keep their numbers
-    return whole, notes
+        whole, metadata = whole[:first] + whole[behind:], opening | metadata  # keep line numbers
+    return whole, metadata
 
 
-def with_notes(saved: Mapping[str, Any], notes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a recording says of itself, with what is known of its end."""
-    return {**saved, "metadata": {**saved["metadata"], **notes}}
+def _is_session(attributes: Mapping[str, Any] | None) -> bool:
+    return (
+        attributes is not None
+        and attributes.get("grown") is True
+        and isinstance(attributes.get("metadata"), dict)
+    )
 
 
-def ended_before(notes: Mapping[str, Any]) -> str:
-    """Return the sentence on a session of which there is no sample."""
-    why = notes.get("stop")
-    if why:
-        return f"the session ended before its first sample: {why}"
-    killed = "; it was killed, or the power failed" if notes.get("torn") else ""
+def with_metadata(saved: Mapping[str, Any], metadata: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the attributes of a saved recording with more metadata."""
+    return {**saved, "metadata": {**saved["metadata"], **metadata}}
+
+
+def no_sample(metadata: Mapping[str, Any]) -> str:
+    """Return the reason why a session's file has no sample."""
+    reason = metadata.get("stop")
+    if reason:
+        return f"the session ended before its first sample: {reason}"
+    killed = "; it was killed, or the power failed" if metadata.get("truncated") else ""
     return f"the session ended before its first sample{killed}"
 
 
-def untold(saved: Mapping[str, Any], values: Mapping[str, FloatArray]) -> list[str]:
-    """Signals that a session's file has a column for, though nobody told them.
+def unrecorded(saved: Mapping[str, Any], values: Mapping[str, FloatArray]) -> list[str]:
+    """Return the signals that a session's file has a column for, but no values.
 
-    A current of which not all numbers are there, and a sensor that reads exactly 0 throughout: there is none.
+    These are a current with missing numbers, and a sensor that reads exactly 0 throughout.
     """
     metadata = saved.get("metadata")
     if not (isinstance(metadata, Mapping) and metadata.get("session") is True):
@@ -85,9 +88,9 @@ def untold(saved: Mapping[str, Any], values: Mapping[str, FloatArray]) -> list[s
     return found
 
 
-def _said(text: str) -> dict[str, Any] | None:
+def _json_object(text: str) -> dict[str, Any] | None:
     try:
-        notes = json.loads(text)
+        value = json.loads(text)
     except (ValueError, RecursionError):
         return None
-    return notes if isinstance(notes, dict) else None
+    return value if isinstance(value, dict) else None

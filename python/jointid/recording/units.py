@@ -1,4 +1,4 @@
-"""Units that a header or `units=` may name, and their way to SI."""
+"""Units that a header or `units` may name, and their conversion to SI."""
 
 import math
 import re
@@ -22,11 +22,11 @@ class Unit:
     Attributes
     ----------
     name : str
-        As it stands in a header, e.g. ``"rad_s"``.
+        As in a header, e.g. ``"rad_s"``.
     dimension : str
         What it measures, in words: ``"angle"``, ``"torque"``, ...
     factor : float
-        SI value of one of it. Default 1.
+        Factor to SI. Default 1.
     offset : float
         Added after the factor, in SI units. Default 0; only temperatures have one.
     """
@@ -37,11 +37,11 @@ class Unit:
     offset: float = 0.0
 
     def to_si(self, values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        """Return the values in SI units (temperatures in °C); SI values keep their very bits."""
+        """Return the values in SI units (temperatures in °C); SI values are returned unchanged."""
         if self.factor == 1.0 and self.offset == 0.0:
             return values
         parts = round(1.0 / self.factor)
-        # An overflow becomes inf, which the recording refuses by name.
+        # An overflow becomes inf, which the recording refuses, by signal.
         with np.errstate(over="ignore", under="ignore"):
             if parts > 1 and self.factor == 1.0 / parts:
                 # NOTE: 9 ms / 1000 is the double 0.009, 9 ms * 1e-3 is its neighbour.
@@ -142,8 +142,10 @@ def find_unit(text: str) -> Unit | None:
     return _BY_FOLDED.get(folded) or UNITS.get(_ALIASES.get(folded, ""))
 
 
-def unit_named(text: str, *, dimensions: tuple[str, ...] = (), place: str = "") -> Unit:
-    """Return the unit that a text names, or say which ones are known.
+def unit_named(
+    text: str, *, dimensions: tuple[str, ...] = (), argument: str = "unit", place: str = ""
+) -> Unit:
+    """Return the unit that a text names, or list the known ones.
 
     Parameters
     ----------
@@ -151,8 +153,10 @@ def unit_named(text: str, *, dimensions: tuple[str, ...] = (), place: str = "") 
         A unit's name.
     dimensions : tuple of str
         Dimensions whose units are listed when the name is unknown. Default: all.
+    argument : str
+        The argument that the text was given for. Default ``"unit"``.
     place : str
-        Where the text stands, put before the message. Default: nowhere.
+        The file, for messages. Default: none.
 
     Raises
     ------
@@ -161,9 +165,12 @@ def unit_named(text: str, *, dimensions: tuple[str, ...] = (), place: str = "") 
     """
     unit = find_unit(text) if isinstance(text, str) else None
     if unit is None:
-        known = unit_names(dimensions)
-        before = f"{place}: " if place else ""
-        raise InputError(f"{before}unknown unit {text!r}; known are {', '.join(known)}")
+        raise InputError(
+            f"unknown unit; known are {', '.join(unit_names(dimensions))}",
+            argument=argument,
+            value=text,
+            place=place,
+        )
     return unit
 
 

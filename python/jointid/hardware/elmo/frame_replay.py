@@ -107,7 +107,7 @@ def replay(
         raise InputError(named) from error
     cycles = reader.cycles[before:]
     _check_count(file, len(cycles), before, session)
-    if session is not None and (trajectory is None or "torn" not in said):
+    if session is not None and (trajectory is None or "truncated" not in said):
         cycles = cycles[: len(session.time)]
     told = joint.torque_constant * joint.gear_ratio * _column(reader.cycles, "told")
     told = np.concatenate(([0.0], told))[before : before + len(cycles) + 1]

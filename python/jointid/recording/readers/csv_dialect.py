@@ -1,4 +1,4 @@
-"""How a .csv file is written: what separates its cells, and which sign its decimals have."""
+"""The dialect of a .csv file: the separator of its cells, and its decimal sign."""
 
 import csv
 import re
@@ -8,8 +8,8 @@ from jointid.base.errors import InputError
 
 _SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
 _DECIMAL_COMMA = re.compile(r"[+-]?(\d+,\d*|,\d+)(e[+-]?\d+)?", re.IGNORECASE)
-# 1,234 may be a thousand or a little more than one; 0,25 and 1,5 and 1234,567 are plain.
-_MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
+# 1,234 may mean 1234 or 1.234; 0,25 and 1,5 and 1234,567 are unambiguous.
+_AMBIGUOUS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 
 
 def cells_of(line: str, separator: str) -> list[str]:
@@ -26,9 +26,9 @@ def cells_of(line: str, separator: str) -> list[str]:
 
 
 def number_of(cell: str, separator: str = ",") -> float | None:
-    """Return a cell's number as numpy's parser would, or None.
+    """Return a cell's number as numpy's parser does, or None.
 
-    A decimal comma counts where commas do not separate.
+    A decimal comma is accepted unless commas separate the cells.
     """
     if separator != "," and _DECIMAL_COMMA.fullmatch(cell):
         cell = cell.replace(",", ".")
@@ -45,16 +45,16 @@ def separator_named(line: str) -> str | None:
 
 
 def separator_of(header: str, row: str, place: str) -> str:
-    """Return what separates the cells, told from the first line and the one below it.
+    """Return the separator of the cells, from the first line and the one below it.
 
-    A separator fits when it divides both lines into the same number of cells, two at least; of
-    several the one that leaves the most numbers. When none fits the row is damaged, and the first
-    line alone must tell.
+    A separator fits when it divides both lines into the same number of cells, at least two; of
+    several, the one with the most numbers is chosen. When none fits, the row is damaged, and the
+    first line alone decides.
 
     Raises
     ------
     InputError
-        Several fit equally well, or nothing separates the first line at all.
+        Several fit equally well, or none is in the first line.
     """
     fitting: dict[str, int] = {}
     for separator in _SEPARATORS:
@@ -68,14 +68,16 @@ def separator_of(header: str, row: str, place: str) -> str:
             return best[0]
         names = " or ".join(_SEPARATORS[separator] for separator in best)
         raise InputError(
-            f"{place}: the cells may be separated by {names}; put texts that hold such a sign "
-            "into quotation marks"
+            f"the cells may be separated by {names}",
+            place=place,
+            remedy="put texts that contain these characters into quotation marks",
         )
     by_header = max(_SEPARATORS, key=lambda separator: header.count(separator))
     if by_header not in header:
         raise InputError(
-            f"{place}: nothing separates {header.strip()[:60]!r} into columns; commas, semicolons "
-            "or tabs are expected between at least time and position"
+            f"{header.strip()[:60]!r} has no separator; commas, semicolons or tabs are expected, "
+            "between at least time and position",
+            place=place,
         )
     return by_header
 
@@ -88,35 +90,37 @@ def _cells_or_none(line: str, separator: str) -> list[str] | None:
 
 
 def decimal_comma(columns: Sequence[Sequence[str]]) -> tuple[int, int, str] | None:
-    """Return what speaks against reading a comma in these cells as the decimal sign, or None.
+    """Return why a comma in these cells cannot be read as the decimal sign, or None.
 
     Parameters
     ----------
     columns : sequence of sequences of str
-        The cells of each column, one comma among them at least.
+        The cells of each column, at least one of them with a comma.
 
     Returns
     -------
     tuple of int, int, str, or None
-        Column, row and reason: a decimal point elsewhere, or nothing but ``1,234``, which may be
-        a thousand.
+        Column, row and reason: a decimal point elsewhere, or only numbers like ``1,234``, which
+        may mean 1234.
     """
     commas = points = None
-    plain = False
+    unambiguous = False
     for column, cells in enumerate(columns):
         together = "\n".join(cells)
         if commas is None and "," in together:
             commas = column, next(k for k, cell in enumerate(cells) if "," in cell)
         if points is None and "." in together:
             points = column, next(k for k, cell in enumerate(cells) if "." in cell)
-        plain = plain or any("," in cell and not _MAYBE_THOUSANDS.fullmatch(cell) for cell in cells)
+        unambiguous = unambiguous or any(
+            "," in cell and not _AMBIGUOUS.fullmatch(cell) for cell in cells
+        )
     if commas is None:
         return None
     cell = columns[commas[0]][commas[1]][:40]
     if points is not None:
         other = columns[points[0]][points[1]][:40]
         both = f"{cell!r} here and {other!r} elsewhere" if cell != other else repr(cell)
-        return *commas, f"commas and points stand in the numbers ({both})"
-    if not plain:
-        return *commas, f"{cell!r} may be {cell.replace(',', '.')} or {cell.replace(',', '')}"
+        return *commas, f"the numbers contain commas and points ({both})"
+    if not unambiguous:
+        return *commas, f"{cell!r} may mean {cell.replace(',', '.')} or {cell.replace(',', '')}"
     return None

@@ -1,4 +1,4 @@
-"""Reading .csv and .csv.gz files: numbers by numpy's C parser, the culprit's line when it fails."""
+"""Reading .csv and .csv.gz files with numpy's C parser; when it fails, the invalid cell is located."""
 
 import csv
 import re
@@ -20,20 +20,21 @@ from jointid.recording.readers.csv_dialect import (
     separator_of,
 )
 from jointid.recording.readers.csv_text import text_of
+from jointid.recording.readers.reader import Reader
 from jointid.recording.saving import CSV_MARK, saved_attributes
 from jointid.recording.signals import FloatArray
-from jointid.recording.truncated import ended_before, session_text, with_notes
+from jointid.recording.truncated import no_sample, session_text, with_metadata
 
-_LONG = 1 << 20  # characters: beyond, a file is read as a stream if it is plain
-_INNER = "\x1f"  # separates cells where they are put together anew: no file's text holds it
+_LONG = 1 << 20  # characters: a longer file is read as a stream if it holds only numbers
+_INNER = "\x1f"  # separates cells that are joined again: no text file contains it
 
 
 class CsvTable:
     """A .csv or .csv.gz file as a table of columns with one header.
 
     Commas, semicolons or tabs separate the cells; where commas do not, they may be the decimal
-    sign. Lines above the header may begin with ``#``; above bare numbers the last of them may be
-    the header. Without any the headers are ``"column 0"``, ``"column 1"``, ...
+    sign. Lines above the header may begin with ``#``; if numbers follow without a header, the last
+    of these lines may be the header. Without a header the headers are ``"column 0"``, ``"column 1"``, ...
 
     Parameters
     ----------
@@ -42,7 +43,7 @@ class CsvTable:
     Raises
     ------
     InputError
-        The file cannot be read, is no such text, has no rows or rows of different lengths.
+        The file cannot be read, is not text, has no rows or rows of different lengths.
     """
 
     other_names: Mapping[str, int] = MappingProxyType({})
@@ -50,44 +51,44 @@ class CsvTable:
     def __init__(self, path: Path) -> None:
         self.source = str(path)
         self._content = text_of(path)
-        notes = None
+        ending: Mapping[str, Any] | None = None  # of a session's file
         if self._content.startswith(CSV_MARK):
-            self._content, notes = session_text(self._content)
+            self._content, ending = session_text(self._content)
         self._table: FloatArray | None = None
         long = len(self._content) > _LONG
         lines = _lines(self._content[:_LONG])[:-1] if long else _lines(self._content)
         self.saved: Mapping[str, Any] | None = None
         if lines[0].startswith(CSV_MARK):
             self.saved = saved_attributes(lines[0][len(CSV_MARK) :], f"{self.source}, line 1")
-            if notes is not None:
-                self.saved = with_notes(self.saved, notes)
-        told = (k for k, line in enumerate(lines) if line.strip() and line[0] != "#")
-        first = next(told, None)
+            if ending is not None:
+                self.saved = with_metadata(self.saved, ending)
+        filled = (k for k, line in enumerate(lines) if line.strip() and line[0] != "#")
+        first = next(filled, None)
         named = None if first is None else separator_named(lines[first])
         if named:
-            first = next(told, None)
+            first = next(filled, None)
         if first is None:
-            raise InputError(f"{self.source}: the file has no header and no rows")
+            raise InputError("the file has no header and no rows", place=self.source)
         self._separator = named or separator_of(
-            lines[first], lines[next(told, first)], f"{self.source}, line {first + 1}"
+            lines[first], lines[next(filled, first)], f"{self.source}, line {first + 1}"
         )
         self._below = self._read_header(lines, first)
         if long and '"' not in self._content:
             self._table = _plain_numbers(
-                path if notes is None else StringIO(self._content),
+                path if ending is None else StringIO(self._content),
                 self._below,
                 self._separator,
                 len(self.headers),
             )
         if self._table is None:
-            if not self._rows and notes is not None:
-                raise InputError(f"{self.source}: {ended_before(notes)}")
+            if not self._rows and ending is not None:
+                raise InputError(no_sample(ending), place=self.source)
             if not self._rows:
-                raise InputError(f"{self.header_place}: a header, but no rows below it")
+                raise InputError("a header, but no rows below it", place=self.header_place)
             self._refuse_ragged_rows()
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
-        """Return columns as arrays of shape (n,), or name the cell that is no number."""
+        """Return columns as arrays of shape (n,), or raise `InputError` for the cell that is no number."""
         if self._table is not None:
             return [np.ascontiguousarray(self._table[:, column]) for column in columns]
         rows, separator, used = self._rows, self._separator, list(columns)
@@ -105,9 +106,9 @@ class CsvTable:
                 ndmin=2,
             )
         except ValueError as error:
-            raise self._culprit(columns, str(error)) from None
+            raise self._invalid(columns, str(error)) from None
         if len(table) != len(self._rows):
-            raise self._culprit(columns, f"{len(self._rows)} lines hold {len(table)} rows")
+            raise self._invalid(columns, f"{len(self._rows)} lines hold {len(table)} rows")
         return list(table.T)
 
     def text(self, column: int) -> list[str]:
@@ -121,7 +122,7 @@ class CsvTable:
 
     @cached_property
     def _line_numbers(self) -> list[int]:
-        """Of the rows; lines without anything are none."""
+        """1-based line number of each row; blank lines are no rows."""
         below = _lines(self._content)[self._below :]
         return [number for number, line in enumerate(below, self._below + 1) if line.strip()]
 
@@ -151,10 +152,12 @@ class CsvTable:
     def _with_points(self, columns: Sequence[int]) -> list[str]:
         """Return the rows with these columns only, decimal points for decimal commas."""
         cells = self._columns(columns)
-        against = decimal_comma(cells)
-        if against is not None:
-            column, row, reason = against
-            raise InputError(f"{self.place(columns[column], row)}: {reason}; write decimal points")
+        doubt = decimal_comma(cells)
+        if doubt is not None:
+            column, row, reason = doubt
+            raise InputError(
+                reason, place=self.place(columns[column], row), remedy="write decimal points"
+            )
         return [_INNER.join(row).replace(",", ".") for row in zip(*cells, strict=True)]
 
     def _columns(self, columns: Sequence[int]) -> list[list[str]]:
@@ -172,12 +175,13 @@ class CsvTable:
             if count != len(self.headers):
                 hint = ""
                 if count > len(self.headers) and self._separator == ",":
-                    hint = " (numbers take a decimal point, no comma)"
+                    hint = " (write decimal points, not commas)"
                 elif number == self._line_numbers[-1]:
-                    hint = " (the last line, perhaps cut off)"
+                    hint = " (this is the last line, which may be truncated)"
                 raise InputError(
-                    f"{self.source}, line {number}: {count} cells where the header names "
-                    f"{len(self.headers)}; every row needs one for each header{hint}"
+                    f"{count} cells where the header names {len(self.headers)}; every row needs one "
+                    f"for each header{hint}",
+                    place=f"{self.source}, line {number}",
                 )
 
     def _cells(self, line: str, number: int) -> list[str]:
@@ -185,16 +189,18 @@ class CsvTable:
             return cells_of(line, self._separator)
         except csv.Error as error:
             raise InputError(
-                f"{self.source}, line {number}: quotation marks do not match ({error})"
+                f"quotation marks do not match ({error})", place=f"{self.source}, line {number}"
             ) from None
 
-    def _culprit(self, columns: Sequence[int], reason: str) -> InputError:
+    def _invalid(self, columns: Sequence[int], reason: str) -> InputError:
         for row, line in enumerate(self._rows):
             cells = self._cells(line, self._line_numbers[row])
             for column in columns:
                 if number_of(cells[column], self._separator) is None:
-                    return InputError(f"{self.place(column, row)}: {_no_number(cells[column])}")
-        return InputError(f"{self.source}: the numbers cannot be read ({' '.join(reason.split())})")
+                    return InputError(_no_number(cells[column]), place=self.place(column, row))
+        return InputError(
+            f"the numbers cannot be read ({' '.join(reason.split())})", place=self.source
+        )
 
 
 def _lines(text: str) -> list[str]:
@@ -204,10 +210,10 @@ def _lines(text: str) -> list[str]:
 def _plain_numbers(
     path: Path | StringIO, below: int, separator: str, count: int
 ) -> FloatArray | None:
-    """Return all cells below the header of a file that holds nothing but numbers, else None.
+    """Return all cells below the header of a file that holds only numbers, else None.
 
-    The same parser as for any other file, but from the file's stream: a million rows as texts of their
-    own cost more time and room than their numbers.
+    The parser is the same as for other files, but it reads the file as a stream: a million rows as
+    separate texts take more time and memory than their numbers.
     """
     try:
         table = np.loadtxt(
@@ -231,3 +237,6 @@ def _no_number(cell: str) -> str:
     if re.search(r"\d:\d\d", cell):
         return f"{what}; clock times are not read, seconds such as 0.25 are expected"
     return f"{what}; a number such as 0.25 is expected"
+
+
+READER = Reader(endings=(".csv", ".csv.gz"), open=CsvTable)

@@ -7,16 +7,13 @@ from typing import Any
 
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
-from jointid.recording.columns import Table, column_index
+from jointid.base.file_endings import ending_of
+from jointid.recording.column_lookup import column_index
 from jointid.recording.contents import read_contents
-from jointid.recording.readers.csv_reader import CsvTable
-from jointid.recording.readers.mat_reader import MatTable
-from jointid.recording.readers.npz_reader import NpzTable
-from jointid.recording.readers.parquet_reader import ParquetTable
+from jointid.recording.readers.registry import endings, reader_of
 from jointid.recording.recording import Recording
-from jointid.recording.saving import ending_of
-
-ENDINGS = (".csv", ".csv.gz", ".npz", ".mat", ".parquet")
+from jointid.recording.runs import one_run
+from jointid.recording.table import Table
 
 
 def load(
@@ -32,20 +29,20 @@ def load(
 ) -> Recording:
     """Return the recording that a file holds.
 
-    Headers are a signal's name with its unit: ``position_rad``, ``velocity [deg/s]``,
-    ``torque_Nm``, ``time_ms``; any case. Known names are time (t), position (pos, angle, q),
+    Headers are a signal's name with its unit, in upper or lower case: ``position_rad``,
+    ``velocity [deg/s]``, ``torque_Nm``, ``time_ms``. Known names are time (t), position (pos, angle, q),
     velocity (vel, speed), torque (tau, force, motor_force, motor_torque_output, output_torque),
     sensor (sensor_raw, torque_sensor), reference (position_ref, position_reference,
     goal_position), link_position, temperature, motor_torque and current (motor_current).
-    A signal without a unit is taken as SI and listed in ``metadata["assumed_units"]``.
+    A signal without a unit is assumed to be in SI units and listed in ``metadata["assumed_units"]``.
 
     Parameters
     ----------
     path : path-like
-        A ``.csv``, ``.csv.gz`` or ``.npz`` file, foreign or written by `Recording.save`; a
+        A ``.csv``, ``.csv.gz`` or ``.npz`` file, from any program or from `Recording.save`; a
         MATLAB ``.mat`` file up to version 7 (vectors, also in a struct, by their names); a
-        ``.parquet`` file (needs pyarrow). Commas, semicolons or tabs separate a text's cells;
-        with the latter two, decimal commas are read as well.
+        ``.parquet`` file (needs pyarrow). The cells of a text are separated by commas, semicolons
+        or tabs; with the latter two, decimal commas are read as well.
     columns : mapping of str to str, int or None, optional
         Signal → header or 0-based number of its column; None leaves the signal out (a velocity
         left out is derived from position). Default: by the headers, also for signals not mapped.
@@ -53,17 +50,18 @@ def load(
         Signal → unit, e.g. ``{"position": "deg"}``, whatever the header says.
         Default: the header's.
     scale : mapping of str to float, optional
-        Signal → SI value of the file's 1, whatever the header says: for encoder counts
+        Signal → factor from file units to SI, whatever the header says: for encoder counts
         (``{"position": 2 * math.pi / 4096}``), a voltage that drives a known force, a sign.
-        Noted in ``metadata["scale"]``. Default: units tell.
+        Saved in ``metadata["scale"]``. Default: the factor of the unit.
     where : mapping of str to number or str, optional
         Header → value: only rows with this value are kept. Default: all rows.
     kind : {"revolute", "prismatic"}, optional
-        Default: what the units tell, ``"prismatic"`` for metres or newtons, else ``"revolute"``.
+        Default: from the units, ``"prismatic"`` for metres or newtons, else ``"revolute"``.
     torque_hold : {"zoh", "linear"}, optional
-        How the torque lives between samples. Default: what was saved, else not known.
+        How the torque varies between samples: held (zero-order hold) or linearly.
+        Default: as saved, else not known.
     name : str, optional
-        Default: what was saved, else the file's name without its ending.
+        Default: as saved, else the file's name without its ending.
 
     Returns
     -------
@@ -72,8 +70,13 @@ def load(
     Raises
     ------
     InputError
-        The file cannot be read or its columns hold no recording: one sentence that names the
-        file, the line or the header, and what would be right.
+        The file cannot be read, or its columns are not a recording. The error names the file, the
+        line or the header, and what is expected.
+
+    Examples
+    --------
+    >>> recording = jid.load("run.csv")
+    >>> recording = jid.load("log.csv", columns={"position": "enc1"}, units={"position": "deg"})
     """
     file = require_path("path", path)
     contents = read_contents(
@@ -82,8 +85,7 @@ def load(
     if where:
         fields = contents.fields(contents.rows_where(where))
     else:
-        advice = ' (of several runs in a file choose one, where={"run": 1}, or take load_runs)'
-        fields = contents.fields(time_advice=advice)
+        fields = contents.fields(time_remedy=lambda: one_run(contents))
     return _recording(file, fields, name)
 
 
@@ -98,19 +100,19 @@ def load_runs(
     torque_hold: str | None = None,
     name: str | None = None,
 ) -> tuple[Recording, ...]:
-    """Return the recordings of a file that holds several runs one below the other.
+    """Return the recordings of a file that holds several runs, one after the other.
 
     Parameters
     ----------
     path : path-like
         As in `load`.
     by : str or int
-        Header or 0-based number of the column that tells the runs apart: rows with the same
-        value are one run.
+        Header or 0-based number of the column that numbers the runs: rows with the same value
+        are one run.
     columns, units, scale, kind, torque_hold
         As in `load`.
     name : str, optional
-        What the runs' names begin with. Default: as in `load`.
+        Beginning of the runs' names. Default: as in `load`.
 
     Returns
     -------
@@ -120,7 +122,11 @@ def load_runs(
     Raises
     ------
     InputError
-        As `load`.
+        As `load`; the place names the run.
+
+    Examples
+    --------
+    >>> slow, fast = jid.load_runs("week.csv", by="run")
     """
     file = require_path("path", path)
     contents = read_contents(
@@ -134,30 +140,40 @@ def load_runs(
             fields = contents.fields(rows)
             runs.append(_recording(file, fields, f"{_name(file, fields, name)} {run}".lstrip()))
         except InputError as error:
-            raise InputError(f"{error} (the run {run})") from None
+            raise InputError(
+                error.reason,
+                argument=error.argument,
+                value=error.value,
+                place=f"{error.place} ({run})",
+                remedy=error.remedy,
+            ) from None
     return tuple(runs)
 
 
 def _table(file: Path) -> Table:
-    """Return a file as a table of columns, by what its name ends in."""
-    ending = ending_of(file, ENDINGS)
-    readers: dict[str, type[NpzTable | MatTable | ParquetTable]] = {
-        ".npz": NpzTable,
-        ".mat": MatTable,
-        ".parquet": ParquetTable,
-    }
+    """Return a file as a table of columns, by the ending of its name."""
+    reader = reader_of(file)
     try:
-        return readers.get(ending, CsvTable)(file)
+        return reader.open(file)
     except FileNotFoundError:
-        raise InputError(f"{file}: there is no such file") from None
+        raise InputError("there is no such file", place=str(file)) from None
     except IsADirectoryError:
-        raise InputError(f"{file}: this is a folder; the name of a file is expected") from None
+        raise InputError("this is a folder; a file name is expected", place=str(file)) from None
     except OSError as error:
-        raise InputError(f"{file}: the file cannot be read ({error.strerror})") from None
+        raise InputError(f"the file cannot be read ({error.strerror})", place=str(file)) from None
+    except ModuleNotFoundError as error:
+        if not reader.package or (error.name or "").partition(".")[0] != reader.package:
+            raise
+        raise InputError(
+            f"reading {ending_of(file, reader.endings)} files needs {reader.package}, "
+            "which is not installed",
+            place=str(file),
+            remedy=(f"pip install 'jointid[{reader.extra}]'", "save the file as .csv"),
+        ) from None
 
 
 def _name(file: Path, fields: Mapping[str, Any], name: str | None) -> Any:
-    stem = file.name[: -len(ending_of(file, ENDINGS))]
+    stem = file.name[: -len(ending_of(file, endings()))]
     return fields.get("name", stem) if name is None else name
 
 
@@ -165,4 +181,4 @@ def _recording(file: Path, fields: Mapping[str, Any], name: str | None) -> Recor
     try:
         return Recording(**{**fields, "name": _name(file, fields, name)})
     except InputError as error:
-        raise InputError(f"{file}: {error}") from None
+        raise error.at(str(file)) from None

@@ -67,7 +67,7 @@ def variables_of(content: bytes, order: str) -> Iterator[Variable]:
         if kind == _COMPRESSED:
             ((kind, matrix),) = _inflated(element, order)
         if kind != _MATRIX:
-            raise DamageError(f"an element of the kind {kind} stands where a variable should")
+            raise DamageError(f"an element of the kind {kind} is in the place of a variable")
         variable = _variable(matrix, order, nested=False)
         if variable.name:  # what has none is for MATLAB's own objects
             yield variable
@@ -165,10 +165,10 @@ def _matrix(element: tuple[int, memoryview], order: str) -> Variable:
 def _numbers(element: tuple[int, memoryview], order: str) -> Array:
     kind, content = element
     if kind not in _STORED:
-        raise DamageError(f"an element of the kind {kind} stands where numbers should")
+        raise DamageError(f"an element of the kind {kind} is in the place of numbers")
     dtype = np.dtype(order + _STORED[kind])
     if len(content) % dtype.itemsize:
-        raise DamageError("a number is cut off")
+        raise DamageError("a number is truncated")
     return np.frombuffer(content, dtype)
 
 
@@ -179,5 +179,5 @@ def _text(element: tuple[int, memoryview]) -> str:
 def _next(parts: Iterator[tuple[int, memoryview]]) -> tuple[int, memoryview]:
     element = next(parts, None)
     if element is None:
-        raise DamageError("a variable ends in the middle")
+        raise DamageError("a variable is truncated")
     return element

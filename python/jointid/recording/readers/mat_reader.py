@@ -7,19 +7,20 @@ from typing import Any
 
 from jointid.base.errors import InputError
 from jointid.recording.readers.mat_elements import Array, DamageError, Variable, variables_of
+from jointid.recording.readers.reader import Reader
 from jointid.recording.signals import FloatArray, signal_array
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _HEADER = 128  # bytes before the first variable
 _ORDERS = {b"IM": "<", b"MI": ">"}  # the header's last two bytes → order of a number's bytes
-_WIDEST = 256  # columns of a matrix: a wider one is no table of signals
+_WIDEST = 256  # columns of a matrix: a wider one is not a table of signals
 
 
 class MatTable:
     """A .mat file as a table of columns.
 
-    A column is a vector (n x 1 or 1 x n), named by its variable or by its field of a struct, with
-    the struct before it, ``struct.field``, where the field's name alone would not tell. A matrix
+    A column is a vector (n x 1 or 1 x n), named by its variable or by its field of a struct, as
+    ``struct.field`` where the field's name alone is not unique. A matrix
     gives one for each column, ``data(:,1)``, or for each row when it is wider than long,
     ``data(1,:)``.
 
@@ -30,7 +31,7 @@ class MatTable:
     Raises
     ------
     InputError
-        The file is of version 7.3 or 4, damaged, no .mat file, or holds no vectors.
+        The file is of version 7.3 or 4, damaged, not a .mat file, or has no vectors.
     """
 
     saved: Mapping[str, Any] | None = None
@@ -47,14 +48,16 @@ class MatTable:
         if not found:
             shown = ", ".join(repr(each.name[:40]) for each in variables[:8]) or "nothing"
             raise InputError(
-                f"{path}: no vectors of numbers are found, only {shown}; save time and position "
-                "as vectors or as fields of a struct, not as tables, timeseries or nested structs"
+                f"no vectors of numbers are found, only {shown}",
+                place=str(path),
+                remedy="save time and position as vectors or as fields of a struct, not as tables, "
+                "timeseries or nested structs",
             )
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
-        """Return vectors as arrays of shape (n,), or name the one that is none."""
+        """Return vectors as arrays of shape (n,), or raise `InputError`."""
         return [
-            signal_array(f"variable {self.headers[k]!r}", self._arrays[k], self.source)
+            signal_array("", self._arrays[k], f"{self.source}, variable {self.headers[k]!r}")
             for k in columns
         ]
 
@@ -71,19 +74,26 @@ def _variables(path: Path) -> list[Variable]:
     content = path.read_bytes()
     if _HDF5 in (content[:8], content[512:520]) or content.startswith(b"MATLAB 7.3"):
         raise InputError(
-            f"{path}: a MATLAB 7.3 file (HDF5) is not read; in MATLAB save it with '-v7', or read "
-            "it with h5py and give the arrays to jointid.Recording"
+            "a MATLAB 7.3 file (HDF5) is not read",
+            place=str(path),
+            remedy=(
+                "in MATLAB save it with '-v7'",
+                "read it with h5py and make a Recording from the arrays",
+            ),
         )
     order = _ORDERS.get(content[_HEADER - 2 : _HEADER])
     if order is None:
         raise InputError(
-            f"{path}: the file is no .mat file of version 5 to 7 (or is cut off); in MATLAB save "
-            "it with '-v7'"
+            "the file is not a .mat file of version 5 to 7, or is truncated",
+            place=str(path),
+            remedy="in MATLAB save it with '-v7'",
         )
     try:
         return list(variables_of(content[_HEADER:], order))
     except DamageError as error:
-        raise InputError(f"{path}: the .mat file is damaged or cut off ({error})") from None
+        raise InputError(
+            f"the .mat file is damaged or truncated ({error})", place=str(path)
+        ) from None
 
 
 def _columns(variable: Variable) -> Iterator[tuple[str, str, Array]]:
@@ -97,7 +107,7 @@ def _columns(variable: Variable) -> Iterator[tuple[str, str, Array]]:
 
 def _vectors(struct: str, variable: Variable) -> Iterator[tuple[str, str, Array]]:
     array, name = variable.array, variable.name
-    if array is None or array.size < 2:  # a lone number is a setting, no signal
+    if array is None or array.size < 2:  # a single number is a setting, not a signal
         return
     if min(array.shape) == 1:
         yield struct + name, name, array.ravel()
@@ -106,3 +116,6 @@ def _vectors(struct: str, variable: Variable) -> Iterator[tuple[str, str, Array]
         for number, vector in enumerate(array.T if long else array, start=1):
             part = f"{name}(:,{number})" if long else f"{name}({number},:)"
             yield struct + part, part, vector
+
+
+READER = Reader(endings=(".mat",), open=MatTable)

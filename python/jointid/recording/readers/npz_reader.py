@@ -13,10 +13,11 @@ import numpy.typing as npt
 
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
+from jointid.recording.readers.reader import Reader
 from jointid.recording.saving import NPZ_MEMBER, saved_attributes
 from jointid.recording.signals import FloatArray, signal_array
 
-# What zipfile, zlib and numpy raise on damaged, encrypted or absurd members.
+# Raised by zipfile, zlib and numpy for damaged, encrypted or absurdly large members.
 _DAMAGED = (
     *(ValueError, OSError, EOFError, KeyError, RuntimeError, MemoryError, OverflowError),
     *(zipfile.BadZipFile, zlib.error, NotImplementedError),
@@ -44,26 +45,31 @@ class NpzTable:
         content = io.BytesIO(path.read_bytes())
         if not zipfile.is_zipfile(content):
             raise InputError(
-                f"{path}: the file is no .npz archive (or is cut off); numpy.savez writes one"
+                "the file is not a .npz archive, or is truncated; numpy.savez writes one",
+                place=str(path),
             )
         content.seek(0)
         try:
             archive = np.load(content, allow_pickle=False)
         except _DAMAGED as error:
-            raise InputError(f"{path}: the archive is damaged ({reason_of(error)})") from None
+            raise InputError(
+                f"the archive is damaged ({reason_of(error)})", place=str(path)
+            ) from None
         self._archive: Mapping[str, Any] = archive
         self.saved: Mapping[str, Any] | None = None
         if NPZ_MEMBER in archive.files:
             text = self._member(NPZ_MEMBER)
-            self.saved = saved_attributes(str(text), f"{path}, member {NPZ_MEMBER!r}")
+            self.saved = saved_attributes(str(text), self._place(NPZ_MEMBER))
         self.headers = tuple(name for name in archive.files if name != NPZ_MEMBER)
         if not self.headers:
-            raise InputError(f"{path}: the archive is empty; arrays time and position are expected")
+            raise InputError(
+                "the archive is empty; arrays time and position are expected", place=str(path)
+            )
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
-        """Return members as arrays of shape (n,), or name the one that is none."""
+        """Return members as arrays of shape (n,), or raise `InputError`."""
         names = [self.headers[column] for column in columns]
-        return [signal_array(f"member {name!r}", self._member(name), self.source) for name in names]
+        return [signal_array("", self._member(name), self._place(name)) for name in names]
 
     def text(self, column: int) -> list[str]:
         """Return the values of a member as text."""
@@ -71,7 +77,10 @@ class NpzTable:
 
     def place(self, column: int, row: int) -> str:
         """Return file, member and index of a value."""
-        return f"{self.source}, member {self.headers[column]!r}, index {row}"
+        return f"{self._place(self.headers[column])}, index {row}"
+
+    def _place(self, name: str) -> str:
+        return f"{self.source}, member {name!r}"
 
     def _member(self, name: str) -> npt.NDArray[Any]:
         try:
@@ -79,12 +88,16 @@ class NpzTable:
         except _DAMAGED as error:
             if "allow_pickle" in str(error):
                 raise InputError(
-                    f"{self.source}: member {name!r} holds Python objects (a pickle), which are "
-                    "never read; save it as an array of floats"
+                    "it holds Python objects (a pickle), which are never read",
+                    place=self._place(name),
+                    remedy="save it as an array of floats",
                 ) from None
             raise InputError(
-                f"{self.source}: member {name!r} cannot be read ({reason_of(error)})"
+                f"it cannot be read ({reason_of(error)})", place=self._place(name)
             ) from None
         if not isinstance(value, np.ndarray):
-            raise InputError(f"{self.source}: member {name!r} is not an array")
+            raise InputError("it is not an array", place=self._place(name))
         return value
+
+
+READER = Reader(endings=(".npz",), open=NpzTable)

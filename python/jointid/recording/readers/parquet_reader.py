@@ -1,4 +1,4 @@
-"""Reading .parquet files, with pyarrow, which an extra brings."""
+"""Reading .parquet files with pyarrow, which the extra `parquet` installs."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -9,11 +9,12 @@ import numpy as np
 
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
+from jointid.recording.readers.reader import Reader
 from jointid.recording.signals import FloatArray, signal_array
 
 
 class ParquetTable:
-    """A .parquet file as a table of columns; only those asked for are read.
+    """A .parquet file as a table of columns; only the columns used are read.
 
     Parameters
     ----------
@@ -22,7 +23,9 @@ class ParquetTable:
     Raises
     ------
     InputError
-        pyarrow is not installed, or the file is no .parquet file.
+        The file is not a .parquet file, or is damaged.
+    ModuleNotFoundError
+        pyarrow is not installed.
     """
 
     saved: Mapping[str, Any] | None = None
@@ -32,27 +35,25 @@ class ParquetTable:
         self.source = str(path)
         self.header_place = self.source
         content = path.read_bytes()
-        try:
-            import pyarrow
-            from pyarrow import parquet
-        except ImportError:
-            raise InputError(
-                f"{path}: reading .parquet files needs pyarrow; pip install 'jointid[parquet]', "
-                "or save the file as .csv"
-            ) from None
+        import pyarrow
+        from pyarrow import parquet
+
         try:
             self._file: Any = parquet.ParquetFile(pyarrow.BufferReader(content))
-            self.headers = tuple(map(str, self._file.schema_arrow.names))
-        # NOTE: whatever the damage leads to: the reader promises no kind of error.
-        except Exception as error:
+            names = self._file.schema_arrow.names
+        except _damage() as error:
             raise InputError(
-                f"{path}: the file is no .parquet file, or is damaged ({reason_of(error)})"
+                f"the file is not a .parquet file, or is damaged ({reason_of(error)})",
+                place=str(path),
             ) from None
+        self.headers = tuple(map(str, names))
         if not self.headers:
-            raise InputError(f"{path}: the file has no columns; time and position are expected")
+            raise InputError(
+                "the file has no columns; time and position are expected", place=str(path)
+            )
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
-        """Return columns as arrays of shape (n,), or name the one that is none."""
+        """Return columns as arrays of shape (n,), or raise `InputError`."""
         return [self._numbers(column) for column in columns]
 
     def text(self, column: int) -> list[str]:
@@ -66,33 +67,51 @@ class ParquetTable:
     def _numbers(self, column: int) -> FloatArray:
         import pyarrow
 
-        what = f"column {self.headers[column]!r}"
         values = self._values(column)
         if pyarrow.types.is_temporal(values.type):
             raise InputError(
-                f"{self.source}: {what} holds {values.type}; numbers are expected, for time "
-                "seconds since the start"
+                f"the column holds {values.type}; numbers are expected, for time seconds since the "
+                "start",
+                place=self._place(column),
             )
         if values.null_count:
             row = int(np.argmax(values.is_null().to_numpy()))
-            raise InputError(f"{self.place(column, row)}: the cell is empty; a number is expected")
+            raise InputError(
+                "the cell is empty; a number is expected", place=self.place(column, row)
+            )
         try:
             if pyarrow.types.is_decimal(values.type):
                 values = values.cast(pyarrow.float64())
             array = values.to_numpy()
-        except Exception as error:
+        except _damage() as error:
             raise self._unreadable(column, error) from None
-        return signal_array(what, array, self.source)
+        return signal_array("", array, self._place(column))
 
     def _values(self, column: int) -> Any:
         name = self._file.schema_arrow.names[column]
         try:
-            # One thread: what is read here is small, and pools of threads outlive a fork badly.
+            # One thread: the columns are small, and thread pools cause trouble after a fork.
             return self._file.read(columns=[name], use_threads=False).column(name)
-        except Exception as error:
+        except _damage() as error:
             raise self._unreadable(column, error) from None
+
+    def _place(self, column: int) -> str:
+        return f"{self.source}, column {self.headers[column]!r}"
 
     def _unreadable(self, column: int, error: BaseException) -> InputError:
         return InputError(
-            f"{self.source}: column {self.headers[column]!r} cannot be read ({reason_of(error)})"
+            f"the column cannot be read ({reason_of(error)})", place=self._place(column)
         )
+
+
+def _damage() -> tuple[type[Exception], ...]:
+    """Return the errors that damaged bytes lead to in pyarrow, which documents none of them."""
+    import pyarrow
+
+    return (
+        *(pyarrow.ArrowException, ValueError, OSError, EOFError, LookupError),
+        *(RuntimeError, NotImplementedError, MemoryError, OverflowError),
+    )
+
+
+READER = Reader(endings=(".parquet",), open=ParquetTable, package="pyarrow", extra="parquet")

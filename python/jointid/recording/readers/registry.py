@@ -1,0 +1,42 @@
+"""The list of file formats. A new format is one file beside this one, and one line in `MODULES`."""
+
+from importlib import import_module
+from pathlib import Path
+
+from jointid.base.error_text import alternatives
+from jointid.base.file_endings import ending_of
+from jointid.recording.readers.reader import Reader
+
+# Each module defines `READER`; messages and help list the endings in this order.
+MODULES = (
+    "csv_reader",
+    "npz_reader",
+    "mat_reader",
+    "parquet_reader",
+)
+
+READERS: tuple[Reader, ...] = tuple(
+    import_module(f"jointid.recording.readers.{module}").READER for module in MODULES
+)
+
+
+def endings() -> tuple[str, ...]:
+    """Return the endings of all files that can be read."""
+    return tuple(ending for reader in READERS for ending in reader.endings)
+
+
+def endings_text() -> str:
+    """Return the endings as alternatives in a sentence: ``".csv, .csv.gz or .npz"``."""
+    return alternatives(endings())
+
+
+def reader_of(path: Path) -> Reader:
+    """Return the reader for a file, by the ending of its name.
+
+    Raises
+    ------
+    InputError
+        No reader reads such files.
+    """
+    ending = ending_of(path, endings())
+    return next(reader for reader in READERS if ending in reader.endings)

@@ -1,0 +1,66 @@
+"""Files that hold several runs: which column numbers them, and how to load one."""
+
+import math
+import re
+from collections.abc import Mapping
+
+import numpy as np
+
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
+from jointid.recording.contents import Contents, Rows
+from jointid.recording.signals import SHORTEST
+
+_RUN = re.compile(r"run|trial|test|experiment|episode|file|log", re.IGNORECASE)
+_MOST = 8  # columns that are examined: each costs time in a long file
+
+
+def one_run(contents: Contents) -> tuple[Action, ...]:
+    """Return how to load one run or all of them, if a column numbers the runs of a file.
+
+    Parameters
+    ----------
+    contents : Contents
+        Of a file in which time goes back.
+
+    Returns
+    -------
+    tuple of Action
+        Empty if there is no column by whose values the rows divide into runs of increasing time.
+    """
+    signals = {column.index for column in contents.found.values()}
+    headers = contents.table.headers
+    others = [
+        (column, header)
+        for column, header in enumerate(headers)
+        if column not in signals and headers.count(header) == 1
+    ]
+    others.sort(key=lambda other: not _RUN.search(other[1]))  # likely ones first
+    for column, header in others[:_MOST]:
+        try:
+            runs = contents.rows_of(column)
+        except InputError:  # a damaged column, or one of another length: not of use here
+            continue
+        long = [value for value, rows in runs.items() if len(rows) >= SHORTEST]
+        if long and len(runs) > 1 and _increase(contents, runs):
+            where = {header: _value(long[0])}
+            one = Action("call", {"where": where}, function="load", text="one run")
+            every = Action("call", {"by": header}, function="load_runs", text="all runs")
+            return (one, every) if len(long) == len(runs) else (one,)
+    return ()
+
+
+def _increase(contents: Contents, runs: Mapping[str, Rows]) -> bool:
+    """Return whether time increases within each run."""
+    time = contents.found["time"].to_si(contents.values["time"])
+    return all(bool((np.diff(time[rows]) > 0.0).all()) for rows in runs.values())
+
+
+def _value(text: str) -> float | str:
+    try:
+        number = float(text)
+    except ValueError:
+        return text
+    if not math.isfinite(number):
+        return text
+    return int(number) if number.is_integer() else number

@@ -1,0 +1,39 @@
+"""A table of named columns: the form in which every file and data frame is read."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol
+
+from jointid.recording.signals import FloatArray
+
+
+class Table(Protocol):
+    """Named columns, wherever they come from."""
+
+    @property
+    def source(self) -> str:
+        """What the messages call it, e.g. the file's path."""
+
+    @property
+    def headers(self) -> tuple[str, ...]:
+        """One for each column."""
+
+    @property
+    def other_names(self) -> Mapping[str, int]:
+        """Names that `columns=` may use besides the headers → their columns."""
+
+    @property
+    def header_place(self) -> str:
+        """Where the headers are, for messages."""
+
+    @property
+    def saved(self) -> Mapping[str, Any] | None:
+        """Attributes of a saved recording; None for a table that `Recording.save` did not write."""
+
+    def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
+        """Return columns as numbers, each of shape (n,); raise `InputError` for a cell that is none."""
+
+    def text(self, column: int) -> list[str]:
+        """Return a column as text."""
+
+    def place(self, column: int, row: int) -> str:
+        """Return where a cell is, for messages."""

@@ -1,0 +1,137 @@
+"""Adding a file format takes one new file and one line of a list; all that names formats follows."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from recording_files import GOOD, lines, refusal, written
+
+import jointid
+from jointid.recording.readers import registry
+from jointid.recording.readers.csv_reader import CsvTable
+from jointid.recording.readers.loading import load
+from jointid.recording.readers.reader import Reader
+
+PACKAGE = Path(jointid.__file__).parent
+REGISTRY = Path("recording", "readers", "registry.py")
+
+# The new file: text whose cells are separated by "|".
+BAR_READER = '''"""Reading .bar files: text whose cells are separated by |."""
+
+import tempfile
+from pathlib import Path
+
+from jointid.recording.readers.csv_reader import CsvTable
+from jointid.recording.readers.reader import Reader
+
+
+def opened(path: Path) -> CsvTable:
+    with tempfile.TemporaryDirectory() as folder:
+        text = Path(folder, "run.csv")
+        text.write_text(path.read_text().replace("|", ","))
+        return CsvTable(text)
+
+
+READER = Reader(endings=(".bar", ".pipe"), open=opened)
+'''
+
+
+def run(package: Path, *command: str) -> str:
+    # Without `site` no editable install can put its own package before this one.
+    places = os.pathsep.join([str(package.parent), *sys.path])
+    done = subprocess.run(
+        [sys.executable, "-S", *command],
+        env={**os.environ, "PYTHONPATH": places, "COLUMNS": "200"},
+        cwd=package.parent,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    return done.stdout + done.stderr
+
+
+def test_one_file_and_one_line_add_a_format(tmp_path: Path) -> None:
+    package = tmp_path / "jointid"
+    shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
+    for core in Path(jointid._core.__file__).parent.glob("_core*.so"):  # an editable install's
+        shutil.copy(core, package)
+    (package / REGISTRY.parent / "bar_reader.py").write_text(BAR_READER, encoding="utf-8")
+    before = (package / REGISTRY).read_text(encoding="utf-8")
+    after = before.replace('    "parquet_reader",\n', '    "parquet_reader",\n    "bar_reader",\n')
+    assert len(after.splitlines()) == len(before.splitlines()) + 1
+    (package / REGISTRY).write_text(after, encoding="utf-8")
+    for name in ("run.bar", "run.pipe"):
+        written(tmp_path / name, "\n".join(GOOD).replace(",", "|"))
+    written(tmp_path / "run.xyz", GOOD)
+
+    script = "import jointid, sys; print(jointid.__file__); print(len(jointid.load(sys.argv[1])))"
+    for name in ("run.bar", "run.pipe"):
+        assert run(package, "-c", script, name).split() == [str(package / "__init__.py"), "10"]
+    listed = ".csv, .csv.gz, .npz, .mat, .parquet, .bar or .pipe"
+    assert listed in run(package, "-c", script, "run.xyz")
+    for command in ("identify", "info", "compare", "sweep"):
+        assert listed in run(package, "-m", "jointid", command, "--help"), command
+
+
+def test_every_reader_is_in_the_list() -> None:
+    files = {path.stem for path in (PACKAGE / REGISTRY.parent).glob("*_reader.py")}
+    assert files == set(registry.MODULES)
+    assert len(registry.READERS) == len(registry.MODULES)
+
+
+def test_no_two_readers_claim_an_ending() -> None:
+    assert len(set(registry.endings())) == len(registry.endings())
+    assert all(re.fullmatch(r"(\.[a-z0-9]+)+", ending) for ending in registry.endings())
+
+
+def test_the_longest_ending_decides(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(path: Path) -> CsvTable:
+        raise AssertionError(path)
+
+    other = Reader(endings=(".gz",), open=refuse)
+    monkeypatch.setattr(registry, "READERS", (other, *registry.READERS))
+    assert len(load(written(tmp_path / "run.csv.gz", GOOD))) == 10
+
+
+def test_an_ending_without_a_reader_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is not read as text, although it holds text."""
+    path = written(tmp_path / "run.parquet", GOOD)
+    left = tuple(each for each in registry.READERS if ".parquet" not in each.endings)
+    monkeypatch.setattr(registry, "READERS", left)
+    assert refusal(path) == (
+        f"{path}: a file name that ends in .csv, .csv.gz, .npz or .mat is expected"
+    )
+
+
+def test_a_missing_package_is_named_with_its_extra(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def without(path: Path) -> CsvTable:
+        raise ModuleNotFoundError(name="asammdf.blocks")
+
+    reader = Reader(endings=(".mf4",), open=without, package="asammdf", extra="mdf")
+    monkeypatch.setattr(registry, "READERS", (reader,))
+    path = written(tmp_path / "run.mf4", lines("t,q"))
+    assert refusal(path) == (
+        f"{path}: reading .mf4 files needs asammdf, which is not installed; "
+        "pip install 'jointid[mdf]' or save the file as .csv"
+    )
+
+
+def test_another_failed_import_is_a_bug_not_bad_input(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(path: Path) -> CsvTable:
+        raise ModuleNotFoundError(name="jointid.recording.csv")
+
+    for package in ("", "asammdf"):
+        reader = Reader(endings=(".mf4",), open=broken, package=package)
+        monkeypatch.setattr(registry, "READERS", (reader,))
+        with pytest.raises(ModuleNotFoundError):
+            load(written(tmp_path / "run.mf4", lines("t,q")))
