@@ -251,7 +251,7 @@ def test_no_output_is_written_over_an_input(
     asked = [str(tmp_path / files[word]) if word in files else word for word in words]
     assert main(asked) == 2
     told = capsys.readouterr().err
-    assert "written over" in told
+    assert "would overwrite it" in told
     assert told.count("\n") == 1
     for name in files.values():
         assert (tmp_path / name).read_text(encoding="utf-8") == f"{name}: to be kept"
@@ -259,4 +259,4 @@ def test_no_output_is_written_over_an_input(
 
 def test_a_report_is_a_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["identify", "run.csv", "--report", str(tmp_path / "report.pdf")]) == 2
-    assert "report.pdf: a report is a page, .html" in capsys.readouterr().err
+    assert "report.pdf: a report is an HTML page" in capsys.readouterr().err

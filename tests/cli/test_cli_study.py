@@ -53,9 +53,9 @@ def test_an_interrupted_sweep_says_how_much_is_done_and_how_to_go_on(
     assert "of 6 trials were done" in told
     assert told.count("\n") == 1
     if not kept:
-        assert "lost; --output study.jsonl keeps" in told
+        assert "lost; --output study.jsonl keeps each trial" in told
         return
-    assert f"in {path}; the same command with --resume goes on" in told
+    assert f"in {path}; the same command with --resume continues" in told
     assert main([*words, "--resume"]) == 0
     assert len(jid.Study.load(path).rows) == 6
 
@@ -105,11 +105,11 @@ def test_the_recording_is_that_of_the_library(
     [
         (["--trajectory", "helix"], "neither a file nor one of"),
         (["--trajectory", "sine:amplitude"], "not of the form name=value"),
-        (["--trajectory", "sine:amplitude=1,hertz=1,duration=1"], "has no option 'hertz'"),
+        (["--trajectory", "sine:amplitude=1,hertz=1,duration=1"], "there is no hertz"),
         (["--controller", "pdd"], "did you mean 'pd'"),
-        (["--controller", "pd"], "needs --gain stiffness"),
-        (["--controller", "pd", "--gain", "stiffness=1", "--believe", "x"], "compensates nothing"),
-        (["--gain", "bandwith=3"], "no field 'bandwith'"),
+        (["--controller", "pd"], "add --gain stiffness=VALUE"),
+        (["--controller", "pd", "--gain", "stiffness=1", "--believe", "x"], "compensates no friction"),
+        (["--gain", "bandwith=3"], "did you mean 'bandwidth'"),
         (["--gain", "bandwidth=3", "--gain", "bandwidth=4"], "given twice"),
         (["--sensor", "torque_noise=-1"], "torque_noise"),
         (["--control-period", "0"], "more than 0"),
@@ -166,13 +166,13 @@ def test_sweep_simulates(folder: Path, capsys: Printed) -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        ([], "give recordings, or --simulate"),
-        ([WELL, "--simulate", "true.toml"], "one of the two"),
+        ([], "either recordings or --simulate"),
+        ([WELL, "--simulate", "true.toml"], "either recordings or --simulate"),
         ([WELL, "--grid", "windows=10", "--grid", "windows=20"], "given twice"),
         ([WELL, "--grid", "windos=10"], "did you mean"),
         ([WELL, "--grid", "windows"], "not of the form name=value"),
         ([WELL, "--table", "x.xlsx"], "written as .csv or .parquet"),
-        ([WELL, "--workers", "0"], "--workers must be 1 to"),
+        ([WELL, "--workers", "0"], "--workers 0: 1 to 1024"),
         ([WELL, "--resume"], "give it as --output"),
         ([WELL, "--ga", "best"], "ga must be"),
         ([WELL, "--trials", "0"], "trials must be"),

@@ -7,11 +7,12 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointid.cli.arguments import check_outputs, check_page, fixed_values, load_all
+from jointid.cli.arguments import fixed_values, load_all, model_of
+from jointid.cli.outputs import check_outputs, check_page
 from jointid.cli.session import emulate, run
 from jointid.cli.simulation import simulate
 from jointid.cli.study import sweep
-from jointid.cli.words import spoken
+from jointid.cli.wording import Wording
 
 __all__ = ["compare", "demo", "emulate", "identify", "info", "report", "run", "simulate", "sweep"]
 
@@ -36,7 +37,7 @@ def demo(arguments: argparse.Namespace) -> None:
     if arguments.json:
         print(estimate.to_json())
         return
-    print(estimate.report())
+    print(Wording.of(arguments).of_report(estimate))
     print()
     for name, nominal in demonstration.nominal.items():
         found = estimate.parameters[name]
@@ -51,7 +52,6 @@ def identify(arguments: argparse.Namespace) -> None:
     """Identify a joint from one recording or several."""
     from jointid._core import GaOptions
     from jointid.cli.progress import Progress
-    from jointid.comparison.model_spec import ModelSpec
     from jointid.identification import identification
 
     changes = fixed_values(arguments)
@@ -62,9 +62,7 @@ def identify(arguments: argparse.Namespace) -> None:
         if getattr(arguments, name) is not None
     }
     options = GaOptions(**budget)
-    model: dict[str, Any] = {}
-    if arguments.model is not None:
-        model = ModelSpec.parse(arguments.model).arguments()
+    model = model_of(arguments.model)
     joint = _joint(arguments)
     recordings = load_all(arguments.recordings, arguments)
     with Progress(total=options.generations, enabled=not arguments.quiet) as progress:
@@ -85,7 +83,7 @@ def identify(arguments: argparse.Namespace) -> None:
             **model,
         )
     _write(estimate, arguments)
-    print(estimate.to_json() if arguments.json else spoken(estimate.report()))
+    print(estimate.to_json() if arguments.json else Wording.of(arguments).of_report(estimate))
 
 
 def compare(arguments: argparse.Namespace) -> None:
@@ -113,7 +111,7 @@ def compare(arguments: argparse.Namespace) -> None:
             callback=progress,
         )
     _write(comparison.estimate, arguments)
-    print(comparison.to_json() if arguments.json else spoken(comparison.report()))
+    print(comparison.to_json() if arguments.json else comparison.report())
 
 
 def report(arguments: argparse.Namespace) -> None:
@@ -123,33 +121,30 @@ def report(arguments: argparse.Namespace) -> None:
     from jointid.report.html import save_report
 
     path = arguments.estimate
-    check_page("--output", arguments.output)
+    check_page("output", arguments.output)
     try:
         estimate = Estimate.from_json(path.read_text(encoding="utf-8"))
-        page = save_report(estimate, arguments.output)
     except InputError as error:
-        raise InputError(f"{path}: {error}") from error
-    except (UnicodeDecodeError, RecursionError) as error:
+        raise error.at(str(path)) from error
+    except UnicodeDecodeError as error:
         raise InputError(
-            f"{path}: this is no estimate; one is saved with identify --save estimate.json"
+            "this is no estimate; one is saved with identify --save estimate.json", place=str(path)
         ) from error
-    except (ArithmeticError, AttributeError, LookupError, TypeError) as error:
-        told = f"{type(error).__name__} {error}"
-        raise InputError(f"{path}: the estimate's JSON is damaged: {told}") from error
+    page = save_report(estimate, arguments.output)
     if arguments.json:
-        facts = {"report": str(page), "warnings": [warning.code for warning in estimate.warnings]}
-        print(json.dumps(facts, indent=1, ensure_ascii=False))
+        summary = {"report": str(page), "warnings": [warning.code for warning in estimate.warnings]}
+        print(json.dumps(summary, indent=1, ensure_ascii=False))
     else:
         print(f"report: {page}")
 
 
 def info(arguments: argparse.Namespace) -> None:
-    """Say what a recording holds."""
+    """Show what a recording holds."""
     (recording,) = load_all([arguments.recording], arguments)
     if arguments.json:
-        print(json.dumps(_facts(recording), indent=1, ensure_ascii=False))
+        print(json.dumps(_contents(recording), indent=1, ensure_ascii=False))
         return
-    for label, value in _facts(recording).items():
+    for label, value in _contents(recording).items():
         if isinstance(value, dict):
             print(f"{label}:")
             for signal, entry in value.items():
@@ -176,7 +171,7 @@ def _write(estimate: Estimate, arguments: argparse.Namespace) -> None:
         estimate.save(arguments.save)
 
 
-def _facts(recording: Recording) -> dict[str, Any]:
+def _contents(recording: Recording) -> dict[str, Any]:
     return {
         "name": recording.name,
         "kind": recording.kind,

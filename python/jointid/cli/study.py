@@ -9,17 +9,19 @@ from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from jointid.base.errors import InputError
 from jointid.cli.arguments import (
     TEXT,
-    check_folder,
     fixed_values,
     load_all,
+    model_of,
     number_or_text,
     pair,
     reading_arguments,
     whole_seed,
 )
-from jointid.cli.simulation import scenario_arguments, scenario_of
+from jointid.cli.outputs import check_folder
+from jointid.cli.scenario import scenario_arguments, scenario_of
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -38,7 +40,7 @@ def add_sweep(commands: Any) -> None:
             "  jointid sweep run.csv --joint joint.toml --grid windows=100,400,1600 --trials 1 --table sweep.csv\n"
             "  jointid sweep --simulate joint.toml --trajectory thesis:amplitude=60deg,cycle=3 \\\n"
             "      --grid sensors.torque_noise=0.1,0.5,2 --trials 20 --output study.jsonl\n"
-            "  jointid sweep --simulate joint.toml … --output study.jsonl --resume   (goes on where it was)"
+            "  jointid sweep --simulate joint.toml … --output study.jsonl --resume   (continues)"
         ),
         formatter_class=TEXT,
     )
@@ -54,10 +56,10 @@ def add_sweep(commands: Any) -> None:
         "--simulate",
         type=Path,
         metavar="JOINT",
-        help="instead of recordings: simulate this joint file's joint anew for each trial",
+        help="instead of recordings: simulate the joint of this file for each trial",
     )
     scenario_arguments(sweep)
-    sweep.add_argument("--joint", type=Path, help="joint file (.toml) of what is known")
+    sweep.add_argument("--joint", type=Path, help="joint file (.toml) with the known values")
     sweep.add_argument(
         "--grid",
         action="append",
@@ -66,14 +68,16 @@ def add_sweep(commands: Any) -> None:
         metavar="SETTING=VALUE,…",
         help="a setting to sweep, such as ga.population, windows, method, sensors.torque_noise",
     )
-    sweep.add_argument("--trials", type=int, default=10, help="of each combination (10)")
-    for name, told in (
+    sweep.add_argument(
+        "--trials", type=int, default=10, help="trials of each combination (default 10)"
+    )
+    for name, explanation in (
         ("--ga", "default, thesis or thesis_code"),
         ("--method", "ga (default), separable or random"),
-        ("--model", "friction model"),
+        ("--model", "friction model, such as stribeck:ripple=2"),
         ("--residual", "sensor or torque"),
     ):
-        sweep.add_argument(name, help=told)
+        sweep.add_argument(name, help=explanation)
     sweep.add_argument("--windows", type=number_or_text, help="number (400) or duration (0.05) [s]")
     sweep.add_argument(
         "--set",
@@ -83,18 +87,22 @@ def add_sweep(commands: Any) -> None:
         metavar="PARAMETER=VALUE",
         help="fix a parameter (SI)",
     )
-    sweep.add_argument("--stderr", action="store_true", help="standard errors, too")
+    sweep.add_argument(
+        "--standard-errors", action="store_true", help="compute standard errors for each trial"
+    )
     sweep.add_argument(
         "--tracking",
         action="store_true",
-        help="of --simulate: track again with what was identified",
+        help="with --simulate: track again with the identified parameters",
     )
-    sweep.add_argument("--seed", type=whole_seed, default=0, help="of the first trial (0)")
-    sweep.add_argument("--threads", type=int, help="0: all")
-    sweep.add_argument("--workers", type=int, help="processes to spread the trials over")
-    sweep.add_argument("--output", type=Path, help="a .jsonl file that grows with each trial")
-    sweep.add_argument("--resume", action="store_true", help="go on with the file of --output")
-    sweep.add_argument("--table", type=Path, help="write the table here: .csv or .parquet")
+    sweep.add_argument(
+        "--seed", type=whole_seed, default=0, help="seed of the first trial (default 0)"
+    )
+    sweep.add_argument("--threads", type=int, help="number of threads; 0: all cores")
+    sweep.add_argument("--workers", type=int, help="number of processes that share the trials")
+    sweep.add_argument("--output", type=Path, help="a .jsonl file to which each trial is added")
+    sweep.add_argument("--resume", action="store_true", help="continue the file of --output")
+    sweep.add_argument("--table", type=Path, help="file for the table: .csv or .parquet")
     sweep.add_argument(
         "--plot", type=Path, help="draw the penalty over the first settings: .png, .pdf"
     )
@@ -104,21 +112,22 @@ def add_sweep(commands: Any) -> None:
 
 def sweep(arguments: argparse.Namespace) -> None:
     """Identify with many settings."""
-    from jointid.base.errors import InputError
     from jointid.cli.progress import StudyProgress
     from jointid.joint.joint import Joint
     from jointid.study import sweeping
 
     for option in ("output", "table", "plot"):
-        check_folder(f"--{option}", getattr(arguments, option))
+        check_folder(option, getattr(arguments, option))
     if arguments.table is not None and arguments.table.suffix not in (".csv", ".parquet"):
-        raise InputError(f"--table {arguments.table}: a table is written as .csv or .parquet")
+        raise InputError(
+            "a table is written as .csv or .parquet", argument="table", value=arguments.table
+        )
     if (arguments.simulate is None) == (not arguments.recordings):
-        raise InputError("give recordings, or --simulate JOINT, one of the two")
+        raise InputError("either recordings or --simulate JOINT are expected")
     fixed = fixed_values(arguments)
     options = {
         name: getattr(arguments, name)
-        for name in ("ga", "method", "model", "residual", "windows")
+        for name in ("ga", "method", "residual", "windows")
         if getattr(arguments, name) is not None
     }
     subject: Any
@@ -127,7 +136,7 @@ def sweep(arguments: argparse.Namespace) -> None:
     else:
         subject = load_all(arguments.recordings, arguments)
     with (
-        _told(arguments),
+        _continuation(arguments),
         _workers(arguments.workers) as executor,
         StudyProgress(enabled=not arguments.quiet) as progress,
     ):
@@ -137,7 +146,7 @@ def sweep(arguments: argparse.Namespace) -> None:
             grid=_grid(arguments.grid),
             trials=arguments.trials,
             seed=arguments.seed,
-            stderr=arguments.stderr,
+            stderr=arguments.standard_errors,
             tracking=arguments.tracking,
             executor=executor,
             threads=arguments.threads,
@@ -145,28 +154,28 @@ def sweep(arguments: argparse.Namespace) -> None:
             output=arguments.output,
             resume=arguments.resume,
             **options,
+            **model_of(arguments.model),
             **({"parameters": fixed} if fixed else {}),
         )
     _write(study, arguments)
 
 
 @contextmanager
-def _told(arguments: argparse.Namespace) -> Iterator[None]:
-    """What is left of a sweep that ended early, and how to go on."""
-    from jointid.base.errors import InputError
+def _continuation(arguments: argparse.Namespace) -> Iterator[None]:
+    """Say of a sweep that ended early how many trials are done, and how to continue."""
     from jointid.study.sweeping import StudyBrokenError, StudyInterruptedError
 
     if arguments.output is None:
-        way_on = "they are lost; --output study.jsonl keeps each as it is done"
+        remedy = "they are lost; --output study.jsonl keeps each trial"
     else:
-        way_on = f"they are in {arguments.output}; the same command with --resume goes on"
+        remedy = f"they are in {arguments.output}; the same command with --resume continues"
     try:
         yield
     except StudyInterruptedError as stop:
-        raise KeyboardInterrupt(f"{stop}; {way_on}") from None
+        raise KeyboardInterrupt(f"{stop}; {remedy}") from None
     except StudyBrokenError as error:
         done = str(error).partition(". ")[0]
-        raise InputError(f"{done}; {way_on}") from error
+        raise InputError(done, remedy=remedy) from error
 
 
 def _write(study: Study, arguments: argparse.Namespace) -> None:
@@ -186,12 +195,11 @@ def _write(study: Study, arguments: argparse.Namespace) -> None:
 
 
 def _workers(count: int | None) -> Executor | nullcontext[None]:
-    from jointid.base.errors import InputError
 
     if count is None:
         return nullcontext()
     if not 1 <= count <= 1024:
-        raise InputError(f"--workers must be 1 to 1024, got {count}")
+        raise InputError("1 to 1024 processes are expected", argument="workers", value=count)
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import get_context
 
@@ -200,12 +208,11 @@ def _workers(count: int | None) -> Executor | nullcontext[None]:
 
 
 def _grid(pairs: list[tuple[str, str]]) -> dict[str, list[Any]]:
-    from jointid.base.errors import InputError
 
     grid: dict[str, list[Any]] = {}
     for name, values in pairs:
         if name in grid:
-            raise InputError(f"--grid {name} is given twice")
+            raise InputError("it is given twice", argument=f"grid.{name}", value=values)
         grid[name] = [_value(text) for text in values.split(",")]
     return grid
 

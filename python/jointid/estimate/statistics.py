@@ -130,6 +130,9 @@ class Warned:
     parameters: tuple[str, ...]
     message: str
 
+    def __str__(self) -> str:
+        return self.message
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FrictionCurve:

@@ -1,6 +1,8 @@
 """An estimate as text, and as a small HTML table for notebooks."""
 
+from collections.abc import Callable
 from html import escape
+from typing import Any
 
 import numpy as np
 
@@ -84,8 +86,8 @@ def strongest_correlation(estimate: Estimate) -> str:
     return f"strongest {estimate.correlation[first, second]:.2f}, between {pair}"
 
 
-def text_report(estimate: Estimate) -> str:
-    """The estimate as text."""
+def text_report(estimate: Estimate, finding_text: Callable[[Any], str] = str) -> str:
+    """The estimate as text; a face may bring its own wording of the findings."""
     table = [_HEAD, *rows(estimate)]
     widths = [max(len(row[column]) for row in table) for column in range(len(_HEAD))]
     lines = [f"jointid estimate — {estimate.joint.name or 'joint'}", ""]
@@ -104,7 +106,7 @@ def text_report(estimate: Estimate) -> str:
     lines.append("")
     if not estimate.warnings:
         lines.append("no warnings")
-    lines += [f"warning ({w.code}): {w.message}" for w in estimate.warnings]
+    lines += [f"warning ({w.code}): {finding_text(w)}" for w in estimate.warnings]
     return "\n".join(lines)
 
 

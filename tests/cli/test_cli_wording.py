@@ -9,7 +9,7 @@ import pytest
 import jointid as jid
 from jointid.cli.command_line import main
 from jointid.cli.demo import data_folder
-from jointid.cli.words import spoken
+from jointid.cli.wording import Wording
 
 WELL = str(data_folder() / "well_excited.csv.gz")
 PYTHON = re.compile(
