@@ -104,11 +104,14 @@ def test_the_recording_is_that_of_the_library(
     ("words", "told"),
     [
         (["--trajectory", "helix"], "neither a file nor one of"),
-        (["--trajectory", "sine:amplitude"], "not of the form name=value"),
+        (["--trajectory", "sine:amplitude"], "not of the form NAME=VALUE"),
         (["--trajectory", "sine:amplitude=1,hertz=1,duration=1"], "there is no hertz"),
         (["--controller", "pdd"], "did you mean 'pd'"),
         (["--controller", "pd"], "add --gain stiffness=VALUE"),
-        (["--controller", "pd", "--gain", "stiffness=1", "--believe", "x"], "compensates no friction"),
+        (
+            ["--controller", "pd", "--gain", "stiffness=1", "--believe", "x"],
+            "compensates no friction",
+        ),
         (["--gain", "bandwith=3"], "did you mean 'bandwidth'"),
         (["--gain", "bandwidth=3", "--gain", "bandwidth=4"], "given twice"),
         (["--sensor", "torque_noise=-1"], "torque_noise"),
@@ -166,11 +169,11 @@ def test_sweep_simulates(folder: Path, capsys: Printed) -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        ([], "either recordings or --simulate"),
-        ([WELL, "--simulate", "true.toml"], "either recordings or --simulate"),
+        ([], "give recordings or --simulate"),
+        ([WELL, "--simulate", "true.toml"], "exclude each other"),
         ([WELL, "--grid", "windows=10", "--grid", "windows=20"], "given twice"),
         ([WELL, "--grid", "windos=10"], "did you mean"),
-        ([WELL, "--grid", "windows"], "not of the form name=value"),
+        ([WELL, "--grid", "windows"], "not of the form NAME=VALUE"),
         ([WELL, "--table", "x.xlsx"], "written as .csv or .parquet"),
         ([WELL, "--workers", "0"], "--workers 0: 1 to 1024"),
         ([WELL, "--resume"], "give it as --output"),

@@ -1,27 +1,26 @@
-"""What the command line says names its own options, not Python's arguments."""
+"""Errors and findings in the words of the command line: its options, not Python's arguments."""
 
-import re
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import jointid as jid
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
 from jointid.cli.command_line import main
 from jointid.cli.demo import data_folder
+from jointid.cli.values import in_sentence
 from jointid.cli.wording import Wording
+from jointid.estimate.findings import Finding
 
 WELL = str(data_folder() / "well_excited.csv.gz")
-PYTHON = re.compile(
-    r"\w=[{(]|=True|=False|=None|\b(?:columns|units|parameters|output)=|jointid\.[A-Z]|Options|with_parameters|positional|\w\("
-)
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     run = jid.load(WELL)
-    jid.thesis_joint().save(tmp_path / "joint.toml")
-    (tmp_path / "study.jsonl").write_text("{}\n", encoding="utf-8")
     columns = (run.time, np.degrees(run.position), run.velocity, run.torque, run.sensor)
     table = np.column_stack(columns)  # type: ignore[arg-type]
     header = "time_s,enc1,velocity_rad_s,torque_Nm,sensor_raw"
@@ -29,40 +28,9 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (f"identify {WELL} --column torque=foo", "--column torque=foo, no such header"),
-        ("identify LOG", "candidates are 'enc1'; choose one with --column position=enc1"),
-        ("info LOG --column position=enc1 --unit position=V", "--scale position=FACTOR"),
-        ("identify LOG --column position=enc1 --column sensor=enc1", "--column gives 'enc1'"),
-        (f"identify {WELL} --unit temperature=K", "--unit names 'temperature'"),
-        (f"identify {WELL} --model stribeck:asymmetric", "with --set sensor_offset=VALUE, or"),
-        (f"identify {WELL} --column sensor=none --residual sensor", "use --residual torque"),
-        (f"identify {WELL} --population 1", "population must be 4"),
-        (f"sweep {WELL} --grid windows=50 --resume", "give it as --output"),
-        (f"sweep {WELL} --grid windows=50 --output STUDY", "--output"),
-        (f"sweep {WELL} --grid ga=foo", "ga must be one of default, thesis"),
-        (f"sweep {WELL} --tracking", "--tracking simulates; give --simulate JOINT"),
-        ("simulate JOINT --trajectory sine", "sine needs amplitude and frequency"),
-        ("simulate JOINT --trajectory sine:foo=3", "sine has no option 'foo'"),
-        ("simulate JOINT --trajectory thesis:amplitude=1", "[parameters.coulomb] in the joint"),
-    ],
-)
-def test_refusals_name_options(
-    words: str, told: str, folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    files = {"LOG": "log.csv", "JOINT": "joint.toml", "STUDY": "study.jsonl"}
-    asked = [str(folder / files[word]) if word in files else word for word in words.split()]
-    assert main(asked) == 2
-    said = capsys.readouterr().err
-    assert told in said
-    assert PYTHON.search(said) is None, said
-
-
 def test_warnings_name_options(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["identify", str(folder / "log.csv"), "--column", "position=enc1"]) == 0
-    assert "load with --unit position=deg" in capsys.readouterr().out
+    assert "--unit position=deg" in capsys.readouterr().out
 
 
 def test_a_column_may_be_left_out(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -70,29 +38,230 @@ def test_a_column_may_be_left_out(folder: Path, capsys: pytest.CaptureFixture[st
     assert "velocity: derived from the position" in capsys.readouterr().out
 
 
+def finding(*advice: Action) -> Finding:
+    return Finding(code="x", cause="the velocity lags the position", advice=advice)
+
+
+CALL = partial(Action, "call")
+
+
 @pytest.mark.parametrize(
-    ("sentence", "said"),
+    ("command", "action", "text"),
     [
         (
-            "load with units={'position': 'deg', 'velocity': 'deg/s'}",
+            "identify",
+            CALL({"units": {"position": "deg", "velocity": "deg/s"}}, function="load"),
             "load with --unit position=deg --unit velocity=deg/s",
         ),
         (
-            "leave the column out (columns={'velocity': None})",
-            "leave the column out (--column velocity=none)",
+            "identify",
+            CALL({"columns": {"velocity": None}}, function="load"),
+            "load with --column velocity=none",
+        ),
+        ("info", CALL({"columns": {"torque": 3}}, function="load"), "load with --column torque=3"),
+        ("info", CALL({"where": {"run": 1}}, function="load"), "load with --where run=1"),
+        (
+            "info",
+            CALL({"scale": {"torque": ...}}, function="load"),
+            "load with --scale torque=FACTOR",
         ),
         (
-            "or free the inertia with parameters={'inertia': {'vary': True}}",
-            "or free the inertia by vary = true under [parameters.inertia] in the joint file",
+            "info",
+            CALL({"columns": {"torque": "M mot"}}, function="load"),
+            "load with --column torque='M mot'",
         ),
-        ("add ripple=(2,) to the model", "add :ripple=2 to the name given to --model"),
-        ("use model='coulomb_viscous', or", "use --model coulomb_viscous, or"),
+        ("identify", CALL({"parameters": {"coulomb": 3.0}}), "identify with --set coulomb=3"),
         (
-            "x exists; go on with it by resume=True, or give another output=",
-            "x exists; go on with it by --resume, or give another --output",
+            "identify",
+            CALL({"parameters": {"coulomb": {"max": 50.0}}}),
+            "set max = 50 under [parameters.coulomb] in the joint file",
         ),
-        ("inertia = 2.5 and R² = 0.99", "inertia = 2.5 and R² = 0.99"),
+        (
+            "identify",
+            CALL({"parameters": {"inertia": {"vary": True}}}),
+            "set vary = true under [parameters.inertia] in the joint file",
+        ),
+        (
+            "identify",
+            CALL({"model": "stribeck:ripple=2"}),
+            "identify with --model stribeck:ripple=2",
+        ),
+        ("identify", CALL({"ripple": (2, 4)}), "identify with --model NAME:ripple=2,4"),
+        (
+            "identify",
+            CALL({"model": {"asymmetric": True}}),
+            "identify with --model NAME:asymmetric",
+        ),
+        ("identify", CALL({"residual": "torque"}), "identify with --residual torque"),
+        ("identify", CALL({"windows": 0.05}), "identify with --windows 0.05s"),
+        ("identify", CALL({"windows": 200}), "identify with --windows 200"),
+        (
+            "identify",
+            CALL({"search": {"method": "separable", "seed": 2, "threads": 1}}),
+            "identify with --method separable --seed 2 --threads 1",
+        ),
+        (
+            "identify",
+            CALL({"search": {"ga": {"population": 100}}}),
+            "identify with --population 100",
+        ),
+        (
+            "identify",
+            CALL({"ga": jid.GaOptions(generations=99)}),
+            "identify with --generations 99",
+        ),
+        (
+            "identify",
+            CALL({"torque_offset": False}, function="Joint"),
+            "set torque_offset = false under [model] in the joint file",
+        ),
+        (
+            "identify",
+            CALL({"gear_ratio": 101.0, "friction": "stribeck"}, function="Joint"),
+            'set gear_ratio = 101 under [drive], friction = "stribeck" under [model] in the joint file',
+        ),
+        (
+            "run",
+            CALL({"model": "stribeck:ripple=2"}),
+            'set friction = "stribeck" and ripple = [2] under [model] in the joint file',
+        ),
+        (
+            "run",
+            CALL({"parameters": {"coulomb": 3.0}}),
+            "set value = 3 under [parameters.coulomb] in the joint file",
+        ),
+        (
+            "run",
+            CALL({"columns": {"velocity": None}}, function="load"),
+            "load with --column velocity=none",
+        ),
+        ("identify", CALL({"model": "stribeck"}, text="it fits better"), "(it fits better)"),
+        ("identify", Action("record", text="slower motion"), "record slower motion"),
+        ("identify", Action("inspect", text="the encoder"), "inspect the encoder"),
+        ("simulate", CALL({"columns": {"velocity": None}}, function="load"), ""),
+        ("identify", CALL({"x": 1}, function="load_runs"), ""),
     ],
 )
-def test_each_rule(sentence: str, said: str) -> None:
-    assert spoken(sentence) == said
+def test_actions(command: str, action: Action, text: str) -> None:
+    sentence = Wording(command).of_finding(finding(action))
+    cause, separator, advice = sentence.partition("; ")
+    assert cause == "the velocity lags the position"
+    assert bool(separator) == bool(text), "what a command cannot do is not advised"
+    assert advice.endswith(text)
+    assert not text.startswith(("load", "identify", "set")) or advice == text
+
+
+def test_advice_extends_the_model_of_the_command_line() -> None:
+    wording = Wording("identify", model="stribeck:asymmetric")
+    more, less = CALL({"ripple": (2,)}), CALL({"model": {"asymmetric": False}})
+    text = wording.of_finding(finding(more, less))
+    assert text.endswith(
+        "identify with --model stribeck:asymmetric:ripple=2 or identify with --model stribeck"
+    )
+
+
+@pytest.mark.parametrize(
+    ("command", "error", "text"),
+    [
+        (
+            "identify",
+            InputError("known are ga, separable", argument="method", value="genetic"),
+            "--method genetic: known are ga, separable",
+        ),
+        (
+            "info",
+            InputError("no such header", argument="columns.torque", value="foo", place="a.csv"),
+            "a.csv: --column torque=foo: no such header",
+        ),
+        (
+            "info",
+            InputError("x", argument="columns['torque']", value="a b"),
+            "--column torque='a b': x",
+        ),
+        (
+            "info",
+            InputError("no such row", argument="where", value={"run": 3}),
+            "--where run=3: no s",
+        ),
+        (
+            "info",
+            InputError("no such row", argument="where", value={"a": 3, "b": 4}),
+            "--where: no s",
+        ),
+        (
+            "identify",
+            InputError("x", argument="GaOptions.population", value=1),
+            "--population 1: x",
+        ),
+        ("identify", InputError("x", argument="windows", value=0.05), "--windows 0.05s: x"),
+        ("sweep", InputError("x", argument="ga.population", value=1), "--grid ga.population=1: x"),
+        ("sweep", InputError("x", argument="resume", value=True), "--resume: x"),
+        ("sweep", InputError("x", argument="stderr", value=None), "--standard-errors none: x"),
+        (
+            "simulate",
+            InputError("x", argument="Sensors.torque_noise", value=-1.0),
+            "--sensor torque_noise=-1: x",
+        ),
+        ("simulate", InputError("x", argument="Pid.damping", value=-1.0), "--gain damping=-1: x"),
+        (
+            "simulate",
+            InputError("more than 0 is expected", argument="trajectory.cycle", value=0.0),
+            "--trajectory: cycle is 0: more than 0 is expected",
+        ),
+        (
+            "compare",
+            InputError("not known", argument="model", value="magic"),
+            "--model magic: not known",
+        ),
+        (
+            "identify",
+            InputError(
+                "a number is expected", argument="gear_ratio", value=None, place="joint.toml"
+            ),
+            "joint.toml: gear_ratio is none: a number is expected",
+        ),
+        (
+            "identify",
+            InputError("x", argument="model", value=(1, True), place="joint.toml"),
+            "joint.toml: model is 1, true: x",
+        ),
+        (
+            "info",
+            InputError("x", argument="recording", value=object()),
+            "recording is an object: x",
+        ),
+        ("info", InputError("x\n y"), "x y"),
+        ("info", InputError("x", remedy=("give y", "give z")), "x; give y or give z"),
+    ],
+)
+def test_errors(command: str, error: InputError, text: str) -> None:
+    grid = frozenset({"ga.population"}) if command == "sweep" else frozenset()
+    assert Wording(command, grid=grid).of_error(error).startswith(text)
+
+
+def test_an_error_in_an_option_of_the_model_shows_the_whole_model() -> None:
+    error = InputError("more than 0 is expected", argument="model.ripple", value=(-1,))
+    wording = Wording("identify", model="stribeck:ripple=-1")
+    assert wording.of_error(error) == "--model stribeck:ripple=-1: more than 0 is expected"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (None, "none"),
+        (True, "true"),
+        (3.0, "3"),
+        (0.05, "0.05"),
+        (np.float64(2.5), "2.5"),
+        (float("nan"), "nan"),
+        ((2, 4.0), "2, 4"),
+        ([], ""),
+        ({"velocity": None}, "velocity=none"),
+        (Path("a/b"), "a/b"),
+        ("two\nlines", "two lines"),
+        (jid.Joint(), "a joint"),
+        ("x" * 100, "x" * 59 + "…"),
+    ],
+)
+def test_values(value: object, text: str) -> None:
+    assert in_sentence(value) == text

@@ -7,6 +7,7 @@ from dataclasses import fields, is_dataclass
 from typing import Any
 
 from jointid.base.advice import Action
+from jointid.cli.arguments import number_or_text
 from jointid.cli.options import FLAGS, PLACEHOLDERS, option_of
 from jointid.cli.values import behind_option, in_joint_file
 
@@ -149,7 +150,7 @@ def _arguments(
             else:
                 options.append(option_with_value(option, "", value))
         else:
-            joint_file += [(_TABLES[name], name, value)] * (name in _TABLES)
+            joint_file += [(table, name, value) for table in _TABLES.get(name, "").split()]
     if changes and (option := option_of(command, "model")[0]):
         options.insert(0, f"{option} {model_text(model, changes)}")
     else:
@@ -162,7 +163,9 @@ def _read_model(text: str) -> dict[str, Any]:
     read: dict[str, Any] = {"name": name} if name else {}
     for option in options:
         key, separator, value = option.partition("=")
-        read[key] = value if separator else True
+        numbers = tuple(number_or_text(part) for part in value.split(","))
+        plain = any(isinstance(number, str) for number in numbers)
+        read[key] = (value if plain else numbers) if separator else True
     return read
 
 

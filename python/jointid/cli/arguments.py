@@ -49,7 +49,7 @@ def pair(text: str) -> tuple[str, str]:
     """Name and value of `name=value`."""
     name, separator, value = text.partition("=")
     if not separator or not name or not value:
-        raise argparse.ArgumentTypeError(f"'{text}' is not of the form name=value")
+        raise argparse.ArgumentTypeError(f"'{text}' is not of the form NAME=VALUE")
     return name, value
 
 
@@ -61,6 +61,22 @@ def number_or_text(text: str) -> Any:
         except ValueError:
             continue
     return text
+
+
+def whole(text: str) -> int:
+    """A whole number."""
+    value = number_or_text(text)
+    if not isinstance(value, int):
+        raise argparse.ArgumentTypeError(f"'{text}' is no whole number")
+    return value
+
+
+def decimal(text: str) -> float:
+    """A number."""
+    value = number_or_text(text)
+    if isinstance(value, str):
+        raise argparse.ArgumentTypeError(f"'{text}' is no number")
+    return float(value)
 
 
 def windows(text: str) -> int | float | str:

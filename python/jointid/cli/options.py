@@ -125,6 +125,8 @@ def option_of(command: str, argument: str) -> tuple[str, str]:
     ('--column', 'velocity')
     """
     table = OPTIONS.get(command, {})
+    if argument in table:
+        return table[argument], ""
     root, _, key = argument.replace("['", ".").replace("']", "").partition(".")
     root = _CLASSES.get(root, root)
     for name in (f"{root}.{key}" if key else root, f"ga.{root}"):

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from jointid.cli.arguments import (
     TEXT,
     pair,
     reading_arguments,
     several_recordings,
+    whole,
     whole_seed,
     windows,
 )
@@ -22,11 +23,31 @@ BAD_USAGE = 2
 """Exit code of a command line that cannot be used."""
 
 
+# What argparse says in the terms of a programmer.
+_PLAIN = {
+    "the following arguments are required:": "missing:",
+    "unrecognized arguments:": "unknown:",
+    "expected one argument": "a value is expected",
+    "expected at least one argument": "a value is expected",
+}
+
+
 class _Parser(argparse.ArgumentParser):
     """One line on bad usage, not a page."""
 
-    def error(self, message: str) -> None:  # type: ignore[override]
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options | {"exit_on_error": False})
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        try:
+            return super().parse_known_args(args, namespace)
+        except argparse.ArgumentError as error:
+            self.error(": ".join(filter(None, (error.argument_name, error.message))))
+
+    def error(self, message: str) -> NoReturn:
         sentence = " ".join(message.split())
+        for phrase, plain in _PLAIN.items():
+            sentence = sentence.replace(phrase, plain)
         self.exit(BAD_USAGE, f"{self.prog}: {sentence}; see {self.prog} --help\n")
 
 
@@ -81,8 +102,8 @@ def _add_identify(commands: Any) -> None:
         metavar="NAME[:OPTION[=VALUE]]",
         help="friction model: coulomb_viscous or stribeck; with options: stribeck:asymmetric:ripple=2,4",
     )
-    identify.add_argument("--population", type=int, help="individuals of the genetic algorithm")
-    identify.add_argument("--generations", type=int, help="generations of the genetic algorithm")
+    identify.add_argument("--population", type=whole, help="individuals of the genetic algorithm")
+    identify.add_argument("--generations", type=whole, help="generations of the genetic algorithm")
     identify.add_argument(
         "--checkpoint", type=Path, help="write the state of a long search to this file"
     )
@@ -112,7 +133,7 @@ def _add_compare(commands: Any) -> None:
         help="a model to compare; may be repeated; default: the models that suit the recording",
     )
     compare.add_argument(
-        "--folds", type=int, default=5, help="number of parts, held out in turn (default 5)"
+        "--folds", type=whole, default=5, help="number of parts, held out in turn (default 5)"
     )
     _output_arguments(compare)
 
@@ -181,7 +202,7 @@ def _identification_arguments(command: argparse.ArgumentParser, *, method: str) 
         help="seed; the same seed gives the same result (default 0)",
     )
     command.add_argument(
-        "--threads", type=int, default=0, help="number of threads (default 0: all cores)"
+        "--threads", type=whole, default=0, help="number of threads (default 0: all cores)"
     )
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
-from jointid.cli.arguments import number_or_text, pair
+from jointid.cli.arguments import decimal, number_or_text, pair
 
 if TYPE_CHECKING:
     from jointid.simulation.arguments import Controller
@@ -60,12 +60,12 @@ def scenario_arguments(command: argparse.ArgumentParser) -> None:
         )
     command.add_argument(
         "--control-period",
-        type=float,
+        type=decimal,
         default=1e-3,
         help="time between two commands [s] (default 0.001)",
     )
     command.add_argument(
-        "--duration", type=float, help="duration of the motion [s]; default: the trajectory's"
+        "--duration", type=decimal, help="duration of the motion [s]; default: the trajectory's"
     )
 
 
@@ -118,8 +118,9 @@ def _controller(name: str, gains: Sequence[tuple[str, str]]) -> Controller:
     chosen = _checked("gain", gains, usual)
     if "stiffness" in usual and not chosen.get("stiffness"):
         raise InputError(
-            f"the controller {name} needs a stiffness [N·m/rad], and usually damping",
-            argument="gain",
+            "it needs a stiffness [N·m/rad], and usually damping",
+            argument="controller",
+            value=name,
             remedy="add --gain stiffness=VALUE",
         )
     controller: Controller = kind(**chosen)
@@ -151,7 +152,7 @@ def trajectory_of(text: str) -> Trajectory:
         option, separator, value = part.partition("=")
         if not separator or not value:
             raise InputError(
-                f"{part} is not of the form name=value", argument="trajectory", value=text
+                f"{part} is not of the form NAME=VALUE", argument="trajectory", value=text
             )
         pairs.append((option, value))
     make = getattr(Trajectory, name)

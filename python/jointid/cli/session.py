@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
-from jointid.cli.arguments import TEXT, whole_seed
+from jointid.cli.arguments import TEXT, decimal, whole, whole_seed
 from jointid.cli.outputs import check_folder
 from jointid.cli.wording import Wording
 
@@ -39,7 +39,7 @@ def add_run(commands: Any) -> None:
         formatter_class=TEXT,
     )
     run.add_argument("joint", type=Path, help="joint file (.toml) with a table [session]")
-    run.add_argument("--cycles", type=int, default=2, help="number of cycles (default 2)")
+    run.add_argument("--cycles", type=whole, default=2, help="number of cycles (default 2)")
     run.add_argument(
         "--emulate", action="store_true", help="an emulated drive and joint on virtual time"
     )
@@ -54,7 +54,7 @@ def add_run(commands: Any) -> None:
         help="seed of emulated noise and search (default 0)",
     )
     run.add_argument(
-        "--threads", type=int, default=0, help="threads of the search (default 0: all cores)"
+        "--threads", type=whole, default=0, help="threads of the search (default 0: all cores)"
     )
     run.add_argument(
         "--output", type=Path, help="folder for recordings, frame logs, estimates and a picture"
@@ -84,7 +84,7 @@ def add_emulate(commands: Any) -> None:
     )
     emulate.add_argument("--channel", help="channel of the interface; default: from the joint file")
     emulate.add_argument(
-        "--duration", type=float, help="how long to run [s]; default: until Ctrl-C"
+        "--duration", type=decimal, help="how long to run [s]; default: until Ctrl-C"
     )
     emulate.add_argument(
         "--seed", type=whole_seed, default=0, help="seed of the sensor's noise (default 0)"
@@ -153,6 +153,8 @@ def run(arguments: argparse.Namespace) -> int:
                 agree=None if arguments.emulate or arguments.yes else _agreed_again,
             )
     except (SessionRefusedError, SessionStoppedError) as error:
+        if isinstance(error, SessionStoppedError) and error.stop.limit == "error":
+            raise  # a bug; the motor is off and the recording closed
         print(f"jointid run: {error}", file=sys.stderr)
         return STOPPED
     if arguments.save is not None:

@@ -18,6 +18,7 @@ from jointid.cli.arguments import (
     number_or_text,
     pair,
     reading_arguments,
+    whole,
     whole_seed,
 )
 from jointid.cli.outputs import check_folder
@@ -69,7 +70,7 @@ def add_sweep(commands: Any) -> None:
         help="a setting to sweep, such as ga.population, windows, method, sensors.torque_noise",
     )
     sweep.add_argument(
-        "--trials", type=int, default=10, help="trials of each combination (default 10)"
+        "--trials", type=whole, default=10, help="trials of each combination (default 10)"
     )
     for name, explanation in (
         ("--ga", "default, thesis or thesis_code"),
@@ -98,8 +99,8 @@ def add_sweep(commands: Any) -> None:
     sweep.add_argument(
         "--seed", type=whole_seed, default=0, help="seed of the first trial (default 0)"
     )
-    sweep.add_argument("--threads", type=int, help="number of threads; 0: all cores")
-    sweep.add_argument("--workers", type=int, help="number of processes that share the trials")
+    sweep.add_argument("--threads", type=whole, help="number of threads; 0: all cores")
+    sweep.add_argument("--workers", type=whole, help="number of processes that share the trials")
     sweep.add_argument("--output", type=Path, help="a .jsonl file to which each trial is added")
     sweep.add_argument("--resume", action="store_true", help="continue the file of --output")
     sweep.add_argument("--table", type=Path, help="file for the table: .csv or .parquet")
@@ -123,7 +124,9 @@ def sweep(arguments: argparse.Namespace) -> None:
             "a table is written as .csv or .parquet", argument="table", value=arguments.table
         )
     if (arguments.simulate is None) == (not arguments.recordings):
-        raise InputError("either recordings or --simulate JOINT are expected")
+        if arguments.recordings:
+            raise InputError("recordings were given, and --simulate; they exclude each other")
+        raise InputError("nothing to identify", remedy="give recordings or --simulate JOINT")
     fixed = fixed_values(arguments)
     options = {
         name: getattr(arguments, name)

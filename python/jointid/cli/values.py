@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Mapping
 from typing import Any
@@ -44,8 +45,7 @@ def _text(value: Any, separator: str) -> str:
         return separator.join(pairs)
     if isinstance(value, list | tuple | set | frozenset):
         return separator.join(_text(entry, " ") for entry in value)
-    kind = type(value)
-    if "__str__" not in {name for base in kind.__mro__[:-1] for name in vars(base)}:
-        name = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", kind.__name__).lower()
-        return f"{'an' if name[0] in 'aeio' else 'a'} {name}"
-    return str(value)
+    if isinstance(value, str | int | os.PathLike) or "__str__" in vars(type(value)):
+        return str(value)
+    name = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(value).__name__).lower()
+    return f"{'an' if name[0] in 'aeio' else 'a'} {name}"
