@@ -1,6 +1,5 @@
 """Wrong command lines: one line, no Python in it, and advice that runs when it is pasted."""
 
-import argparse
 import re
 import shlex
 import tomllib
@@ -8,27 +7,16 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from command_line_answers import OPTION, advised, answer, commands, python_in
 from wrong_files import write_wrong_files
 
 from jointid.cli.command_line import main
-from jointid.cli.options import FLAGS, OPTIONS, PLACEHOLDERS, option_of
-from jointid.cli.parser import command_parser
+from jointid.cli.options import FILES, FLAGS, OPTIONS, PLACEHOLDERS, option_of
 
 CORPUS: list[dict[str, Any]] = tomllib.loads(
     Path(__file__).with_name("wrong_command_lines.toml").read_text(encoding="utf-8")
 )["lines"]
 assert len(CORPUS) >= 100
-
-PYTHON = re.compile(
-    r"\{'|=\(|=\{|\['|\(\)|\b(?:True|False|None|argument|arguments|positional|keyword)\b"
-    r"|\b(?:jid|jointid|_core)\.[A-Za-z]|<class|\bobject at 0x|\b[A-Z][a-z]+(?:[A-Z][a-z]+)+\b"
-    r"|(?<![-\w=,:{} ])['\"]\w+['\"]=|Error\b|\bNOT_GIVEN\b"
-)
-# name=value that is no option's: a Python keyword. Options, and paths of a grid, stand behind `--…`.
-KEYWORD = re.compile(r"(?:^|[\s(])([a-z_]+)=(?=[\w'\"({\[.,;)]|$)")
-OPTION = re.compile(r"(--[a-z][a-z-]+)((?: (?!--|or\b|and\b|with\b)[^\s;,:)(]+)?)")
-# In these options values of the form name=value stand.
-NAMED = re.compile(r"--(?:column|unit|scale|where|set|gain|sensor|grid|trajectory|model) \S+")
 
 
 @pytest.fixture(scope="module")
@@ -36,51 +24,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("wrong")
     write_wrong_files(path)
     return path
-
-
-def answer(line: list[str], capsys: pytest.CaptureFixture[str]) -> tuple[int, str]:
-    """Exit code and standard error."""
-    try:
-        code = main(line)
-    except SystemExit as ended:  # the grammar's own refusals
-        code = int(str(ended.code))
-    return code, capsys.readouterr().err
-
-
-def python_in(sentence: str) -> str:
-    """What in a sentence is Python's, or nothing."""
-    found = PYTHON.search(sentence) or KEYWORD.search(NAMED.sub("", sentence))
-    return found[0] if found else ""
-
-
-def commands() -> dict[str, argparse.ArgumentParser]:
-    """The parsers by command."""
-    (action,) = (
-        each for each in command_parser()._actions if isinstance(each, argparse._SubParsersAction)
-    )
-    return dict(action.choices)
-
-
-def advised(sentence: str, line: list[str], fill: dict[str, str]) -> list[list[str]]:
-    """The alternatives that a sentence advises, each as the options to add."""
-    alternatives = []
-    for part in re.split(r" or |; |, ", sentence):
-        options: list[str] = []
-        for option, text in OPTION.findall(part):
-            value = text.strip()
-            typed = any(option == word for word in line) and (not value or value in line)
-            if typed:  # the sentence repeats what was typed
-                continue
-            if not value and option not in FLAGS:
-                value = fill.get(option, "")
-            elif option in fill and value.isupper():
-                value = fill[option]
-            for placeholder in (*set(PLACEHOLDERS.values()), "JOINT", "NAME"):
-                value = re.sub(rf"\b{placeholder}\b", fill.get(placeholder, placeholder), value)
-            options += [option, *([value.strip("'")] if value else [])]
-        if options:
-            alternatives.append(options)
-    return alternatives
 
 
 @pytest.mark.parametrize("entry", CORPUS, ids=[entry["line"] for entry in CORPUS])
@@ -114,6 +57,31 @@ def test_a_wrong_command_line_is_answered_in_one_line(
     assert alternatives or not entry.get("remedied"), f"no advice in: {text}"
 
 
+@pytest.mark.parametrize(
+    "line",
+    [
+        "identify encoder.csv --column position=enc1",
+        "identify good.csv",
+        "identify sensor.csv",
+        "identify sensor.csv --model coulomb_viscous --method separable",
+    ],
+)
+def test_warnings_advise_what_runs(
+    line: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(folder)
+    words = shlex.split(line)
+    assert main([*words, "--quiet"]) == 0
+    warnings = [
+        text for text in capsys.readouterr().out.splitlines() if text.startswith("warning (")
+    ]
+    for text in warnings:
+        assert not python_in(text), (python_in(text), text)
+        for options in advised(text, words, {"UNIT": "deg", "HEADER": "enc1", "NAME": "stribeck"}):
+            assert options[0] in commands()["identify"]._option_string_actions
+            assert answer([*words, *options, "--quiet"], capsys)[0] == 0, (options, text)
+
+
 @pytest.mark.parametrize("command", OPTIONS)
 def test_every_option_of_the_table_exists(command: str) -> None:
     known = commands()[command]._option_string_actions
@@ -125,6 +93,8 @@ def test_every_option_of_the_table_exists(command: str) -> None:
         assert (isinstance(metavar, str) and "=" in metavar and "[" not in metavar) == (
             option in PLACEHOLDERS
         ), option
+        if option in FILES and not flag:
+            assert known[option].type is Path, option
         assert option_of(command, argument) == (option, "")
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from jointid.base.advice import Action
 from jointid.cli.arguments import number_or_text
-from jointid.cli.options import FLAGS, PLACEHOLDERS, option_of
+from jointid.cli.options import FILES, FLAGS, PLACEHOLDERS, option_of
 from jointid.cli.values import behind_option, in_joint_file
 
 MODEL_FIELDS = frozenset(
@@ -61,7 +61,7 @@ def words_of_action(action: Action, command: str, model: str = "") -> str:
 
 def option_with_value(option: str, key: str, value: Any) -> str:
     """An option as it is typed, e.g. `--column velocity=none`."""
-    placeholder = PLACEHOLDERS.get(option, "VALUE")
+    placeholder = PLACEHOLDERS.get(option) or FILES.get(option, "VALUE")
     if option == "--windows" and isinstance(value, float):
         value = f"{behind_option(value)}s"
     if value is ... or value == "...":
@@ -147,6 +147,8 @@ def _arguments(
         elif option := option_of(command, name)[0]:
             if isinstance(value, Mapping):
                 options += [option_with_value(option, key, entry) for key, entry in value.items()]
+            elif name == "models" and not isinstance(value, str):
+                options += [f"{option} {model}" for model in value]
             else:
                 options.append(option_with_value(option, "", value))
         else:

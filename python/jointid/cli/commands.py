@@ -1,4 +1,4 @@
-"""What the commands of the command line do. Everything heavy is imported inside."""
+"""The commands `demo`, `identify`, `compare`, `report` and `info`; heavy imports stay inside the functions."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def demo(arguments: argparse.Namespace) -> None:
         found = estimate.parameters[name]
         difference = 100.0 * (found.value / nominal - 1.0)
         print(
-            f"{name}: {found.value:.4g} {found.unit}, the robot's authors give {nominal:g} ({difference:+.1f} %)"
+            f"{name}: {found.value:.4g} {found.unit}, published value {nominal:g} ({difference:+.1f} %)"
         )
     print(f"\nreport: {page}")
 

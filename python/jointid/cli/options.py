@@ -44,6 +44,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         **{name: option for name, option in _IDENTIFICATION.items() if name != "torque_hold"},
         **_SCENARIO,
         "simulate": "--simulate",
+        "subject": "--simulate",
         "grid": "--grid",
         "ga": "--ga",
         "trials": "--trials",
@@ -86,6 +87,14 @@ PLACEHOLDERS: Mapping[str, str] = {
     "--grid": "VALUE",
 }
 """Options of the form NAME=VALUE, and what stands for a value that the user has to choose."""
+
+FILES: Mapping[str, str] = {
+    **dict.fromkeys(("--joint", "--believe", "--simulate"), "JOINT"),
+    **dict.fromkeys(
+        ("--output", "--save", "--report", "--table", "--plot", "--checkpoint", "--resume"), "FILE"
+    ),
+}
+"""Options that take a file, and what stands for one that the user has to choose."""
 
 FLAGS = frozenset({"--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run"})
 """Options that may stand without a value."""

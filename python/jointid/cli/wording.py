@@ -103,6 +103,8 @@ class Wording:
 def _typed(option: str, key: str, value: Any) -> str:
     """An option as the user typed it, so far as that is known."""
     if option in PLACEHOLDERS and not key:
+        if isinstance(value, str):  # only the name behind the option
+            return f"{option} {in_sentence(value)}"
         if not isinstance(value, dict) or len(value) != 1:
             return option
         ((key, value),) = value.items()
