@@ -176,7 +176,7 @@ def test_sweep_simulates(folder: Path, capsys: Printed) -> None:
         ([WELL, "--grid", "windows"], "not of the form NAME=VALUE"),
         ([WELL, "--table", "x.xlsx"], "written as .csv or .parquet"),
         ([WELL, "--workers", "0"], "--workers 0: 1 to 1024"),
-        ([WELL, "--resume"], "give it as --output"),
+        ([WELL, "--resume"], "--resume"),
         ([WELL, "--ga", "best"], "ga must be"),
         ([WELL, "--trials", "0"], "trials must be"),
     ],

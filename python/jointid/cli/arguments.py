@@ -16,14 +16,21 @@ _MOST_WINDOWS = 1_000_000_000
 TEXT = argparse.RawDescriptionHelpFormatter
 
 
-def several_recordings(command: argparse.ArgumentParser) -> None:
+def file_kinds() -> str:
+    """The endings of the files that can be read, for a sentence."""
+    return ".csv, .csv.gz, .npz, .mat or .parquet"
+
+
+def several_recordings(
+    command: argparse.ArgumentParser, *, nargs: str = "+", use: str = "read in the same way"
+) -> None:
     """Add the recordings and how they are read."""
     command.add_argument(
         "recordings",
         type=Path,
-        nargs="+",
+        nargs=nargs,
         metavar="recording",
-        help="recording: .csv, .csv.gz, .npz, .mat or .parquet; several are read in the same way",
+        help=f"recording: {file_kinds()}; several are {use}",
     )
     reading_arguments(command)
 

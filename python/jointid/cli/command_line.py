@@ -38,11 +38,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     if arguments.command is None:
         grammar.print_help()
         return DONE
-    from jointid.cli import commands as cli_commands
+    from jointid.cli.commands import COMMANDS
 
     try:
         check_distinct(arguments)
-        code = getattr(cli_commands, arguments.command)(arguments)
+        code = COMMANDS[arguments.command](arguments)
     except KeyboardInterrupt as stop:
         reason = f": {stop}" if str(stop) else ""
         print(f"jointid: interrupted{reason}", file=sys.stderr)

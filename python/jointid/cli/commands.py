@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,8 +14,6 @@ from jointid.cli.session import emulate, run
 from jointid.cli.simulation import simulate
 from jointid.cli.study import sweep
 from jointid.cli.wording import Wording
-
-__all__ = ["compare", "demo", "emulate", "identify", "info", "report", "run", "simulate", "sweep"]
 
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
@@ -190,3 +189,17 @@ def _contents(recording: Recording) -> dict[str, Any]:
             for signal in recording.signals
         },
     }
+
+
+COMMANDS: dict[str, Callable[[argparse.Namespace], int | None]] = {
+    "demo": demo,
+    "identify": identify,
+    "compare": compare,
+    "simulate": simulate,
+    "sweep": sweep,
+    "run": run,
+    "emulate": emulate,
+    "report": report,
+    "info": info,
+}
+"""By name; None stands for the exit code 0."""

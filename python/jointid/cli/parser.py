@@ -8,6 +8,7 @@ from typing import Any, NoReturn
 
 from jointid.cli.arguments import (
     TEXT,
+    file_kinds,
     pair,
     reading_arguments,
     several_recordings,
@@ -167,9 +168,7 @@ def _add_info(commands: Any) -> None:
         epilog="example:\n  jointid info run.csv",
         formatter_class=TEXT,
     )
-    info.add_argument(
-        "recording", type=Path, help="recording: .csv, .csv.gz, .npz, .mat or .parquet"
-    )
+    info.add_argument("recording", type=Path, help=f"recording: {file_kinds()}")
     reading_arguments(info)
     info.add_argument("--json", action="store_true", help="print JSON")
 

@@ -17,9 +17,10 @@ from jointid.cli.arguments import (
     model_of,
     number_or_text,
     pair,
-    reading_arguments,
+    several_recordings,
     whole,
     whole_seed,
+    windows,
 )
 from jointid.cli.outputs import check_folder
 from jointid.cli.scenario import scenario_arguments, scenario_of
@@ -45,14 +46,7 @@ def add_sweep(commands: Any) -> None:
         ),
         formatter_class=TEXT,
     )
-    sweep.add_argument(
-        "recordings",
-        type=Path,
-        nargs="*",
-        metavar="recording",
-        help="recording: .csv, .csv.gz, .npz, .mat or .parquet; several are fitted as one",
-    )
-    reading_arguments(sweep)
+    several_recordings(sweep, nargs="*", use="fitted as one")
     sweep.add_argument(
         "--simulate",
         type=Path,
@@ -79,7 +73,11 @@ def add_sweep(commands: Any) -> None:
         ("--residual", "sensor or torque"),
     ):
         sweep.add_argument(name, help=explanation)
-    sweep.add_argument("--windows", type=number_or_text, help="number (400) or duration (0.05) [s]")
+    sweep.add_argument(
+        "--windows",
+        type=windows,
+        help="number of windows (default 400), duration (0.05s) or cumulative",
+    )
     sweep.add_argument(
         "--set",
         action="append",
