@@ -73,7 +73,9 @@ def test_warnings_advise_what_runs(
     words = shlex.split(line)
     assert main([*words, "--quiet"]) == 0
     warnings = [
-        text for text in capsys.readouterr().out.splitlines() if text.startswith("warning (")
+        text
+        for text in capsys.readouterr().out.splitlines()
+        if text.startswith(("info (", "warning (", "blocking ("))
     ]
     for text in warnings:
         assert not python_in(text), (python_in(text), text)

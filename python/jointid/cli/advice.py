@@ -197,12 +197,14 @@ def _joint_fields(arguments: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]
 
 
 def _in_joint_file(entries: list[tuple[str, str, Any]]) -> str:
-    tables: dict[str, list[str]] = {}
+    """What to write into the joint file, table by table, and what to take out of it."""
+    tables: dict[tuple[bool, str], list[str]] = {}
     for table, key, value in entries:
         text = "VALUE" if value is ... or value == "..." else in_joint_file(value)
-        tables.setdefault(table, []).append(f"{key} = {text}")
+        line = key if value is None else f"{key} = {text}"
+        tables.setdefault((value is None, table), []).append(line)
     parts = [
-        f"{' and '.join(lines)}{f' under [{table}]' if table else ''}"
-        for table, lines in tables.items()
+        f"{'remove' if removed else 'set'} {' and '.join(lines)}{f' under [{table}]' if table else ''}"
+        for (removed, table), lines in tables.items()
     ]
-    return f"set {', '.join(parts)} in the joint file"
+    return f"{' and '.join(parts)} in the joint file"

@@ -48,6 +48,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "grid": "--grid",
         "ga": "--ga",
         "trials": "--trials",
+        "standard_errors": "--standard-errors",
         "stderr": "--standard-errors",
         "tracking": "--tracking",
         "workers": "--workers",
@@ -137,6 +138,8 @@ def option_of(command: str, argument: str) -> tuple[str, str]:
     if argument in table:
         return table[argument], ""
     root, _, key = argument.replace("['", ".").replace("']", "").partition(".")
+    if root in ("search", "Search") and key:
+        return option_of(command, key)
     root = _CLASSES.get(root, root)
     for name in (f"{root}.{key}" if key else root, f"ga.{root}"):
         if name in table:

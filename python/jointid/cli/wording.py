@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
 from jointid.base.errors import NOT_GIVEN, InputError
-from jointid.cli.advice import MODEL_FIELDS, model_text, option_with_value, words_of_action
-from jointid.cli.options import FLAGS, PLACEHOLDERS, option_of
+from jointid.cli.advice import option_with_value, words_of_action
+from jointid.cli.options import FLAGS, OPTIONS, PLACEHOLDERS, option_of
 from jointid.cli.values import in_sentence
 
 if TYPE_CHECKING:
@@ -51,53 +51,61 @@ class Wording:
         """An error in one line: where, what, why, and what to do."""
         if type(error).__str__ is not InputError.__str__:  # it words itself
             return " ".join(str(error).split())
-        subject = self._subject(error)
-        sentence = f"{subject}: {error.reason}" if subject else error.reason
-        place = f"{error.place}: " if error.place else ""
+        place, name = self._located(error)
+        subject = self._subject(place, name, error.value)
+        sentence = ": ".join(filter(None, (place, subject, error.reason)))
         remedies = self._alternatives(error.remedy)
-        return " ".join(f"{place}{sentence}{f'; {remedies}' if remedies else ''}".split())
+        return " ".join(f"{sentence}{f'; {remedies}' if remedies else ''}".split())
 
-    def of_finding(self, finding: Any) -> str:
-        """A finding in one line: its cause, and what to do."""
-        if not hasattr(finding, "advice"):
-            return str(finding)
-        advice = self._alternatives(finding.advice)
-        return f"{finding.cause}; {advice}" if advice else str(finding.cause)
+    def of_action(self, action: Action) -> str:
+        """What to do, with the command's options; empty if the command line cannot do it."""
+        return words_of_action(action, self.command, self.model)
 
     def of_report(self, estimate: Estimate) -> str:
-        """An estimate's report as text, its findings in the words of the command."""
+        """An estimate's report as text, the advice of its findings in the words of the command."""
         from jointid.estimate.tables import text_report
 
-        return text_report(estimate, finding_text=self.of_finding)
+        return text_report(estimate, action=self.of_action)
 
     def _alternatives(self, remedies: tuple[str | Action, ...]) -> str:
-        texts = [
-            each if isinstance(each, str) else words_of_action(each, self.command, self.model)
-            for each in remedies
-        ]
+        texts = [each if isinstance(each, str) else self.of_action(each) for each in remedies]
         return " or ".join(text for text in texts if text)
 
-    def _subject(self, error: InputError) -> str:
+    def _located(self, error: InputError) -> tuple[str, str]:
+        """Where it stands and what it is about; a place that has an option is part of the name."""
+        place, name = error.place, error.argument
+        options = OPTIONS.get(self.command, {})
+        parameter = place.removeprefix("parameter '").removesuffix("'")
+        if place in options and name:
+            return "", f"{place}.{name}"
+        if parameter != place and name == "value" and "parameters" in options:
+            return "", f"parameters.{parameter}"
+        return place, name
+
+    def _subject(self, place: str, name: str, value: Any) -> str:
         """What cannot be used: an option with its value, a key of a file, or a plain name."""
-        name, value = error.argument, error.value
         known = value is not NOT_GIVEN
         if not name:
             return in_sentence(value) if known else ""
-        if not _OWN_FILE.search(error.place):
+        if not _OWN_FILE.search(place):
             if name in self.grid:
                 return option_with_value("--grid", name, value) if known else f"--grid {name}"
-            field = name.removeprefix("model.")
-            if (
-                field in MODEL_FIELDS
-                and known
-                and self.model
-                and option_of(self.command, "model")[0]
-            ):
-                return f"--model {model_text(self.model, {field: value})}"
+            if subject := self._in_model(name):
+                return subject
             option, key = option_of(self.command, name)
             if option:
                 return _typed(option, key, value)
         return f"{name} is {in_sentence(value)}" if known else name
+
+    def _in_model(self, name: str) -> str:
+        """The model as it was typed, and which of its options is meant, if it is one of those."""
+        field = name.removeprefix("model.")
+        stated = re.split("[:=]", self.model)
+        if not self.model or "model" not in OPTIONS.get(self.command, {}):
+            return ""
+        if field in ("name", "model"):
+            return f"--model {in_sentence(self.model)}"
+        return f"--model {in_sentence(self.model)}, {field}" if field in stated else ""
 
 
 def _typed(option: str, key: str, value: Any) -> str:

@@ -130,7 +130,8 @@ class Warned:
     parameters: tuple[str, ...]
     message: str
 
-    def __str__(self) -> str:
+    def worded(self, _: object) -> str:
+        """The sentence; its advice is not data yet."""
         return self.message
 
 

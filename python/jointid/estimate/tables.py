@@ -2,10 +2,10 @@
 
 from collections.abc import Callable
 from html import escape
-from typing import Any
 
 import numpy as np
 
+from jointid.base.advice import Action
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import number, percent, two_digits
@@ -86,8 +86,8 @@ def strongest_correlation(estimate: Estimate) -> str:
     return f"strongest {estimate.correlation[first, second]:.2f}, between {pair}"
 
 
-def text_report(estimate: Estimate, finding_text: Callable[[Any], str] = str) -> str:
-    """The estimate as text; a face may bring its own wording of the findings."""
+def text_report(estimate: Estimate, action: Callable[[Action], str] = str) -> str:
+    """The estimate as text; a face may bring its own wording of the advice."""
     table = [_HEAD, *rows(estimate)]
     widths = [max(len(row[column]) for row in table) for column in range(len(_HEAD))]
     lines = [f"jointid estimate — {estimate.joint.name or 'joint'}", ""]
@@ -106,7 +106,7 @@ def text_report(estimate: Estimate, finding_text: Callable[[Any], str] = str) ->
     lines.append("")
     if not estimate.warnings:
         lines.append("no warnings")
-    lines += [f"warning ({w.code}): {finding_text(w)}" for w in estimate.warnings]
+    lines += [f"warning ({w.code}): {w.worded(action)}" for w in estimate.warnings]
     return "\n".join(lines)
 
 
