@@ -16,7 +16,7 @@ PYTHON = re.compile(
 )
 # name=value that is no option's: a Python keyword. Options, and paths of a grid, stand behind `--…`.
 KEYWORD = re.compile(r"(?:^|[\s(])([a-z_]+)=(?=[\w'\"({\[.,;)]|$)")
-OPTION = re.compile(r"(--[a-z][a-z-]+)((?: (?!--|or\b|and\b|with\b)[^\s;,:)(]+)?)")
+OPTION = re.compile(r"(--[a-z][a-z-]+)((?: (?!--|or\b|and\b|with\b)(?:[^\s;,:)(]|[:,](?=\S))+)?)")
 # In these options values of the form name=value stand.
 NAMED = re.compile(r"--(?:column|unit|scale|where|set|gain|sensor|grid|trajectory|model) \S+")
 

@@ -177,8 +177,8 @@ def test_sweep_simulates(folder: Path, capsys: Printed) -> None:
         ([WELL, "--table", "x.xlsx"], "written as .csv or .parquet"),
         ([WELL, "--workers", "0"], "--workers 0: 1 to 1024"),
         ([WELL, "--resume"], "--resume"),
-        ([WELL, "--ga", "best"], "ga must be"),
-        ([WELL, "--trials", "0"], "trials must be"),
+        ([WELL, "--ga", "best"], "thesis_code"),
+        ([WELL, "--trials", "0"], "trials"),
     ],
 )
 def test_sweep_refuses_in_a_line(words: list[str], text: str, capsys: Printed) -> None:
