@@ -79,7 +79,7 @@ def test_identify_saves_into_the_joint_file(tmp_path: Path) -> None:
     assert report.stat().st_size > 50_000
 
 
-def test_info_tells_what_a_recording_holds(capsys: pytest.CaptureFixture[str]) -> None:
+def test_info_shows_the_contents_of_a_recording(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["info", WELL, "--json"]) == 0
     facts = json.loads(capsys.readouterr().out)
     assert facts["samples"] == 12000
@@ -113,9 +113,9 @@ def test_report_draws_a_saved_estimate(tmp_path: Path, capsys: pytest.CaptureFix
     assert str(page) in capsys.readouterr().out
     assert page.read_text().count("data:image/png;base64,") == 2
     assert main(["report", str(saved), "--output", str(page), "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["report"] == str(page)
-    assert "structured_residual" in told["warnings"]
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["report"] == str(page)
+    assert "structured_residual" in printed["warnings"]
 
 
 def test_report_is_written_beside_by_default(
@@ -138,10 +138,10 @@ def test_compare_prints_the_winner_and_saves_it(
     assert "winner: stribeck" in capsys.readouterr().out
     assert jid.Estimate.from_json(saved.read_text()).settings["model"] == "stribeck"
     assert main([*arguments, "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["kind"] == "jointid comparison"
-    assert told["winner"] == "stribeck"
-    assert [len(entry["fold_scores"]) for entry in told["rows"]] == [4, 4]
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["kind"] == "jointid comparison"
+    assert printed["winner"] == "stribeck"
+    assert [len(entry["fold_scores"]) for entry in printed["rows"]] == [4, 4]
 
 
 def test_compare_holds_out_whole_recordings(

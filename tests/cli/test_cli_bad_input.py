@@ -171,14 +171,14 @@ def bad_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, estimate_text: st
     (tmp_path / "deep.json").write_text("[" * 100_000)
 
 
-@pytest.mark.parametrize(("arguments", "told"), BAD.values(), ids=BAD.keys())
+@pytest.mark.parametrize(("arguments", "text"), BAD.values(), ids=BAD.keys())
 def test_bad_input_ends_in_one_helpful_line(
-    arguments: list[str], told: str, bad_files: None, capsys: pytest.CaptureFixture[str]
+    arguments: list[str], text: str, bad_files: None, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(arguments) == 2
     lines = capsys.readouterr().err.strip().splitlines()
     assert len(lines) == 1
-    assert told in lines[0]
+    assert text in lines[0]
     assert len(lines[0]) < 400, "a sentence, not a dump"
 
 
@@ -250,13 +250,13 @@ def test_no_output_is_written_over_an_input(
         (tmp_path / name).write_text(f"{name}: to be kept", encoding="utf-8")
     asked = [str(tmp_path / files[word]) if word in files else word for word in words]
     assert main(asked) == 2
-    told = capsys.readouterr().err
-    assert "written over" in told
-    assert told.count("\n") == 1
+    text = capsys.readouterr().err
+    assert "would overwrite it" in text
+    assert text.count("\n") == 1
     for name in files.values():
         assert (tmp_path / name).read_text(encoding="utf-8") == f"{name}: to be kept"
 
 
 def test_a_report_is_a_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["identify", "run.csv", "--report", str(tmp_path / "report.pdf")]) == 2
-    assert "report.pdf: a report is a page, .html" in capsys.readouterr().err
+    assert "report.pdf: a report is an HTML page" in capsys.readouterr().err

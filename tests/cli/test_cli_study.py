@@ -48,14 +48,14 @@ def test_an_interrupted_sweep_says_how_much_is_done_and_how_to_go_on(
     with monkeypatch.context() as patch:
         patch.setattr(StudyProgress, "__call__", interrupted)
         assert main(words) == 130
-    told = capsys.readouterr().err
-    assert told.startswith("jointid: interrupted: ")
-    assert "of 6 trials were done" in told
-    assert told.count("\n") == 1
+    text = capsys.readouterr().err
+    assert text.startswith("jointid: interrupted: ")
+    assert "of 6 trials were done" in text
+    assert text.count("\n") == 1
     if not kept:
-        assert "lost; --output study.jsonl keeps" in told
+        assert "lost; --output study.jsonl keeps each trial" in text
         return
-    assert f"in {path}; the same command with --resume goes on" in told
+    assert f"in {path}; the same command with --resume continues" in text
     assert main([*words, "--resume"]) == 0
     assert len(jid.Study.load(path).rows) == 6
 
@@ -101,15 +101,18 @@ def test_the_recording_is_that_of_the_library(
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "text"),
     [
         (["--trajectory", "helix"], "neither a file nor one of"),
-        (["--trajectory", "sine:amplitude"], "not of the form name=value"),
-        (["--trajectory", "sine:amplitude=1,hertz=1,duration=1"], "has no option 'hertz'"),
+        (["--trajectory", "sine:amplitude"], "not of the form NAME=VALUE"),
+        (["--trajectory", "sine:amplitude=1,hertz=1,duration=1"], "there is no hertz"),
         (["--controller", "pdd"], "did you mean 'pd'"),
-        (["--controller", "pd"], "needs --gain stiffness"),
-        (["--controller", "pd", "--gain", "stiffness=1", "--believe", "x"], "compensates nothing"),
-        (["--gain", "bandwith=3"], "no field 'bandwith'"),
+        (["--controller", "pd"], "add --gain stiffness=VALUE"),
+        (
+            ["--controller", "pd", "--gain", "stiffness=1", "--believe", "x"],
+            "compensates no friction",
+        ),
+        (["--gain", "bandwith=3"], "did you mean 'bandwidth'"),
         (["--gain", "bandwidth=3", "--gain", "bandwidth=4"], "given twice"),
         (["--sensor", "torque_noise=-1"], "torque_noise"),
         (["--control-period", "0"], "more than 0"),
@@ -119,15 +122,15 @@ def test_the_recording_is_that_of_the_library(
     ],
 )
 def test_simulate_refuses_in_a_line(
-    folder: Path, words: list[str], told: str, capsys: Printed
+    folder: Path, words: list[str], text: str, capsys: Printed
 ) -> None:
     assert main(["simulate", str(folder / "true.toml"), *words]) == 2
     error = capsys.readouterr().err
-    assert told in error
+    assert text in error
     assert error.count("\n") == 1
 
 
-def test_simulate_says_what_a_joint_file_lacks(folder: Path, capsys: Printed) -> None:
+def test_simulate_names_the_missing_values(folder: Path, capsys: Printed) -> None:
     assert main(["simulate", str(folder / "unknown.toml")]) == 2
     assert "has no value" in capsys.readouterr().err
 
@@ -164,26 +167,26 @@ def test_sweep_simulates(folder: Path, capsys: Printed) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "text"),
     [
-        ([], "give recordings, or --simulate"),
-        ([WELL, "--simulate", "true.toml"], "one of the two"),
+        ([], "give recordings or --simulate"),
+        ([WELL, "--simulate", "true.toml"], "exclude each other"),
         ([WELL, "--grid", "windows=10", "--grid", "windows=20"], "given twice"),
         ([WELL, "--grid", "windos=10"], "did you mean"),
-        ([WELL, "--grid", "windows"], "not of the form name=value"),
+        ([WELL, "--grid", "windows"], "not of the form NAME=VALUE"),
         ([WELL, "--table", "x.xlsx"], "written as .csv or .parquet"),
-        ([WELL, "--workers", "0"], "--workers must be 1 to"),
-        ([WELL, "--resume"], "give it as --output"),
-        ([WELL, "--ga", "best"], "ga must be"),
-        ([WELL, "--trials", "0"], "trials must be"),
+        ([WELL, "--workers", "0"], "--workers 0: 1 to 1024"),
+        ([WELL, "--resume"], "--resume"),
+        ([WELL, "--ga", "best"], "thesis_code"),
+        ([WELL, "--trials", "0"], "trials"),
     ],
 )
-def test_sweep_refuses_in_a_line(words: list[str], told: str, capsys: Printed) -> None:
+def test_sweep_refuses_in_a_line(words: list[str], text: str, capsys: Printed) -> None:
     try:
         code = main(["sweep", *words])
     except SystemExit as ended:  # the grammar's own refusals
         code = int(str(ended.code))
     assert code == 2
     error = capsys.readouterr().err
-    assert told in error
+    assert text in error
     assert error.count("\n") == 1

@@ -98,8 +98,8 @@ def test_the_command_writes_runs_and_saves_the_bench(
 @pytest.mark.parametrize(
     ("words", "code", "told"),
     [
-        (["--emulate", "--cycles", "0"], 2, "--cycles is 0"),
-        (["--emulate", "--save", "x.csv"], 2, "a joint file is a .toml"),
+        (["--emulate", "--cycles", "0"], 2, "--cycles 0: at least 1"),
+        (["--emulate", "--save", "x.csv"], 2, "a joint file ends in .toml"),
         (["--emulate", "--output", "no/such/folder"], 2, "no/such"),
         (["--emulate", "--dry-run"], 0, ""),
         (["--cycles", "1"], 3, "--yes"),

@@ -3,16 +3,32 @@
 from __future__ import annotations
 
 import sys
+import traceback
 from collections.abc import Sequence
 
-from jointid.cli.arguments import BAD_USAGE, check_distinct, parser
+from jointid.base.errors import InputError
+from jointid.cli.outputs import check_distinct
+from jointid.cli.parser import BAD_USAGE, command_parser
+from jointid.cli.wording import Wording
 
-DONE, BAD_INPUT, INTERRUPTED = 0, BAD_USAGE, 130
+DONE, BAD_INPUT, BUG, INTERRUPTED = 0, BAD_USAGE, 70, 130
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line; returns the exit code (0 done, 2 bad input, 3 stopped, 130 on Ctrl-C)."""
-    grammar = parser()
+    """Run the command line.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        Default: those of the process.
+
+    Returns
+    -------
+    int
+        The exit code: 0 done, 2 bad input, 3 a session stopped or refused, 70 a bug of jointid,
+        130 interrupted by Ctrl-C.
+    """
+    grammar = command_parser()
     arguments = grammar.parse_args(argv)
     if arguments.version:
         from jointid import __version__
@@ -22,27 +38,32 @@ def main(argv: Sequence[str] | None = None) -> int:
     if arguments.command is None:
         grammar.print_help()
         return DONE
-    from jointid.cli import commands as cli_commands
+    from jointid.cli.commands import COMMANDS
 
     try:
         check_distinct(arguments)
-        code = getattr(cli_commands, arguments.command)(arguments)
+        code = COMMANDS[arguments.command](arguments)
     except KeyboardInterrupt as stop:
-        told = f": {stop}" if str(stop) else ""
-        print(f"jointid: interrupted{told}", file=sys.stderr)
+        reason = f": {stop}" if str(stop) else ""
+        print(f"jointid: interrupted{reason}", file=sys.stderr)
         return INTERRUPTED
     except BrokenPipeError:  # the reader of our output left: not our failure
         sys.stderr.close()
         return DONE
-    except (ValueError, TypeError, OSError) as error:
-        print(f"jointid {arguments.command}: {_one_line(error)}", file=sys.stderr)
+    except InputError as error:
+        sentence = Wording.of(arguments).of_error(error)
+        print(f"jointid {arguments.command}: {sentence}", file=sys.stderr)
         return BAD_INPUT
+    except Exception as error:
+        if isinstance(error, OSError) and error.filename is not None:  # a file of the user's
+            reason = error.strerror or str(error)
+            print(f"jointid {arguments.command}: {error.filename}: {reason}", file=sys.stderr)
+            return BAD_INPUT
+        traceback.print_exception(error)
+        print(
+            f"jointid {arguments.command}: this is a bug in jointid, not bad input; please report it "
+            "with the lines above",
+            file=sys.stderr,
+        )
+        return BUG
     return DONE if code is None else int(code)
-
-
-def _one_line(error: Exception) -> str:
-    if isinstance(error, OSError) and error.filename is not None:
-        return f"{error.filename}: {error.strerror}"
-    from jointid.cli.words import spoken
-
-    return spoken(" ".join(str(error).split()))

@@ -1,19 +1,19 @@
-"""What the commands of the command line do. Everything heavy is imported inside."""
+"""The commands `demo`, `identify`, `compare`, `report` and `info`; heavy imports stay inside the functions."""
 
 from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointid.cli.arguments import check_outputs, check_page, fixed_values, load_all
+from jointid.cli.arguments import fixed_values, load_all
+from jointid.cli.outputs import check_outputs, check_page
 from jointid.cli.session import emulate, run
 from jointid.cli.simulation import simulate
 from jointid.cli.study import sweep
-from jointid.cli.words import spoken
-
-__all__ = ["compare", "demo", "emulate", "identify", "info", "report", "run", "simulate", "sweep"]
+from jointid.cli.wording import Wording
 
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
@@ -36,13 +36,13 @@ def demo(arguments: argparse.Namespace) -> None:
     if arguments.json:
         print(estimate.to_json())
         return
-    print(estimate.report())
+    print(Wording.of(arguments).of_report(estimate))
     print()
     for name, nominal in demonstration.nominal.items():
         found = estimate.parameters[name]
         difference = 100.0 * (found.value / nominal - 1.0)
         print(
-            f"{name}: {found.value:.4g} {found.unit}, the robot's authors give {nominal:g} ({difference:+.1f} %)"
+            f"{name}: {found.value:.4g} {found.unit}, published value {nominal:g} ({difference:+.1f} %)"
         )
     print(f"\nreport: {page}")
 
@@ -84,7 +84,7 @@ def identify(arguments: argparse.Namespace) -> None:
             torque_hold=arguments.torque_hold,
         )
     _write(estimate, arguments)
-    print(estimate.to_json() if arguments.json else spoken(estimate.report()))
+    print(estimate.to_json() if arguments.json else Wording.of(arguments).of_report(estimate))
 
 
 def compare(arguments: argparse.Namespace) -> None:
@@ -111,43 +111,31 @@ def compare(arguments: argparse.Namespace) -> None:
             callback=progress,
         )
     _write(comparison.estimate, arguments)
-    print(comparison.to_json() if arguments.json else spoken(comparison.report()))
+    print(comparison.to_json() if arguments.json else comparison.report())
 
 
 def report(arguments: argparse.Namespace) -> None:
     """Write the HTML report of a saved estimate."""
-    from jointid.base.errors import InputError
     from jointid.estimate.estimate import Estimate
     from jointid.report.html import save_report
 
-    path = arguments.estimate
-    check_page("--output", arguments.output)
-    try:
-        estimate = Estimate.from_json(path.read_text(encoding="utf-8"))
-        page = save_report(estimate, arguments.output)
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from error
-    except (UnicodeDecodeError, RecursionError) as error:
-        raise InputError(
-            f"{path}: this is no estimate; one is saved with identify --save estimate.json"
-        ) from error
-    except (ArithmeticError, AttributeError, LookupError, TypeError) as error:
-        told = f"{type(error).__name__} {error}"
-        raise InputError(f"{path}: the estimate's JSON is damaged: {told}") from error
+    check_page("output", arguments.output)
+    estimate = Estimate.load(arguments.estimate)
+    page = save_report(estimate, arguments.output)
     if arguments.json:
-        facts = {"report": str(page), "warnings": [warning.code for warning in estimate.warnings]}
-        print(json.dumps(facts, indent=1, ensure_ascii=False))
+        summary = {"report": str(page), "warnings": [warning.code for warning in estimate.warnings]}
+        print(json.dumps(summary, indent=1, ensure_ascii=False))
     else:
         print(f"report: {page}")
 
 
 def info(arguments: argparse.Namespace) -> None:
-    """Say what a recording holds."""
+    """Show what a recording holds."""
     (recording,) = load_all([arguments.recording], arguments)
     if arguments.json:
-        print(json.dumps(_facts(recording), indent=1, ensure_ascii=False))
+        print(json.dumps(_contents(recording), indent=1, ensure_ascii=False))
         return
-    for label, value in _facts(recording).items():
+    for label, value in _contents(recording).items():
         if isinstance(value, dict):
             print(f"{label}:")
             for signal, entry in value.items():
@@ -174,7 +162,7 @@ def _write(estimate: Estimate, arguments: argparse.Namespace) -> None:
         estimate.save(arguments.save)
 
 
-def _facts(recording: Recording) -> dict[str, Any]:
+def _contents(recording: Recording) -> dict[str, Any]:
     return {
         "name": recording.name,
         "kind": recording.kind,
@@ -193,3 +181,17 @@ def _facts(recording: Recording) -> dict[str, Any]:
             for signal in recording.signals
         },
     }
+
+
+COMMANDS: dict[str, Callable[[argparse.Namespace], int | None]] = {
+    "demo": demo,
+    "identify": identify,
+    "compare": compare,
+    "simulate": simulate,
+    "sweep": sweep,
+    "run": run,
+    "emulate": emulate,
+    "report": report,
+    "info": info,
+}
+"""By name; None stands for the exit code 0."""

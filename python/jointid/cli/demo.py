@@ -18,7 +18,7 @@ NOMINAL = {"viscous": 2050.0, "coulomb": 355.0}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Demonstration:
-    """What the demonstration made: the estimate, and the authors' values to hold it against."""
+    """Result of the demonstration: the estimate, and the values published by the authors."""
 
     estimate: Estimate
     nominal: dict[str, float]

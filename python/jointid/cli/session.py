@@ -1,4 +1,4 @@
-"""The command `run`: a joint on its bench, or an emulated one, moved, identified, and moved again better."""
+"""The commands `run` and `emulate`: a joint on its bench or an emulated one, moved and identified in turn."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointid.cli.arguments import TEXT, whole_seed
+from jointid.base.errors import InputError
+from jointid.cli.arguments import TEXT, decimal, whole, whole_seed
+from jointid.cli.outputs import check_folder
+from jointid.cli.wording import Wording
 
 if TYPE_CHECKING:
     from jointid.commissioning import Commissioning
@@ -24,7 +27,7 @@ def add_run(commands: Any) -> None:
     """Add the command's grammar."""
     run = commands.add_parser(
         "run",
-        help="move a joint over CAN, identify it, move it again better",
+        help="move a joint over CAN, identify it, and move it again with the result",
         epilog=(
             "examples:\n"
             "  jointid run joint.toml --cycles 2 --emulate --output runs\n"
@@ -36,23 +39,30 @@ def add_run(commands: Any) -> None:
         formatter_class=TEXT,
     )
     run.add_argument("joint", type=Path, help="joint file (.toml) with a table [session]")
-    run.add_argument("--cycles", type=int, default=2, help="identify and run again so often (2)")
+    run.add_argument("--cycles", type=whole, default=2, help="number of cycles (default 2)")
     run.add_argument(
         "--emulate", action="store_true", help="an emulated drive and joint on virtual time"
     )
     run.add_argument(
-        "--dry-run", action="store_true", help="only check what speaks against a start; motor off"
+        "--dry-run", action="store_true", help="only run the pre-flight checks; the motor stays off"
     )
     run.add_argument("--yes", action="store_true", help="do not ask before a real joint moves")
-    run.add_argument("--seed", type=whole_seed, default=0, help="of emulated noise and search (0)")
-    run.add_argument("--threads", type=int, default=0, help="of the search; 0: all")
+    run.add_argument(
+        "--seed",
+        type=whole_seed,
+        default=0,
+        help="seed of emulated noise and search (default 0)",
+    )
+    run.add_argument(
+        "--threads", type=whole, default=0, help="threads of the search (default 0: all cores)"
+    )
     run.add_argument(
         "--output", type=Path, help="folder for recordings, frame logs, estimates and a picture"
     )
     run.add_argument("--save", type=Path, help="write the last estimate to a joint file (.toml)")
-    run.add_argument("--plot", action="store_true", help="a window that shows what the joint does")
+    run.add_argument("--plot", action="store_true", help="show the motion in a window")
     run.add_argument("--json", action="store_true", help="print the outcome as JSON")
-    run.add_argument("--quiet", action="store_true", help="no line on what the joint does")
+    run.add_argument("--quiet", action="store_true", help="no progress messages")
 
 
 def add_emulate(commands: Any) -> None:
@@ -64,15 +74,21 @@ def add_emulate(commands: Any) -> None:
             "examples:\n"
             "  jointid emulate joint.toml --interface socketcan --channel vcan0\n"
             "  jointid emulate joint.toml --interface udp_multicast --channel 239.74.163.2 --duration 60\n"
-            "the joint file has a table [session.emulated]; it lives by the machine's clock until Ctrl-C"
+            "the joint file has a table [session.emulated]; it runs in real time until Ctrl-C"
         ),
         formatter_class=TEXT,
     )
     emulate.add_argument("joint", type=Path, help="joint file (.toml) with [session.emulated]")
-    emulate.add_argument("--interface", help="as python-can names it; default: the joint file's")
-    emulate.add_argument("--channel", help="default: the joint file's")
-    emulate.add_argument("--duration", type=float, help="[s]; default: until Ctrl-C")
-    emulate.add_argument("--seed", type=whole_seed, default=0, help="of the sensor's noise (0)")
+    emulate.add_argument(
+        "--interface", help="python-can's name of the interface; default: from the joint file"
+    )
+    emulate.add_argument("--channel", help="channel of the interface; default: from the joint file")
+    emulate.add_argument(
+        "--duration", type=decimal, help="how long to run [s]; default: until Ctrl-C"
+    )
+    emulate.add_argument(
+        "--seed", type=whole_seed, default=0, help="seed of the sensor's noise (default 0)"
+    )
 
 
 def emulate(arguments: argparse.Namespace) -> int:
@@ -80,7 +96,6 @@ def emulate(arguments: argparse.Namespace) -> int:
     import math
     import time
 
-    from jointid.base.errors import InputError
     from jointid.hardware.bench.bench import Bench
     from jointid.hardware.can.bus import open_whole_bus
     from jointid.hardware.emulated.bench import emulated_devices
@@ -89,7 +104,7 @@ def emulate(arguments: argparse.Namespace) -> int:
     bench = Bench.load(arguments.joint)
     duration = math.inf if arguments.duration is None else arguments.duration
     if not duration > 0.0:
-        raise InputError(f"--duration is {duration}; more than 0 s is expected")
+        raise InputError("more than 0 s is expected", argument="duration", value=duration)
     interface = arguments.interface or bench.bus.interface
     channel = arguments.channel or bench.bus.channel
     devices = emulated_devices(bench, arguments.seed)
@@ -106,8 +121,7 @@ def emulate(arguments: argparse.Namespace) -> int:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Close the ring on a bench; returns the exit code."""
-    from jointid.base.errors import InputError
+    """Run and identify a joint on its bench in turn; returns the exit code."""
     from jointid.base.files import write_whole
     from jointid.commissioning import bench_drive, commission
     from jointid.hardware.bench.bench import Bench
@@ -121,7 +135,7 @@ def run(arguments: argparse.Namespace) -> int:
                 Session(
                     drive, bench.controller, bench.trajectory, bench.limits, options=bench.options
                 ).run(dry_run=True)
-            print("nothing speaks against a start")
+            print("all pre-flight checks passed")
             return 0
         if not (arguments.emulate or arguments.yes or _agreed(bench)):
             print("jointid run: not started", file=sys.stderr)
@@ -139,15 +153,14 @@ def run(arguments: argparse.Namespace) -> int:
                 agree=None if arguments.emulate or arguments.yes else _agreed_again,
             )
     except (SessionRefusedError, SessionStoppedError) as error:
+        if isinstance(error, SessionStoppedError) and error.stop.limit == "error":
+            raise  # a bug; the motor is off and the recording closed
         print(f"jointid run: {error}", file=sys.stderr)
         return STOPPED
     if arguments.save is not None:
-        if not arguments.save.exists():  # the bench's words and its table [session] stay
+        if not arguments.save.exists():  # comments and the table [session] are kept
             write_whole(arguments.save, arguments.joint.read_bytes())
-        try:
-            result.estimates[-1].save(arguments.save)
-        except InputError as error:
-            raise InputError(f"--save {error}") from error
+        result.estimates[-1].save(arguments.save)
     if arguments.output is not None:
         _write(result, arguments.output)
     if arguments.json:
@@ -160,28 +173,29 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _check(arguments: argparse.Namespace) -> None:
-    """Refuse before the joint moves what cannot be written afterwards."""
-    from jointid.base.errors import InputError
-    from jointid.cli.arguments import check_folder
-
+    """Before the joint moves: refuse outputs that cannot be written."""
     if arguments.cycles < 1:
-        raise InputError(f"--cycles is {arguments.cycles}; at least 1 is expected")
+        raise InputError("at least 1 is expected", argument="cycles", value=arguments.cycles)
     if arguments.save is not None and arguments.save.suffix != ".toml":
-        raise InputError(f"--save {arguments.save}: a joint file is a .toml")
-    check_folder("--save", arguments.save)
+        raise InputError("a joint file ends in .toml", argument="save", value=arguments.save)
+    check_folder("save", arguments.save)
     output = arguments.output
     if output is not None:
         if output.exists() and not output.is_dir():
-            raise InputError(f"--output {output}: this is a file; a folder is expected")
+            raise InputError(
+                "this is a file; a folder is expected", argument="output", value=output
+            )
         if output.is_dir() and any(output.iterdir()):
             raise InputError(
-                f"--output {output}: the folder is not empty, and a session overwrites nothing"
+                "the folder is not empty, and a session overwrites nothing",
+                argument="output",
+                value=output,
             )
-        check_folder("--output", output)
+        check_folder("output", output)
 
 
 def _observers(arguments: argparse.Namespace) -> Observers:
-    """A line on the console, a window; on virtual time both would only flicker."""
+    """A line on the console, a window; with an emulated joint only the window that was asked for."""
     from jointid.hardware.live.console import ConsoleLine, Observers
     from jointid.hardware.live.plot import LivePlot
 
@@ -198,7 +212,7 @@ def _say(step: str) -> None:
 
 
 def _agreed(bench: Bench) -> bool:
-    """Whether the user wants the real joint to move."""
+    """Whether the user agrees that the real joint moves."""
     low, high = bench.limits.position
     print(
         f"'{bench.joint.name}' will move between {low:.3g} and {high:.3g} rad with up to "
@@ -212,8 +226,8 @@ def _agreed(bench: Bench) -> bool:
 
 
 def _agreed_again(estimate: Estimate) -> bool:
-    """Whether the joint is to move with what was identified."""
-    print(estimate.report(), file=sys.stderr)
+    """Whether the user agrees that the joint moves with the identified values."""
+    print(Wording("run").of_report(estimate), file=sys.stderr)
     return input("Move the joint with these values? Is the space free? [yes/no] ").strip() == "yes"
 
 

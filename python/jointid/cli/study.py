@@ -9,17 +9,20 @@ from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from jointid.base.errors import InputError
 from jointid.cli.arguments import (
     TEXT,
-    check_folder,
     fixed_values,
     load_all,
     number_or_text,
     pair,
-    reading_arguments,
+    several_recordings,
+    whole,
     whole_seed,
+    windows,
 )
-from jointid.cli.simulation import scenario_arguments, scenario_of
+from jointid.cli.outputs import check_folder
+from jointid.cli.scenario import scenario_arguments, scenario_of
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -29,8 +32,6 @@ if TYPE_CHECKING:
 
 def add_sweep(commands: Any) -> None:
     """Add the command's grammar."""
-    from jointid.recording.readers.registry import endings_text
-
     sweep = commands.add_parser(
         "sweep",
         help="identify with many settings, several times each",
@@ -40,26 +41,19 @@ def add_sweep(commands: Any) -> None:
             "  jointid sweep run.csv --joint joint.toml --grid windows=100,400,1600 --trials 1 --table sweep.csv\n"
             "  jointid sweep --simulate joint.toml --trajectory thesis:amplitude=60deg,cycle=3 \\\n"
             "      --grid sensors.torque_noise=0.1,0.5,2 --trials 20 --output study.jsonl\n"
-            "  jointid sweep --simulate joint.toml … --output study.jsonl --resume   (goes on where it was)"
+            "  jointid sweep --simulate joint.toml … --output study.jsonl --resume   (continues)"
         ),
         formatter_class=TEXT,
     )
-    sweep.add_argument(
-        "recordings",
-        type=Path,
-        nargs="*",
-        metavar="recording",
-        help=f"recording: {endings_text()}; several are fitted as one",
-    )
-    reading_arguments(sweep)
+    several_recordings(sweep, nargs="*", use="fitted as one")
     sweep.add_argument(
         "--simulate",
         type=Path,
         metavar="JOINT",
-        help="instead of recordings: simulate this joint file's joint anew for each trial",
+        help="instead of recordings: simulate the joint of this file for each trial",
     )
     scenario_arguments(sweep)
-    sweep.add_argument("--joint", type=Path, help="joint file (.toml) of what is known")
+    sweep.add_argument("--joint", type=Path, help="joint file (.toml) with the known values")
     sweep.add_argument(
         "--grid",
         action="append",
@@ -68,15 +62,21 @@ def add_sweep(commands: Any) -> None:
         metavar="SETTING=VALUE,…",
         help="a setting to sweep, such as ga.population, windows, method, sensors.torque_noise",
     )
-    sweep.add_argument("--trials", type=int, default=10, help="of each combination (10)")
-    for name, told in (
+    sweep.add_argument(
+        "--trials", type=whole, default=10, help="trials of each combination (default 10)"
+    )
+    for name, explanation in (
         ("--ga", "default, thesis or thesis_code"),
         ("--method", "ga (default), separable or random"),
-        ("--model", "friction model"),
+        ("--model", "friction model, such as stribeck:ripple=2"),
         ("--residual", "sensor or torque"),
     ):
-        sweep.add_argument(name, help=told)
-    sweep.add_argument("--windows", type=number_or_text, help="number (400) or duration (0.05) [s]")
+        sweep.add_argument(name, help=explanation)
+    sweep.add_argument(
+        "--windows",
+        type=windows,
+        help="number of windows (default 400), duration (0.05s) or cumulative",
+    )
     sweep.add_argument(
         "--set",
         action="append",
@@ -85,18 +85,22 @@ def add_sweep(commands: Any) -> None:
         metavar="PARAMETER=VALUE",
         help="fix a parameter (SI)",
     )
-    sweep.add_argument("--stderr", action="store_true", help="standard errors, too")
+    sweep.add_argument(
+        "--standard-errors", action="store_true", help="compute standard errors for each trial"
+    )
     sweep.add_argument(
         "--tracking",
         action="store_true",
-        help="of --simulate: track again with what was identified",
+        help="with --simulate: track again with the identified parameters",
     )
-    sweep.add_argument("--seed", type=whole_seed, default=0, help="of the first trial (0)")
-    sweep.add_argument("--threads", type=int, help="0: all")
-    sweep.add_argument("--workers", type=int, help="processes to spread the trials over")
-    sweep.add_argument("--output", type=Path, help="a .jsonl file that grows with each trial")
-    sweep.add_argument("--resume", action="store_true", help="go on with the file of --output")
-    sweep.add_argument("--table", type=Path, help="write the table here: .csv or .parquet")
+    sweep.add_argument(
+        "--seed", type=whole_seed, default=0, help="seed of the first trial (default 0)"
+    )
+    sweep.add_argument("--threads", type=whole, help="number of threads; 0: all cores")
+    sweep.add_argument("--workers", type=whole, help="number of processes that share the trials")
+    sweep.add_argument("--output", type=Path, help="a .jsonl file to which each trial is added")
+    sweep.add_argument("--resume", action="store_true", help="continue the file of --output")
+    sweep.add_argument("--table", type=Path, help="file for the table: .csv or .parquet")
     sweep.add_argument(
         "--plot", type=Path, help="draw the penalty over the first settings: .png, .pdf"
     )
@@ -106,18 +110,21 @@ def add_sweep(commands: Any) -> None:
 
 def sweep(arguments: argparse.Namespace) -> None:
     """Identify with many settings."""
-    from jointid.base.errors import InputError
     from jointid.cli.progress import StudyProgress
     from jointid.identification.search.search import Search
     from jointid.joint.joint import Joint
     from jointid.study import sweeping
 
     for option in ("output", "table", "plot"):
-        check_folder(f"--{option}", getattr(arguments, option))
+        check_folder(option, getattr(arguments, option))
     if arguments.table is not None and arguments.table.suffix not in (".csv", ".parquet"):
-        raise InputError(f"--table {arguments.table}: a table is written as .csv or .parquet")
+        raise InputError(
+            "a table is written as .csv or .parquet", argument="table", value=arguments.table
+        )
     if (arguments.simulate is None) == (not arguments.recordings):
-        raise InputError("give recordings, or --simulate JOINT, one of the two")
+        if arguments.recordings:
+            raise InputError("recordings were given, and --simulate; they exclude each other")
+        raise InputError("nothing to identify", remedy="give recordings or --simulate JOINT")
     fixed = fixed_values(arguments)
     options = {
         name: getattr(arguments, name)
@@ -130,7 +137,7 @@ def sweep(arguments: argparse.Namespace) -> None:
     else:
         subject = load_all(arguments.recordings, arguments)
     with (
-        _told(arguments),
+        _continuation(arguments),
         _workers(arguments.workers) as executor,
         StudyProgress(enabled=not arguments.quiet) as progress,
     ):
@@ -145,7 +152,7 @@ def sweep(arguments: argparse.Namespace) -> None:
                 seed=arguments.seed,
                 threads=arguments.threads or 0,
             ),
-            standard_errors=arguments.stderr,
+            standard_errors=arguments.standard_errors,
             tracking=arguments.tracking,
             executor=executor,
             callback=progress,
@@ -158,22 +165,21 @@ def sweep(arguments: argparse.Namespace) -> None:
 
 
 @contextmanager
-def _told(arguments: argparse.Namespace) -> Iterator[None]:
-    """What is left of a sweep that ended early, and how to go on."""
-    from jointid.base.errors import InputError
+def _continuation(arguments: argparse.Namespace) -> Iterator[None]:
+    """Say of a sweep that ended early how many trials are done, and how to continue."""
     from jointid.study.sweeping import StudyBrokenError, StudyInterruptedError
 
     if arguments.output is None:
-        way_on = "they are lost; --output study.jsonl keeps each as it is done"
+        remedy = "they are lost; --output study.jsonl keeps each trial"
     else:
-        way_on = f"they are in {arguments.output}; the same command with --resume goes on"
+        remedy = f"they are in {arguments.output}; the same command with --resume continues"
     try:
         yield
     except StudyInterruptedError as stop:
-        raise KeyboardInterrupt(f"{stop}; {way_on}") from None
+        raise KeyboardInterrupt(f"{stop}; {remedy}") from None
     except StudyBrokenError as error:
         done = str(error).partition(". ")[0]
-        raise InputError(f"{done}; {way_on}") from error
+        raise InputError(done, remedy=remedy) from error
 
 
 def _write(study: Study, arguments: argparse.Namespace) -> None:
@@ -193,12 +199,11 @@ def _write(study: Study, arguments: argparse.Namespace) -> None:
 
 
 def _workers(count: int | None) -> Executor | nullcontext[None]:
-    from jointid.base.errors import InputError
 
     if count is None:
         return nullcontext()
     if not 1 <= count <= 1024:
-        raise InputError(f"--workers must be 1 to 1024, got {count}")
+        raise InputError("1 to 1024 processes are expected", argument="workers", value=count)
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import get_context
 
@@ -207,12 +212,11 @@ def _workers(count: int | None) -> Executor | nullcontext[None]:
 
 
 def _grid(pairs: list[tuple[str, str]]) -> dict[str, list[Any]]:
-    from jointid.base.errors import InputError
 
     grid: dict[str, list[Any]] = {}
     for name, values in pairs:
         if name in grid:
-            raise InputError(f"--grid {name} is given twice")
+            raise InputError("it is given twice", argument=f"grid.{name}", value=values)
         grid[name] = [_value(text) for text in values.split(",")]
     return grid
 

@@ -130,6 +130,10 @@ class Warned:
     parameters: tuple[str, ...]
     message: str
 
+    def worded(self, _: object) -> str:
+        """The sentence; its advice is not data yet."""
+        return self.message
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FrictionCurve:

@@ -1,9 +1,11 @@
 """An estimate as text, and as a small HTML table for notebooks."""
 
+from collections.abc import Callable
 from html import escape
 
 import numpy as np
 
+from jointid.base.advice import Action
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import number, percent, two_digits
@@ -79,8 +81,8 @@ def strongest_correlation(estimate: Estimate) -> str:
     return f"strongest {estimate.correlation[first, second]:.2f}, between {pair}"
 
 
-def text_report(estimate: Estimate) -> str:
-    """The estimate as text."""
+def text_report(estimate: Estimate, action: Callable[[Action], str] = str) -> str:
+    """The estimate as text; a face may bring its own wording of the advice."""
     table = [_HEAD, *rows(estimate)]
     widths = [max(len(row[column]) for row in table) for column in range(len(_HEAD))]
     lines = [f"jointid estimate — {estimate.joint.name or 'joint'}", ""]
@@ -99,7 +101,7 @@ def text_report(estimate: Estimate) -> str:
     lines.append("")
     if not estimate.warnings:
         lines.append("no warnings")
-    lines += [f"warning ({w.code}): {w.message}" for w in estimate.warnings]
+    lines += [f"warning ({w.code}): {w.worded(action)}" for w in estimate.warnings]
     return "\n".join(lines)
 
 

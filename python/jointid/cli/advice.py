@@ -1,0 +1,210 @@
+"""An action in the words of a command: options instead of arguments, or what to write into the joint file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+from jointid.base.advice import Action
+from jointid.cli.arguments import number_or_text
+from jointid.cli.options import FILES, FLAGS, PLACEHOLDERS, option_of
+from jointid.cli.values import behind_option, in_joint_file
+
+MODEL_FIELDS = frozenset(
+    {"name", "friction", "gravity", "asymmetric", "ripple", "harmonics", "load_friction"}
+    | {"per_recording"}
+)
+_TABLES = {
+    **dict.fromkeys((*MODEL_FIELDS, "torque_offset"), "model"),
+    **dict.fromkeys(
+        ("inertia", "rotor_inertia", "gear_ratio", "torque_constant", "torque_hold"), "drive"
+    ),
+    "sensor": "sensor",
+}
+_VERBS = {"load": "load", "identify": "identify", "compare_models": "compare", "sweep": "sweep"}
+_VERBS |= {"simulate": "simulate"}
+
+
+def words_of_action(action: Action, command: str, model: str = "") -> str:
+    """What to do, in the words of a command; empty if the command line cannot do it.
+
+    Parameters
+    ----------
+    action : Action
+    command : str
+        The command that gives the advice.
+    model : str
+        The text of ``--model`` that the command has, to extend. Default: not known.
+    """
+    if action.kind != "call":
+        return str(action)
+    if action.function == "Joint":
+        options: list[str] = []
+        joint_file = list(_joint_fields(action.arguments))
+    elif action.function in _VERBS:
+        other = {"compare_models": "compare", "load": "identify"}
+        speaker = command
+        if not _has_options(command, action.arguments):
+            if command in ("simulate", "emulate", "report"):
+                speaker = ""
+            elif not all(name in (*_TABLES, "model", "parameters") for name in action.arguments):
+                speaker = other.get(action.function, action.function)
+        options, joint_file = _arguments(action.arguments, speaker, model)
+    else:
+        return ""
+    parts = [f"{_VERBS.get(action.function, 'identify')} with {' '.join(options)}"] * bool(options)
+    parts += [_in_joint_file(joint_file)] * bool(joint_file)
+    purpose = f" ({action.text})" if action.text and parts else ""
+    return " and ".join(parts) + purpose
+
+
+def option_with_value(option: str, key: str, value: Any) -> str:
+    """An option as it is typed, e.g. `--column velocity=none`."""
+    placeholder = PLACEHOLDERS.get(option) or FILES.get(option, "VALUE")
+    if option == "--windows" and isinstance(value, float):
+        value = f"{behind_option(value)}s"
+    if value is ... or value == "...":
+        text = placeholder
+    elif option in FLAGS and isinstance(value, bool):
+        return option
+    else:
+        text = behind_option(value)
+    return f"{option} {key}={text}" if key else f"{option} {text}"
+
+
+def model_text(current: str, changes: Mapping[str, Any]) -> str:
+    """The text of a model with some of its options changed; NAME where no name is known.
+
+    Parameters
+    ----------
+    current : str
+        A model's text, or nothing.
+    changes : mapping
+        Fields of a model; false, empty and None take an option away.
+    """
+    name, *options = current.split(":")
+    parts: dict[str, str] = {part.partition("=")[0]: part for part in options}
+    for key, value in changes.items():
+        if key in ("name", "friction"):
+            name = str(value)
+        elif value is None or value is False or value == ():
+            parts.pop(key, None)
+        else:
+            parts[key] = key if value is True else f"{key}={behind_option(value)}"
+    return ":".join([name or "NAME", *parts.values()])
+
+
+def _has_options(command: str, arguments: Mapping[str, Any]) -> bool:
+    return all(
+        option_of(command, "model" if name in MODEL_FIELDS else name)[0]
+        for name, _ in _flat(arguments)
+    )
+
+
+def _flat(arguments: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Arguments by name; what runs a search, field by field."""
+    for name, value in arguments.items():
+        if name not in ("search", "ga") or isinstance(value, str):
+            yield name, value
+            continue
+        for key, entry in _changed(value).items():
+            if key == "ga" and not isinstance(entry, str):
+                yield from ((f"ga.{inner}", each) for inner, each in _changed(entry).items())
+            else:
+                yield f"ga.{key}" if name == "ga" else key, entry
+
+
+def _changed(value: Any) -> dict[str, Any]:
+    """The fields of a value that differ from its defaults."""
+    if isinstance(value, Mapping):
+        return dict(value)
+    if is_dataclass(value) and not isinstance(value, type):
+        usual = type(value)()
+        pairs = ((f.name, getattr(value, f.name)) for f in fields(value))
+        return {name: entry for name, entry in pairs if entry != getattr(usual, name)}
+    usual = type(value)().asdict()
+    return {name: entry for name, entry in value.asdict().items() if entry != usual[name]}
+
+
+def _arguments(
+    arguments: Mapping[str, Any], command: str, model: str
+) -> tuple[list[str], list[tuple[str, str, Any]]]:
+    """Options, and for what has none entries of the joint file: table, key, value."""
+    options: list[str] = []
+    joint_file: list[tuple[str, str, Any]] = []
+    changes: dict[str, Any] = {}
+    for name, value in _flat(arguments):
+        if name in MODEL_FIELDS:
+            changes[name] = value
+        elif name == "model" and isinstance(value, Mapping):
+            changes |= value
+        elif name == "model":
+            changes |= _read_model(str(value))
+        elif name == "parameters":
+            for key, entry in value.items():
+                _parameter(key, entry, option_of(command, name)[0], options, joint_file)
+        elif option := option_of(command, name)[0]:
+            if isinstance(value, Mapping):
+                options += [option_with_value(option, key, entry) for key, entry in value.items()]
+            elif name == "models" and not isinstance(value, str):
+                options += [f"{option} {model}" for model in value]
+            else:
+                options.append(option_with_value(option, "", value))
+        else:
+            joint_file += [(table, name, value) for table in _TABLES.get(name, "").split()]
+    if changes and (option := option_of(command, "model")[0]):
+        options.insert(0, f"{option} {model_text(model, changes)}")
+    else:
+        joint_file += list(_joint_fields(changes))
+    return options, joint_file
+
+
+def _read_model(text: str) -> dict[str, Any]:
+    name, *options = text.split(":")
+    read: dict[str, Any] = {"name": name} if name else {}
+    for option in options:
+        key, separator, value = option.partition("=")
+        numbers = tuple(number_or_text(part) for part in value.split(","))
+        plain = any(isinstance(number, str) for number in numbers)
+        read[key] = (value if plain else numbers) if separator else True
+    return read
+
+
+def _parameter(
+    name: str, entry: Any, option: str, options: list[str], joint_file: list[tuple[str, str, Any]]
+) -> None:
+    """--set for a value; the joint file for bounds, and where there is no --set."""
+    if not isinstance(entry, Mapping):
+        entry = {"value": entry}
+    if option and entry.keys() == {"value"}:
+        options.append(option_with_value(option, name, entry["value"]))
+    else:
+        joint_file += [(f"parameters.{name}", key, value) for key, value in entry.items()]
+
+
+def _joint_fields(arguments: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]]:
+    for name, value in arguments.items():
+        if name == "parameters":
+            for parameter, entry in value.items():
+                pairs = entry.items() if isinstance(entry, Mapping) else [("value", entry)]
+                yield from ((f"parameters.{parameter}", key, each) for key, each in pairs)
+        elif isinstance(value, Mapping):  # a table of its own, e.g. link
+            yield from ((name, key, entry) for key, entry in value.items())
+        else:
+            key = {"name": "friction", "sensor": "present"}.get(name, name)
+            yield _TABLES.get(name, ""), key, value
+
+
+def _in_joint_file(entries: list[tuple[str, str, Any]]) -> str:
+    """What to write into the joint file, table by table, and what to take out of it."""
+    tables: dict[tuple[bool, str], list[str]] = {}
+    for table, key, value in entries:
+        text = "VALUE" if value is ... or value == "..." else in_joint_file(value)
+        line = key if value is None else f"{key} = {text}"
+        tables.setdefault((value is None, table), []).append(line)
+    parts = [
+        f"{'remove' if removed else 'set'} {' and '.join(lines)}{f' under [{table}]' if table else ''}"
+        for (removed, table), lines in tables.items()
+    ]
+    return f"{' and '.join(parts)} in the joint file"

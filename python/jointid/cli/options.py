@@ -1,0 +1,147 @@
+"""Which option of a command stands for which argument of Python."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+_READING = {"columns": "--column", "units": "--unit", "scale": "--scale", "where": "--where"}
+_IDENTIFICATION = {
+    **_READING,
+    "joint": "--joint",
+    "model": "--model",
+    "method": "--method",
+    "residual": "--residual",
+    "torque_hold": "--torque-hold",
+    "windows": "--windows",
+    "parameters": "--set",
+    "seed": "--seed",
+    "threads": "--threads",
+}
+_SCENARIO = {
+    "controller": "--controller",
+    "believe": "--believe",
+    "trajectory": "--trajectory",
+    "gain": "--gain",
+    "sensors": "--sensor",
+    "control_period": "--control-period",
+    "duration": "--duration",
+}
+_ESTIMATE = {"report": "--report", "save": "--save"}
+
+OPTIONS: Mapping[str, Mapping[str, str]] = {
+    "demo": {"output": "--output"},
+    "identify": {
+        **_IDENTIFICATION,
+        **_ESTIMATE,
+        "ga.population": "--population",
+        "ga.generations": "--generations",
+        "checkpoint": "--checkpoint",
+        "resume": "--resume",
+    },
+    "compare": {**_IDENTIFICATION, **_ESTIMATE, "models": "--model", "folds": "--folds"},
+    "simulate": {**_SCENARIO, "seed": "--seed", "output": "--output"},
+    "sweep": {
+        **{name: option for name, option in _IDENTIFICATION.items() if name != "torque_hold"},
+        **_SCENARIO,
+        "simulate": "--simulate",
+        "subject": "--simulate",
+        "grid": "--grid",
+        "ga": "--ga",
+        "trials": "--trials",
+        "standard_errors": "--standard-errors",
+        "stderr": "--standard-errors",
+        "tracking": "--tracking",
+        "workers": "--workers",
+        "output": "--output",
+        "resume": "--resume",
+        "table": "--table",
+        "plot": "--plot",
+    },
+    "run": {
+        "cycles": "--cycles",
+        "emulate": "--emulate",
+        "dry_run": "--dry-run",
+        "seed": "--seed",
+        "threads": "--threads",
+        "output": "--output",
+        "save": "--save",
+    },
+    "emulate": {
+        "interface": "--interface",
+        "channel": "--channel",
+        "duration": "--duration",
+        "seed": "--seed",
+    },
+    "report": {"output": "--output"},
+    "info": _READING,
+}
+"""By command and argument."""
+
+PLACEHOLDERS: Mapping[str, str] = {
+    "--column": "HEADER",
+    "--unit": "UNIT",
+    "--scale": "FACTOR",
+    "--where": "VALUE",
+    "--set": "VALUE",
+    "--gain": "VALUE",
+    "--sensor": "VALUE",
+    "--grid": "VALUE",
+}
+"""Options of the form NAME=VALUE, and what stands for a value that the user has to choose."""
+
+FILES: Mapping[str, str] = {
+    **dict.fromkeys(("--joint", "--believe", "--simulate"), "JOINT"),
+    **dict.fromkeys(
+        ("--output", "--save", "--report", "--table", "--plot", "--checkpoint", "--resume"), "FILE"
+    ),
+}
+"""Options that take a file, and what stands for one that the user has to choose."""
+
+FLAGS = frozenset({"--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run"})
+"""Options that may stand without a value."""
+
+# The core and the simulation name a field by the class that has it.
+_CLASSES = {
+    "GaOptions": "ga",
+    "Sensors": "sensors",
+    "Trajectory": "trajectory",
+    **dict.fromkeys(
+        (
+            "AdaptiveRobust",
+            "CompensatedPid",
+            "LugreObserver",
+            "Pid",
+            "Pd",
+            "OpenLoop",
+            "controller",
+        ),
+        "gain",
+    ),
+}
+
+
+def option_of(command: str, argument: str) -> tuple[str, str]:
+    """Return the option for an argument, and the key behind it; both empty if the command has none.
+
+    Parameters
+    ----------
+    command : str
+    argument : str
+        ``"method"``, ``"columns.velocity"``, ``"GaOptions.population"``.
+
+    Examples
+    --------
+    >>> option_of("info", "columns.velocity")
+    ('--column', 'velocity')
+    """
+    table = OPTIONS.get(command, {})
+    if argument in table:
+        return table[argument], ""
+    root, _, key = argument.replace("['", ".").replace("']", "").partition(".")
+    if root in ("search", "Search") and key:
+        return option_of(command, key)
+    root = _CLASSES.get(root, root)
+    for name in (f"{root}.{key}" if key else root, f"ga.{root}"):
+        if name in table:
+            return table[name], ""
+    return (table[root], key) if root in table else ("", "")

@@ -1,0 +1,99 @@
+"""Outputs of a command, checked before its work, not after it."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from jointid.base.errors import InputError
+
+
+def check_outputs(arguments: argparse.Namespace) -> None:
+    """Refuse before the work, not after it, what cannot be written.
+
+    Raises
+    ------
+    InputError
+        Another extension than .toml or .json, or a folder that does not exist.
+    """
+    save = arguments.save
+    if save is not None and save.suffix not in (".toml", ".json"):
+        raise InputError(
+            "an estimate is saved as .toml (joint file) or .json", argument="save", value=save
+        )
+    check_folder("save", save)
+    check_page("report", arguments.report)
+
+
+_READ = (
+    *("recordings", "recording", "joint", "estimate"),
+    *("simulate", "believe", "trajectory", "resume"),
+)
+_WRITTEN = ("output", "report", "table", "plot", "checkpoint", "save")
+# Continuing a search in its own file, and updating a joint file, are intended.
+_INTENDED = {("resume", "checkpoint"), ("joint", "save")}
+
+
+def check_distinct(arguments: argparse.Namespace) -> None:
+    """Refuse to overwrite an input.
+
+    Raises
+    ------
+    InputError
+        An output is one of the inputs.
+    """
+    for written in _WRITTEN:
+        output = getattr(arguments, written, None)
+        if not isinstance(output, Path):
+            continue
+        for read in _READ:
+            inputs = getattr(arguments, read, None)
+            for path in inputs if isinstance(inputs, list) else [inputs]:
+                if not isinstance(path, str | Path) or (read, written) in _INTENDED:
+                    continue
+                if Path(path).is_file() and output.exists() and output.samefile(path):
+                    raise InputError(
+                        "the command reads this file and would overwrite it; give another name",
+                        argument=written,
+                        value=output,
+                    )
+
+
+def check_page(argument: str, path: Path | None) -> None:
+    """Refuse a page that is no .html, or in a folder that does not exist.
+
+    Raises
+    ------
+    InputError
+        Another extension, or no such folder.
+    """
+    if path is not None and path.suffix.lower() not in (".html", ".htm"):
+        raise InputError("a report is an HTML page (.html)", argument=argument, value=path)
+    check_folder(argument, path)
+
+
+def check_folder(argument: str, path: Path | None) -> None:
+    """Refuse a file to be written in a folder that does not exist.
+
+    Raises
+    ------
+    InputError
+        There is no such folder.
+    """
+    if path is not None and not path.parent.is_dir():
+        raise InputError(f"the folder {path.parent} does not exist", argument=argument, value=path)
+
+
+def check_recording_file(argument: str, path: Path | None) -> None:
+    """Refuse a file that is none of a recording's, or in a folder that does not exist.
+
+    Raises
+    ------
+    InputError
+        Another extension, or no such folder.
+    """
+    if path is not None and not path.name.lower().endswith((".csv", ".csv.gz", ".npz")):
+        raise InputError(
+            "a recording is written as .csv, .csv.gz or .npz", argument=argument, value=path
+        )
+    check_folder(argument, path)

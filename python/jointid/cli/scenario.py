@@ -1,0 +1,218 @@
+"""A scenario from the command line: controller, trajectory, sensors."""
+
+from __future__ import annotations
+
+import argparse
+import inspect
+import math
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointid.base.errors import InputError
+from jointid.cli.arguments import decimal, number_or_text, pair
+
+if TYPE_CHECKING:
+    from jointid.simulation.arguments import Controller
+    from jointid.simulation.scenario import Scenario
+    from jointid.simulation.trajectory import Trajectory
+
+CONTROLLERS = {
+    "adaptive_robust": "AdaptiveRobust",
+    "compensated_pid": "CompensatedPid",
+    "lugre_observer": "LugreObserver",
+    "pid": "Pid",
+    "pd": "Pd",
+    "open_loop": "OpenLoop",
+}
+TRAJECTORIES = ("thesis", "sine", "multisine", "sigmoid", "step", "trapezoid")
+
+
+def scenario_arguments(command: argparse.ArgumentParser) -> None:
+    """Add the options that make a scenario of a joint."""
+    command.add_argument(
+        "--controller",
+        default="adaptive_robust",
+        help=f"{', '.join(CONTROLLERS)} (default: adaptive_robust)",
+    )
+    command.add_argument(
+        "--believe",
+        type=Path,
+        metavar="JOINT",
+        help="joint file with the parameters the controller assumes; default: the true ones",
+    )
+    command.add_argument(
+        "--trajectory",
+        default="thesis",
+        metavar="NAME[:OPTION=VALUE,…]",
+        help=f"{', '.join(TRAJECTORIES)}, or a recording to follow; angles in rad, or as 60deg",
+    )
+    for name, shown, explanation in (
+        ("--gain", "NAME=VALUE", "a setting of the controller; may be repeated"),
+        (
+            "--sensor",
+            "NAME=VALUE",
+            "a sensor's property, such as torque_noise=0.5, encoder_counts=8000 (per motor turn)",
+        ),
+    ):
+        command.add_argument(
+            name, action="append", type=pair, default=[], metavar=shown, help=explanation
+        )
+    command.add_argument(
+        "--control-period",
+        type=decimal,
+        default=1e-3,
+        help="time between two commands [s] (default 0.001)",
+    )
+    command.add_argument(
+        "--duration", type=decimal, help="duration of the motion [s]; default: the trajectory's"
+    )
+
+
+def scenario_of(joint_file: Path, arguments: argparse.Namespace) -> Scenario:
+    """The scenario of a joint file and these arguments.
+
+    Raises
+    ------
+    InputError
+        Something that cannot be used.
+    """
+    from jointid._core import Sensors
+    from jointid.joint.joint import Joint
+    from jointid.simulation.scenario import Scenario
+
+    joint = Joint.load(joint_file)
+    sensors = _checked("sensors", arguments.sensor, Sensors().asdict())
+    scenario = Scenario(
+        joint,
+        _controller(arguments.controller, arguments.gain),
+        trajectory_of(arguments.trajectory),
+        Sensors(**sensors),
+        control_period=arguments.control_period,
+        duration=arguments.duration,
+    )
+    chosen = {name for name, _ in arguments.gain}
+    if "coulomb" not in scenario.controller.asdict():
+        if arguments.believe is not None:
+            raise InputError(
+                f"the controller {arguments.controller} compensates no friction", argument="believe"
+            )
+        return scenario
+    assumed = joint if arguments.believe is None else Joint.load(arguments.believe)
+    estimates = {
+        f"controller.{name}": value
+        for name, value in scenario.believing(assumed).asdict().items()
+        if name not in chosen
+    }
+    return scenario.changed(estimates)
+
+
+def _controller(name: str, gains: Sequence[tuple[str, str]]) -> Controller:
+    from jointid import _core
+    from jointid.joint.checks import suggestion
+
+    if name not in CONTROLLERS:
+        raise InputError(suggestion(name, [*CONTROLLERS]), argument="controller", value=name)
+    kind = getattr(_core, CONTROLLERS[name])
+    usual = kind().asdict()
+    chosen = _checked("gain", gains, usual)
+    if "stiffness" in usual and not chosen.get("stiffness"):
+        raise InputError(
+            "it needs a stiffness [N·m/rad], and usually damping",
+            argument="controller",
+            value=name,
+            remedy="add --gain stiffness=VALUE",
+        )
+    controller: Controller = kind(**chosen)
+    return controller
+
+
+def trajectory_of(text: str) -> Trajectory:
+    """A trajectory from its name and options, or from a recording's file.
+
+    Raises
+    ------
+    InputError
+        No such trajectory, option or file.
+    """
+    from jointid.recording.readers.loading import load
+    from jointid.simulation.trajectory import Trajectory
+
+    name, _, options = text.partition(":")
+    if name not in TRAJECTORIES:
+        if Path(text).exists():
+            return Trajectory.from_recording(load(text))
+        raise InputError(
+            f"neither a file nor one of {', '.join(TRAJECTORIES)}",
+            argument="trajectory",
+            value=text,
+        )
+    pairs = []
+    for part in options.split(",") if options else []:
+        option, separator, value = part.partition("=")
+        if not separator or not value:
+            raise InputError(
+                f"{part} is not of the form NAME=VALUE", argument="trajectory", value=text
+            )
+        pairs.append((option, value))
+    make = getattr(Trajectory, name)
+    known = inspect.signature(make).parameters
+    chosen = _values("trajectory", pairs)
+    _check_names("trajectory", chosen, known)
+    missing = [
+        key
+        for key, entry in known.items()
+        if entry.default is inspect.Parameter.empty and key not in chosen
+    ]
+    if missing:
+        raise InputError(f"{name} needs {_and(missing)}", argument="trajectory", value=text)
+    trajectory: Trajectory = make(**chosen)
+    return trajectory
+
+
+def _and(names: Sequence[str]) -> str:
+    return " and ".join([", ".join(names[:-1])] * (len(names) > 1) + [names[-1]])
+
+
+def _check_names(argument: str, chosen: Mapping[str, Any], known: Collection[str]) -> None:
+    from jointid.joint.checks import suggestion
+
+    for name, value in chosen.items():
+        if name not in known:
+            raise InputError(
+                f"there is no {name}; {suggestion(name, [*known])}",
+                argument=f"{argument}.{name}",
+                value=value,
+            )
+
+
+def _checked(
+    argument: str, pairs: Sequence[tuple[str, str]], usual: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Values of the same kinds as the default ones."""
+    chosen = _values(argument, pairs)
+    _check_names(argument, chosen, usual)
+    for name, value in chosen.items():
+        kind = type(usual[name])
+        if type(value) is not kind and (kind, type(value)) != (float, int):
+            expected = {float: "a number", int: "a whole number", bool: "true or false"}
+            raise InputError(
+                f"{expected.get(kind, 'a name')} is expected",
+                argument=f"{argument}.{name}",
+                value=value,
+            )
+    return chosen
+
+
+def _values(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str, Any]:
+    """Numbers, angles such as 60deg, true and false, texts."""
+    values: dict[str, Any] = {}
+    for name, text in pairs:
+        if name in values:
+            raise InputError("it is given twice", argument=f"{argument}.{name}", value=text)
+        degrees = number_or_text(text.removesuffix("deg"))
+        if text.endswith("deg") and not isinstance(degrees, str):
+            values[name] = math.radians(degrees)
+        else:
+            values[name] = {"true": True, "false": False}.get(text, number_or_text(text))
+    return values

@@ -1,0 +1,125 @@
+"""Errors and findings in the words of a command: its options instead of Python's arguments."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from jointid.base.advice import Action
+from jointid.base.errors import NOT_GIVEN, InputError
+from jointid.cli.advice import option_with_value, words_of_action
+from jointid.cli.options import FLAGS, OPTIONS, PLACEHOLDERS, option_of
+from jointid.cli.values import in_sentence
+
+if TYPE_CHECKING:
+    from jointid.estimate.estimate import Estimate
+
+_OWN_FILE = re.compile(r"\.(?:toml|json|jsonl)\b")
+
+
+@dataclass(frozen=True, slots=True)
+class Wording:
+    """How one command words a value.
+
+    Parameters
+    ----------
+    command : str
+        "identify", "compare", …
+    model : str
+        The one model that the command was called with. Default: none, or several.
+    grid : frozenset of str
+        Settings that ``--grid`` names. Default: none.
+    """
+
+    command: str
+    model: str = ""
+    grid: frozenset[str] = frozenset()
+
+    @classmethod
+    def of(cls, arguments: argparse.Namespace) -> Wording:
+        """The wording for a command line that was read."""
+        models = getattr(arguments, "models", None) or [getattr(arguments, "model", None)]
+        return cls(
+            arguments.command,
+            models[0] if len(models) == 1 and models[0] else "",
+            frozenset(name for name, _ in getattr(arguments, "grid", ())),
+        )
+
+    def of_error(self, error: InputError) -> str:
+        """An error in one line: where, what, why, and what to do."""
+        if type(error).__str__ is not InputError.__str__:  # it words itself
+            return " ".join(str(error).split())
+        place, name = self._located(error)
+        subject = self._subject(place, name, error.value)
+        sentence = ": ".join(filter(None, (place, subject, error.reason)))
+        remedies = self._alternatives(error.remedy)
+        return " ".join(f"{sentence}{f'; {remedies}' if remedies else ''}".split())
+
+    def of_action(self, action: Action) -> str:
+        """What to do, with the command's options; empty if the command line cannot do it."""
+        return words_of_action(action, self.command, self.model)
+
+    def of_report(self, estimate: Estimate) -> str:
+        """An estimate's report as text, the advice of its findings in the words of the command."""
+        from jointid.estimate.tables import text_report
+
+        return text_report(estimate, action=self.of_action)
+
+    def _alternatives(self, remedies: tuple[str | Action, ...]) -> str:
+        texts = [each if isinstance(each, str) else self.of_action(each) for each in remedies]
+        return " or ".join(text for text in texts if text)
+
+    def _located(self, error: InputError) -> tuple[str, str]:
+        """Where it stands and what it is about; a place that has an option is part of the name."""
+        place, name = error.place, error.argument
+        options = OPTIONS.get(self.command, {})
+        parameter = place.removeprefix("parameter '").removesuffix("'")
+        if place in options and name:
+            return "", f"{place}.{name}"
+        if parameter != place and name == "value" and "parameters" in options:
+            return "", f"parameters.{parameter}"
+        return place, name
+
+    def _subject(self, place: str, name: str, value: Any) -> str:
+        """What cannot be used: an option with its value, a key of a file, or a plain name."""
+        known = value is not NOT_GIVEN
+        if not name:
+            return in_sentence(value) if known else ""
+        if not _OWN_FILE.search(place):
+            if name in self.grid:
+                return option_with_value("--grid", name, value) if known else f"--grid {name}"
+            if subject := self._in_model(name):
+                return subject
+            option, key = option_of(self.command, name)
+            if option:
+                return _typed(option, key, value)
+        return f"{name} is {in_sentence(value)}" if known else name
+
+    def _in_model(self, name: str) -> str:
+        """The model as it was typed, and which of its options is meant, if it is one of those."""
+        field = name.removeprefix("model.")
+        stated = re.split("[:=]", self.model)
+        if not self.model or "model" not in OPTIONS.get(self.command, {}):
+            return ""
+        if field in ("name", "model"):
+            return f"--model {in_sentence(self.model)}"
+        return f"--model {in_sentence(self.model)}, {field}" if field in stated else ""
+
+
+def _typed(option: str, key: str, value: Any) -> str:
+    """An option as the user typed it, so far as that is known."""
+    if option in PLACEHOLDERS and not key:
+        if isinstance(value, str):  # only the name behind the option
+            return f"{option} {in_sentence(value)}"
+        if not isinstance(value, dict) or len(value) != 1:
+            return option
+        ((key, value),) = value.items()
+    if value is NOT_GIVEN or (option in FLAGS and isinstance(value, bool)):
+        return f"{option} {key}".rstrip()
+    if option in PLACEHOLDERS or not key:
+        return option_with_value(
+            option, key, in_sentence(value) if isinstance(value, str) else value
+        )
+    return f"{option}: {key} is {in_sentence(value)}"
