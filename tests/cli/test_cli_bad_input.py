@@ -113,9 +113,12 @@ BAD = {
     "report of a recording": (["report", WELL], "no estimate"),
     "report of other JSON": (["report", "other.json"], "other.json"),
     "report of a newer estimate": (["report", "newer.json"], "update jointid"),
-    "report of half an estimate": (["report", "half.json"], "damaged"),
-    "report of deep JSON": (["report", "deep.json"], "no estimate"),
-    "report of an estimate without settings": (["report", "bare.json"], "damaged"),
+    "report of half an estimate": (["report", "half.json"], "parameters: this is missing"),
+    "report of deep JSON": (["report", "deep.json"], "nested too deeply"),
+    "report of an estimate without settings": (
+        ["report", "bare.json"],
+        "settings.version: this is missing",
+    ),
     "report of an estimate, into nowhere": (
         ["report", "estimate.json", "--output", "no/where/report.html"],
         "report.html",

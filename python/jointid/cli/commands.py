@@ -118,24 +118,12 @@ def compare(arguments: argparse.Namespace) -> None:
 
 def report(arguments: argparse.Namespace) -> None:
     """Write the HTML report of a saved estimate."""
-    from jointid.base.errors import InputError
     from jointid.estimate.estimate import Estimate
     from jointid.report.html import save_report
 
-    path = arguments.estimate
     check_page("--output", arguments.output)
-    try:
-        estimate = Estimate.from_json(path.read_text(encoding="utf-8"))
-        page = save_report(estimate, arguments.output)
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from error
-    except (UnicodeDecodeError, RecursionError) as error:
-        raise InputError(
-            f"{path}: this is no estimate; one is saved with identify --save estimate.json"
-        ) from error
-    except (ArithmeticError, AttributeError, LookupError, TypeError) as error:
-        told = f"{type(error).__name__} {error}"
-        raise InputError(f"{path}: the estimate's JSON is damaged: {told}") from error
+    estimate = Estimate.load(arguments.estimate)
+    page = save_report(estimate, arguments.output)
     if arguments.json:
         facts = {"report": str(page), "warnings": [warning.code for warning in estimate.warnings]}
         print(json.dumps(facts, indent=1, ensure_ascii=False))

@@ -115,9 +115,9 @@ class Estimate:
         return text_report(self)
 
     def _repr_html_(self) -> str:
-        from jointid.estimate.tables import html_summary
+        from jointid.estimate.html_tables import html_summary
 
-        return html_summary(self)
+        return str(html_summary(self))
 
     def to_json(self) -> str:
         """Everything, as JSON with a schema version; `Estimate.from_json` reads it back."""
@@ -138,6 +138,27 @@ class Estimate:
 
         require_kind("text", text, str)
         return read_estimate(text)
+
+    @classmethod
+    def load(cls, path: str | Path) -> Estimate:
+        """Read an estimate that was saved as .json.
+
+        Raises
+        ------
+        InputError
+            No such file, not JSON, not an estimate, or a newer schema; names the file and the place in it.
+        """
+        path = require_path("path", path)
+        try:
+            return cls.from_json(path.read_bytes().decode("utf-8"))
+        except UnicodeDecodeError:
+            raise InputError(
+                "this is no estimate: it is not text in UTF-8", place=str(path)
+            ) from None
+        except OSError as error:
+            raise InputError(f"it cannot be read: {error.strerror}", place=str(path)) from error
+        except InputError as error:
+            raise error.at(str(path)) from error
 
     def save(self, path: str | Path) -> None:
         """Save to a joint file (.toml: values go into its parameter table, comments stay) or to .json.

@@ -1,15 +1,29 @@
 """The JSON form of an estimate: complete enough to redraw every picture and to repeat the run."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid import _core
 from jointid.base.errors import InputError
+from jointid.base.schema import (
+    Flag,
+    Kind,
+    ListOf,
+    Number,
+    OrNull,
+    Plain,
+    Record,
+    TableOf,
+    Text,
+    read_json,
+)
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.settings import SETTINGS
 from jointid.estimate.statistics import Convergence, ParameterEstimate, ResidualStatistics, Warned
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_document, joint_from_document
@@ -19,6 +33,77 @@ SCHEMA = 1
 """Raised when a reader of the old form would misread the new one."""
 
 _KIND = "jointid estimate"
+
+_VALUE = Number(low=-1e100, high=1e100)  # far beyond any joint, and its square is still a number
+_NOT_NEGATIVE = Number(low=0.0, high=1e100)
+_POSITIVE = Number(low=1e-12, high=1e100)
+_COUNT = Number(low=0, high=2**62, whole=True)
+_LIMIT = Number(infinite=True)
+_ANY = Number(infinite=True, undefined=True)
+_MATRIX = ListOf(ListOf(_ANY))
+
+_PARAMETER = Record(
+    {
+        "name": Text(),
+        "meaning": Text(),
+        "unit": Text(),
+        "value": _VALUE,
+        "stderr": OrNull(_ANY),
+        "interval": OrNull(ListOf(_ANY, 2, 2)),
+        "min": _LIMIT,
+        "max": _LIMIT,
+        "vary": Flag(),
+        "at_bound": OrNull(Text(known=("min", "max"))),
+        "shift_halved": OrNull(_ANY),
+        "shift_doubled": OrNull(_ANY),
+    }
+)
+_RESIDUALS = Record(
+    {
+        "windows": _COUNT,
+        "window_duration": _POSITIVE,
+        "samples": _COUNT,
+        **dict.fromkeys(("noise_share", "rms", "relative", "r_squared"), _ANY),
+        **dict.fromkeys(("autocorrelation", "left_out", "standing"), _ANY),
+    }
+)
+_WINDOWS = Record(
+    {
+        "recording": ListOf(_COUNT, 1),
+        "duration": ListOf(_POSITIVE, 1),
+        **{name: ListOf(_VALUE, 1) for name in ("start", "stop", "measured", "fitted")},
+        **{name: ListOf(_VALUE, 1) for name in ("velocity", "friction")},
+    }
+)
+_CONVERGENCE = Record(
+    {
+        **{name: ListOf(_COUNT, 1) for name in ("generation", "evaluations")},
+        **{name: ListOf(_NOT_NEGATIVE, 1) for name in ("best", "mean")},
+        "diversity": ListOf(_ANY, 1),
+        **{f"{name}_probability": ListOf(_ANY, 1) for name in ("crossover", "mutation")},
+    }
+)
+_WARNING = Record({"code": Text(), "parameters": ListOf(Text()), "message": Text()})
+_FIELDS: dict[str, Kind] = {
+    "schema": _COUNT,
+    "kind": Text(),
+    "parameters": TableOf(_PARAMETER),
+    "free": ListOf(Text()),
+    "status": Text(),
+    "message": Text(),
+    "penalty": _NOT_NEGATIVE,
+    "correlation": _MATRIX,
+    "covariance": _MATRIX,
+    "condition": _ANY,
+    "weakest": ListOf(Text()),
+    "residuals": _RESIDUALS,
+    "windows": _WINDOWS,
+    "convergence": OrNull(_CONVERGENCE),
+    "joint": TableOf(Plain()),  # the joint has a reader of its own
+    "settings": SETTINGS,
+    "seconds": _NOT_NEGATIVE,
+}
+_ESTIMATE = Record({**_FIELDS, "warnings": ListOf(_WARNING)})
 
 
 def write_estimate(estimate: Estimate) -> str:
@@ -35,72 +120,95 @@ def read_estimate(text: str) -> Estimate:
     Raises
     ------
     InputError
-        Not JSON, not an estimate, a newer schema, or a missing field.
+        Not JSON, not an estimate, a newer schema, or a field that cannot be used; its place is the
+        JSON path, e.g. "parameters.coulomb.value".
     """
-    try:
-        document = json.loads(text)
-    except json.JSONDecodeError as error:
-        raise InputError(
-            f"not JSON: {error}; an estimate is saved with estimate.save('name.json')"
-        ) from error
+    document = read_json(text)
     if not isinstance(document, dict) or document.get("kind") != _KIND:
-        raise InputError(f"this JSON is not a jointid estimate: its field 'kind' is not '{_KIND}'")
-    if document.get("schema") != SCHEMA:
         raise InputError(
-            f"the estimate has schema {document.get('schema')!r}, this jointid reads {SCHEMA}; update jointid"
+            f"this JSON is not a jointid estimate: its field 'kind' is not '{_KIND}'",
+            remedy="save one with identify",
         )
-    try:
-        return _estimate(document)
-    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-        raise InputError(
-            f"the estimate's JSON is damaged: {type(error).__name__} {error}"
-        ) from error
+    schema = Number(low=1, whole=True).read(document.get("schema"), "schema")
+    if schema > SCHEMA:
+        reason = f"this jointid reads schemas up to {SCHEMA}"
+        raise InputError(reason, value=schema, place="schema", remedy="update jointid")
+    return _estimate(_ESTIMATE.read(document, ""))
 
 
 def _estimate(d: Mapping[str, Any]) -> Estimate:
+    for place, reason in _contradictions(d):
+        raise InputError(reason, place=place)
     history = d["convergence"]
     return Estimate(
         parameters={name: _parameter(entry) for name, entry in d["parameters"].items()},
         free=tuple(d["free"]),
         status=d["status"],
         message=d["message"],
-        penalty=float(d["penalty"]),
+        penalty=d["penalty"],
         correlation=_matrix(d["correlation"]),
-        condition=float(d["condition"]),
+        condition=d["condition"],
         weakest=tuple(d["weakest"]),
         covariance=_matrix(d["covariance"]),
         residuals=ResidualStatistics(**d["residuals"]),
-        windows=WindowTable(**_arrays(d["windows"], integers=("recording",))),
-        convergence=None
-        if history is None
-        else Convergence(**_arrays(history, integers=("generation", "evaluations"))),
+        windows=WindowTable(**_arrays(d["windows"])),
+        convergence=None if history is None else Convergence(**_arrays(history)),
         warnings=tuple(
             Warned(code=w["code"], parameters=tuple(w["parameters"]), message=w["message"])
             for w in d["warnings"]
         ),
-        joint=joint_from_document(d["joint"], "estimate"),
+        joint=joint_from_document(d["joint"], "joint"),
         settings=d["settings"],
-        seconds=float(d["seconds"]),
+        seconds=d["seconds"],
     )
 
 
+def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Places where fields, each right by itself, do not fit together."""
+    names, free = d["parameters"], d["free"]
+    for name, entry in names.items():
+        if entry["name"] != name:
+            yield f"parameters.{name}.name", "this is not the name of the entry"
+    for i, name in enumerate(free):
+        if name not in names or name in free[:i]:
+            yield f"free[{i}]", "this is none of the parameters, or there twice"
+    for field in ("correlation", "covariance"):
+        if any(len(row) != len(free) for row in (d[field], *d[field])):
+            yield field, f"{len(free)} rows of {len(free)} are expected, as many as free parameters"
+    for field in ("windows", "convergence"):
+        if d[field] is not None and len({len(column) for column in d[field].values()}) > 1:
+            yield field, "lists of the same length are expected"
+    if max(d["windows"]["recording"]) >= len(d["settings"]["recordings"]):
+        yield "windows.recording", "there are not so many recordings in settings.recordings"
+    values = {name.partition("[")[0] for name in names}  # coulomb[0] is one recording's own
+    for i, key in enumerate(d["settings"]["terms"]):
+        term = _term(key)
+        if term is None or not {term.name, *term.shapes} <= values:
+            yield f"settings.terms[{i}]", "this is no term with a value among the parameters"
+
+
+def _term(key: str) -> _core.Term | None:
+    try:
+        return _core.term(key)
+    except ValueError:  # the core's answer to an unknown key
+        return None
+
+
 def _parameter(entry: Mapping[str, Any]) -> ParameterEstimate:
-    values = dict(entry)
-    for name in ("stderr", "shift_halved", "shift_doubled"):
-        values[name] = None if values[name] is None else float(values[name])
-    if values["interval"] is not None:
-        values["interval"] = (float(values["interval"][0]), float(values["interval"][1]))
-    return ParameterEstimate(**values)
+    interval = None if entry["interval"] is None else tuple(entry["interval"])
+    return ParameterEstimate(**{**entry, "interval": interval})
 
 
-def _matrix(rows: Sequence[Sequence[Any]]) -> NDArray[np.float64]:
-    matrix = np.array([[float(x) for x in row] for row in rows], dtype=np.float64)
-    return matrix.reshape(len(rows), len(rows))
+def _matrix(rows: Sequence[Sequence[float]]) -> NDArray[np.float64]:
+    return np.array(rows, dtype=np.float64).reshape(len(rows), len(rows))
 
 
-def _arrays(columns: Mapping[str, Any], *, integers: Sequence[str]) -> dict[str, Any]:
+_INTEGERS = ("recording", "generation", "evaluations")
+
+
+def _arrays(columns: Mapping[str, Any]) -> dict[str, Any]:
     return {
-        name: np.array(values, dtype=np.int64 if name in integers else np.float64)
+        name: np.array(values, dtype=np.int64 if name in _INTEGERS else np.float64)
         for name, values in columns.items()
     }
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
+from jointid.estimate.settings import model_name
 from jointid.problem.problem import Problem, listed
 from jointid.problem.terms import TermChoice
 from jointid.problem.window_table import Prediction, r_squared, relative_residual
@@ -23,7 +24,7 @@ def predict(estimate: Estimate, recording: Recording) -> Prediction:
     settings = estimate.settings
     choice = TermChoice(
         terms=tuple(settings["terms"]),
-        model=settings["model"],
+        model=model_name(settings),
         residual=settings["residual"],
         sensor="sensor_gain" in settings["terms"],
         gear_ratio=estimate.joint.gear_ratio,

@@ -1,14 +1,13 @@
-"""An estimate as text, and as a small HTML table for notebooks."""
-
-from html import escape
+"""An estimate as text."""
 
 import numpy as np
 
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.settings import model_description, residual_unit
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import number, percent, two_digits
 
-_HEAD = ("parameter", "value", "± std. error", "95 % interval", "unit", "remark")
+HEAD = ("parameter", "value", "± std. error", "95 % interval", "unit", "remark")
 
 
 def remark(p: ParameterEstimate) -> str:
@@ -34,16 +33,9 @@ def rows(estimate: Estimate) -> list[tuple[str, str, str, str, str, str]]:
 def quality(estimate: Estimate) -> list[tuple[str, str]]:
     """How well it fits and what it rests on, as label and text."""
     r = estimate.residuals
-    settings = estimate.settings
-    unit = (
-        "sensor units"
-        if settings["residual"] == "sensor"
-        else "N"
-        if settings["kind"] == "prismatic"
-        else "N·m"
-    )
+    unit = residual_unit(estimate.settings)
     return [
-        ("model", _model(estimate)),
+        ("model", model_description(estimate.settings)),
         (
             "fit",
             f"R² {r.r_squared:.5f}, relative residual {100.0 * r.relative:.2f} %, rms {r.rms:.3g} {unit}",
@@ -63,17 +55,6 @@ def quality(estimate: Estimate) -> list[tuple[str, str]]:
     ]
 
 
-def _model(estimate: Estimate) -> str:
-    settings = estimate.settings
-    options = ["asymmetric"] if settings["asymmetric"] else []
-    options += ["load friction"] if settings["load_friction"] else []
-    for name in ("ripple", "harmonics"):
-        if settings[name]:
-            options.append(f"{name} of order {', '.join(f'{order:g}' for order in settings[name])}")
-    text = ", ".join([settings["model"], *options, f"residual of the {settings['residual']}"])
-    return f"{text} (without {settings['dropped']})" if settings["dropped"] else text
-
-
 def strongest_correlation(estimate: Estimate) -> str:
     """The pair of parameters that the recording separates least."""
     size = np.abs(np.triu(estimate.correlation, 1))
@@ -86,8 +67,8 @@ def strongest_correlation(estimate: Estimate) -> str:
 
 def text_report(estimate: Estimate) -> str:
     """The estimate as text."""
-    table = [_HEAD, *rows(estimate)]
-    widths = [max(len(row[column]) for row in table) for column in range(len(_HEAD))]
+    table = [HEAD, *rows(estimate)]
+    widths = [max(len(row[column]) for row in table) for column in range(len(HEAD))]
     lines = [f"jointid estimate — {estimate.joint.name or 'joint'}", ""]
     for index, row in enumerate(table):
         cells = [
@@ -106,57 +87,3 @@ def text_report(estimate: Estimate) -> str:
         lines.append("no warnings")
     lines += [f"warning ({w.code}): {w.message}" for w in estimate.warnings]
     return "\n".join(lines)
-
-
-def html_correlation(estimate: Estimate) -> str:
-    """The correlation matrix of the free parameters as HTML."""
-    head = "".join(f"<th>{escape(name)}</th>" for name in ("", *estimate.free))
-    body = ""
-    for name, row in zip(estimate.free, estimate.correlation, strict=True):
-        body += f"<tr><th>{escape(name)}</th>" + "".join(f"<td>{x:.2f}</td>" for x in row) + "</tr>"
-    return f"<table class='numbers'><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
-
-
-def html_shifts(estimate: Estimate) -> str:
-    """How each value moves when the windows are halved and doubled, as HTML."""
-    head = "<th>parameter</th><th>windows halved</th><th>windows doubled</th><th>std. error</th><th>unit</th>"
-    body = ""
-    for p in estimate.parameters.values():
-        if p.vary:
-            shown = (p.shift_halved, p.shift_doubled)
-            cells = "".join(f"<td>{'–' if s is None else f'{s:+.3g}'}</td>" for s in shown)
-            cells += f"<td>{'–' if p.stderr is None else two_digits(p.stderr)}</td>"
-            body += f"<tr><th>{escape(p.name)}</th>{cells}<th>{escape(p.unit)}</th></tr>"
-    return f"<table class='numbers'><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
-
-
-def html_table(estimate: Estimate) -> str:
-    """The parameter table as HTML."""
-    head = "".join(f"<th>{escape(cell)}</th>" for cell in _HEAD)
-    body = "".join(
-        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>"
-        for row in rows(estimate)
-    )
-    return f"<table class='jointid'><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
-
-
-def html_warnings(estimate: Estimate) -> str:
-    """The warnings as an HTML list, or a line that says there are none."""
-    if not estimate.warnings:
-        return "<p>No warnings.</p>"
-    items = "".join(
-        f"<li><b>{escape(w.code)}</b>: {escape(w.message)}</li>" for w in estimate.warnings
-    )
-    return f"<ul class='warnings'>{items}</ul>"
-
-
-def html_summary(estimate: Estimate) -> str:
-    """What a notebook shows for an estimate."""
-    r = estimate.residuals
-    caption = (
-        f"R² {r.r_squared:.5f}, relative residual {100.0 * r.relative:.2f} %, {r.windows} windows of "
-        f"{1e3 * r.window_duration:.4g} ms"
-    )
-    title = escape(estimate.joint.name or "joint")
-    parts = (html_table(estimate), f"<p>{escape(caption)}</p>", html_warnings(estimate))
-    return f"<div><b>jointid estimate — {title}</b>{''.join(parts)}</div>"

@@ -5,20 +5,20 @@ from __future__ import annotations
 import base64
 import io
 from collections.abc import Callable
-from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jointid import plot
 from jointid.base.argument_checks import require_path
 from jointid.base.files import write_whole
+from jointid.base.html import Html, element, page
 from jointid.estimate.estimate import Estimate
-from jointid.estimate.tables import (
+from jointid.estimate.html_tables import (
     html_correlation,
+    html_quality,
     html_shifts,
     html_table,
     html_warnings,
-    quality,
 )
 
 if TYPE_CHECKING:
@@ -47,21 +47,42 @@ def html_report(estimate: Estimate) -> str:
     ----------
     estimate : Estimate
     """
-    title = f"{escape(estimate.joint.name or 'joint')}: friction identified by jointid"
-    parts = [
-        "<!doctype html><html lang='en'><head><meta charset='utf-8'>",
-        f"<title>{title}</title><style>{_CSS}</style></head><body><h1>{title}</h1>",
-        "<h2>Parameters</h2>",
+    title = f"{estimate.joint.name or 'joint'}: friction identified by jointid"
+    body = [
+        element("h1", title),
+        element("h2", "Parameters"),
         html_table(estimate),
-        "<h2>What to mind</h2>",
+        element("h2", "Warnings"),
         html_warnings(estimate),
-        "<h2>Friction map</h2>",
+        *_pictures(estimate),
+        element("h2", "How far to trust it"),
+        element(
+            "p",
+            "Shift of each value when the windows are halved and doubled; about a standard error is usual.",
+        ),
+        html_shifts(estimate),
+        element(
+            "p",
+            "Correlation of the estimates (offsets taken at the mean reading); near ±1, two parameters are "
+            "indistinguishable.",
+        ),
+        html_correlation(estimate),
+        element("h2", "How it was found"),
+        html_quality(estimate),
+        _footer(estimate),
+    ]
+    return page(title, _CSS, *body)
+
+
+def _pictures(estimate: Estimate) -> list[Html]:
+    parts = [
+        element("h2", "Friction map"),
         _picture(
             "Friction map: a grey point is the friction that the recording shows over one window, the line is the "
             "identified model with its 95 % band.",
             lambda axes: plot.friction_map(None, estimate, axes[0]),
         ),
-        "<h2>Windows</h2>",
+        element("h2", "Windows"),
         _picture(
             "Above: what was measured over each window and what the model makes of it. Below: the difference. Windows "
             "in which the joint stands still are left out.",
@@ -74,24 +95,13 @@ def html_report(estimate: Estimate) -> str:
     ]
     if estimate.convergence is not None:
         parts += [
-            "<h2>Convergence</h2>",
+            element("h2", "Convergence"),
             _picture(
                 "The genetic search, generation by generation; dashed: the penalty after the local polish.",
                 lambda axes: plot.convergence(estimate, axes[0]),
             ),
         ]
-    parts += [
-        "<h2>How far to trust it</h2>",
-        "<p>Shift of each value when the windows are halved and doubled; about a standard error is usual.</p>",
-        html_shifts(estimate),
-        "<p>Correlation of the estimates (offsets taken at the mean reading); near ±1, two cannot be told apart.</p>",
-        html_correlation(estimate),
-        "<h2>How it was found</h2>",
-        _facts(estimate),
-        _footer(estimate),
-        "</body></html>",
-    ]
-    return "\n".join(parts)
+    return parts
 
 
 def save_report(estimate: Estimate, path: str | Path) -> Path:
@@ -101,7 +111,7 @@ def save_report(estimate: Estimate, path: str | Path) -> Path:
     return target
 
 
-def _picture(caption: str, draw: Callable[[list[Axes]], object], rows: int = 1) -> str:
+def _picture(caption: str, draw: Callable[[list[Axes]], object], rows: int = 1) -> Html:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -114,8 +124,8 @@ def _picture(caption: str, draw: Callable[[list[Axes]], object], rows: int = 1) 
         for upper in axes[:-1]:
             upper.set_xlabel("")
         image = _png(figure)
-    text = escape(caption)
-    return f"<figure><img alt='{text}' src='data:image/png;base64,{image}'><figcaption>{text}</figcaption></figure>"
+    picture = element("img", alt=caption, src=f"data:image/png;base64,{image}")
+    return element("figure", picture, element("figcaption", caption))
 
 
 def _png(figure: Figure) -> str:
@@ -124,18 +134,9 @@ def _png(figure: Figure) -> str:
     return base64.b64encode(buffer.getvalue()).decode("ascii")
 
 
-def _facts(estimate: Estimate) -> str:
-    rows = "".join(
-        f"<tr><td>{escape(label)}</td><td>{escape(text)}</td></tr>"
-        for label, text in quality(estimate)
-    )
-    return f"<table class='facts'>{rows}</table>"
-
-
-def _footer(estimate: Estimate) -> str:
+def _footer(estimate: Estimate) -> Html:
     settings = estimate.settings
     runs = "; ".join(
-        f"{escape(str(run['name'] or 'recording'))} ({escape(str(run['fingerprint']))})"
-        for run in settings["recordings"]
+        f"{run['name'] or 'recording'} ({run['fingerprint']})" for run in settings["recordings"]
     )
-    return f"<footer>jointid {escape(str(settings['version']))}, seed {settings['seed']}; {runs}</footer>"
+    return element("footer", f"jointid {settings['version']}, seed {settings['seed']}; {runs}")
