@@ -12,12 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from jointid.base.argument_checks import require_kind, require_path
 from jointid.base.errors import InputError
+from jointid.estimate.findings import Finding
 from jointid.estimate.statistics import (
     Convergence,
     FrictionCurve,
     ParameterEstimate,
     ResidualStatistics,
-    Warned,
 )
 from jointid.problem.window_table import Prediction, WindowTable
 
@@ -54,7 +54,10 @@ class Estimate:
     windows : WindowTable
     convergence : Convergence or None
         None without a genetic search.
-    warnings : tuple of Warned
+    findings : tuple of Finding
+        What the data and the fit show, the gravest first; `docs/findings.md` lists the codes.
+    warnings : tuple of Finding
+        The findings of severity "warning" or "blocking".
     joint : Joint
         The joint with the estimated values, ready to be used or saved.
     settings : mapping
@@ -75,7 +78,7 @@ class Estimate:
     residuals: ResidualStatistics
     windows: WindowTable
     convergence: Convergence | None
-    warnings: tuple[Warned, ...]
+    findings: tuple[Finding, ...]
     joint: Joint
     settings: Mapping[str, Any]
     seconds: float = field(repr=False)
@@ -83,6 +86,11 @@ class Estimate:
     def __repr__(self) -> str:
         values = ", ".join(f"{p.name}={p.value:.6g}" for p in self.parameters.values())
         return f"Estimate({values}; {len(self.warnings)} warnings)"
+
+    @property
+    def warnings(self) -> tuple[Finding, ...]:
+        """Findings that may bias values or make them unusable."""
+        return tuple(found for found in self.findings if found.severity != "info")
 
     def friction(self, velocity: ArrayLike) -> FrictionCurve:
         """Friction at given velocities, with a pointwise 95 % band.

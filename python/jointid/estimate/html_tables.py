@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from jointid.base.html import Html, element, table
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.findings import Finding
 from jointid.estimate.tables import HEAD, quality, rows
 from jointid.estimate.wording import two_digits
 
@@ -39,12 +42,27 @@ def html_shifts(estimate: Estimate) -> Html:
     return table(body, head=head, class_="numbers")
 
 
-def html_warnings(estimate: Estimate) -> Html:
-    """The warnings as a list, or a line that says there are none."""
-    if not estimate.warnings:
+def html_findings(estimate: Estimate, pictures: Mapping[str, str] | None = None) -> Html:
+    """The findings as a list, or a line that says there are none.
+
+    Parameters
+    ----------
+    estimate : Estimate
+    pictures : mapping of str to str, optional
+        Code → section of the page that shows it, which the finding then links to. Default: no links.
+    """
+    if not estimate.findings:
         return element("p", "No warnings.")
-    items = (element("li", element("b", w.code), ": ", w.message) for w in estimate.warnings)
-    return element("ul", *items, class_="warnings")
+    return element(
+        "ul", *(_finding(found, pictures or {}) for found in estimate.findings), class_="findings"
+    )
+
+
+def _finding(found: Finding, pictures: Mapping[str, str]) -> Html:
+    parts: list[Html | str] = [element("b", found.code), f" ({found.severity}): {found.message}"]
+    if found.code in pictures:
+        parts += [" ", element("a", "picture", href=f"#{pictures[found.code]}")]
+    return element("li", *parts, class_=found.severity)
 
 
 def html_summary(estimate: Estimate) -> Html:
@@ -56,5 +74,5 @@ def html_summary(estimate: Estimate) -> Html:
     )
     title = element("b", f"jointid estimate — {estimate.joint.name or 'joint'}")
     return element(
-        "div", title, html_table(estimate), element("p", caption), html_warnings(estimate)
+        "div", title, html_table(estimate), element("p", caption), html_findings(estimate)
     )

@@ -3,12 +3,14 @@
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.advice import Action
+from jointid.base.advice import Kind as ActionKind
 from jointid.base.errors import InputError
 from jointid.base.schema import (
     Flag,
@@ -23,14 +25,15 @@ from jointid.base.schema import (
     read_json,
 )
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.findings import Finding, Measured, Severity
 from jointid.estimate.settings import SETTINGS
-from jointid.estimate.statistics import Convergence, ParameterEstimate, ResidualStatistics, Warned
+from jointid.estimate.statistics import Convergence, ParameterEstimate, ResidualStatistics
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_document, joint_from_document
 from jointid.problem.window_table import WindowTable
 
-SCHEMA = 1
-"""Raised when a reader of the old form would misread the new one."""
+SCHEMA = 2
+"""Raised when a reader of the old form would misread the new one. 2: findings in place of warnings."""
 
 _KIND = "jointid estimate"
 
@@ -84,6 +87,25 @@ _CONVERGENCE = Record(
     }
 )
 _WARNING = Record({"code": Text(), "parameters": ListOf(Text()), "message": Text()})
+_ACTION = Record(
+    {
+        "kind": Text(known=get_args(ActionKind)),
+        "arguments": TableOf(Plain()),
+        "text": Text(),
+        "function": Text(),
+    }
+)
+_FINDING = Record(
+    {
+        "code": Text(),
+        "severity": Text(known=get_args(Severity)),
+        "parameters": ListOf(Text()),
+        "evidence": TableOf(Record({"value": _ANY, "unit": Text()})),
+        "cause": Text(),
+        "advice": ListOf(_ACTION),
+        "message": Text(),
+    }
+)
 _FIELDS: dict[str, Kind] = {
     "schema": _COUNT,
     "kind": Text(),
@@ -103,7 +125,10 @@ _FIELDS: dict[str, Kind] = {
     "settings": SETTINGS,
     "seconds": _NOT_NEGATIVE,
 }
-_ESTIMATE = Record({**_FIELDS, "warnings": ListOf(_WARNING)})
+_ESTIMATE = {
+    1: Record({**_FIELDS, "warnings": ListOf(_WARNING)}),
+    2: Record({**_FIELDS, "findings": ListOf(_FINDING)}),
+}
 
 
 def write_estimate(estimate: Estimate) -> str:
@@ -111,6 +136,8 @@ def write_estimate(estimate: Estimate) -> str:
     document: dict[str, Any] = {"schema": SCHEMA, "kind": _KIND}
     for item in fields(Estimate):
         document[item.name] = _plain(getattr(estimate, item.name))
+    for entry, found in zip(document["findings"], estimate.findings, strict=True):
+        entry["message"] = found.message  # for readers that are not ours
     return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
 
 
@@ -129,11 +156,11 @@ def read_estimate(text: str) -> Estimate:
             f"this JSON is not a jointid estimate: its field 'kind' is not '{_KIND}'",
             remedy="save one with identify",
         )
-    schema = Number(low=1, whole=True).read(document.get("schema"), "schema")
+    schema = int(Number(low=1, whole=True).read(document.get("schema"), "schema"))
     if schema > SCHEMA:
         reason = f"this jointid reads schemas up to {SCHEMA}"
         raise InputError(reason, value=schema, place="schema", remedy="update jointid")
-    return _estimate(_ESTIMATE.read(document, ""))
+    return _estimate(_ESTIMATE[schema].read(document, ""))
 
 
 def _estimate(d: Mapping[str, Any]) -> Estimate:
@@ -153,10 +180,9 @@ def _estimate(d: Mapping[str, Any]) -> Estimate:
         residuals=ResidualStatistics(**d["residuals"]),
         windows=WindowTable(**_arrays(d["windows"])),
         convergence=None if history is None else Convergence(**_arrays(history)),
-        warnings=tuple(
-            Warned(code=w["code"], parameters=tuple(w["parameters"]), message=w["message"])
-            for w in d["warnings"]
-        ),
+        findings=tuple(_finding(each) for each in d["findings"])
+        if "findings" in d
+        else tuple(_old_warning(each) for each in d["warnings"]),
         joint=joint_from_document(d["joint"], "joint"),
         settings=d["settings"],
         seconds=d["seconds"],
@@ -172,6 +198,10 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     for i, name in enumerate(free):
         if name not in names or name in free[:i]:
             yield f"free[{i}]", "this is none of the parameters, or there twice"
+    for i, found in enumerate(d.get("findings", ())):
+        for j, action in enumerate(found["advice"]):
+            if action["kind"] == "call" and not action["arguments"]:
+                yield f"findings[{i}].advice[{j}].arguments", "a call needs arguments"
     for field in ("correlation", "covariance"):
         if any(len(row) != len(free) for row in (d[field], *d[field])):
             yield field, f"{len(free)} rows of {len(free)} are expected, as many as free parameters"
@@ -197,6 +227,24 @@ def _term(key: str) -> _core.Term | None:
 def _parameter(entry: Mapping[str, Any]) -> ParameterEstimate:
     interval = None if entry["interval"] is None else tuple(entry["interval"])
     return ParameterEstimate(**{**entry, "interval": interval})
+
+
+def _finding(entry: Mapping[str, Any]) -> Finding:
+    return Finding(
+        code=entry["code"],
+        severity=entry["severity"],
+        parameters=tuple(entry["parameters"]),
+        evidence={name: Measured(**measured) for name, measured in entry["evidence"].items()},
+        cause=entry["cause"],
+        advice=tuple(Action(**each) for each in entry["advice"]),
+    )
+
+
+def _old_warning(entry: Mapping[str, Any]) -> Finding:
+    """A finding of schema 1: a finished sentence."""
+    return Finding(
+        code=entry["code"], parameters=tuple(entry["parameters"]), cause=entry["message"]
+    )
 
 
 def _matrix(rows: Sequence[Sequence[float]]) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""The parts of an estimate: parameters, residuals, convergence, warnings, curves."""
+"""The parts of an estimate: parameters, residuals, convergence, curves."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -110,25 +110,6 @@ class Convergence:
     crossover_probability: Array
     mutation_probability: Array
     evaluations: NDArray[np.int64]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Warned:
-    """One warning.
-
-    Attributes
-    ----------
-    code : str
-        Stable name, e.g. "undetermined"; the README lists them.
-    parameters : tuple of str
-        Concerned parameters.
-    message : str
-        Plain language: what, how bad, what to do.
-    """
-
-    code: str
-    parameters: tuple[str, ...]
-    message: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -1,7 +1,10 @@
 """An estimate as text."""
 
+from collections.abc import Callable
+
 import numpy as np
 
+from jointid.base.advice import Action
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.settings import model_description, residual_unit
 from jointid.estimate.statistics import ParameterEstimate
@@ -65,8 +68,15 @@ def strongest_correlation(estimate: Estimate) -> str:
     return f"strongest {estimate.correlation[first, second]:.2f}, between {pair}"
 
 
-def text_report(estimate: Estimate) -> str:
-    """The estimate as text."""
+def text_report(estimate: Estimate, action: Callable[[Action], str] = str) -> str:
+    """The estimate as text.
+
+    Parameters
+    ----------
+    estimate : Estimate
+    action : callable
+        Words the advice of a finding. Default: as at a Python prompt.
+    """
     table = [HEAD, *rows(estimate)]
     widths = [max(len(row[column]) for row in table) for column in range(len(HEAD))]
     lines = [f"jointid estimate — {estimate.joint.name or 'joint'}", ""]
@@ -79,11 +89,13 @@ def text_report(estimate: Estimate) -> str:
         if index == 0:
             lines.append("  ".join("-" * w for w in widths))
     lines.append("")
-    facts = quality(estimate)
-    width = max(len(label) for label, _ in facts)
-    lines += [f"{label.ljust(width)}  {text}" for label, text in facts]
+    pairs = quality(estimate)
+    width = max(len(label) for label, _ in pairs)
+    lines += [f"{label.ljust(width)}  {text}" for label, text in pairs]
     lines.append("")
     if not estimate.warnings:
         lines.append("no warnings")
-    lines += [f"warning ({w.code}): {w.message}" for w in estimate.warnings]
+    lines += [
+        f"{found.severity} ({found.code}): {found.worded(action)}" for found in estimate.findings
+    ]
     return "\n".join(lines)

@@ -15,11 +15,12 @@ from jointid.base.html import Html, element, page
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.html_tables import (
     html_correlation,
+    html_findings,
     html_quality,
     html_shifts,
     html_table,
-    html_warnings,
 )
+from jointid.identification.warnings.registry import finding_types
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,7 +36,7 @@ table.facts td:nth-child(2) { text-align: left; }
 table.numbers th { text-align: left; font-weight: normal; } table.numbers td { text-align: right; }
 figure { margin: 1rem 0; } img { max-width: 100%; height: auto; }
 figcaption { color: #555; font-size: .9rem; }
-ul.warnings li { margin-bottom: .4rem; }
+ul.findings li { margin-bottom: .4rem; } li.blocking b { color: #b00; } li.info { color: #555; }
 footer { margin-top: 3rem; color: #777; font-size: .85rem; }
 """
 
@@ -53,7 +54,7 @@ def html_report(estimate: Estimate) -> str:
         element("h2", "Parameters"),
         html_table(estimate),
         element("h2", "Warnings"),
-        html_warnings(estimate),
+        html_findings(estimate, _shown_by(estimate)),
         *_pictures(estimate),
         element("h2", "How far to trust it"),
         element(
@@ -74,15 +75,23 @@ def html_report(estimate: Estimate) -> str:
     return page(title, _CSS, *body)
 
 
+def _shown_by(estimate: Estimate) -> dict[str, str]:
+    """The picture that shows each kind of finding."""
+    types = finding_types().items()
+    searched = estimate.convergence is not None
+    shown = {code: each.picture for code, each in types if each.picture}
+    return {code: name for code, name in shown.items() if searched or name != "convergence"}
+
+
 def _pictures(estimate: Estimate) -> list[Html]:
     parts = [
-        element("h2", "Friction map"),
+        element("h2", "Friction map", id="friction-map"),
         _picture(
             "Friction map: a grey point is the friction that the recording shows over one window, the line is the "
             "identified model with its 95 % band.",
             lambda axes: plot.friction_map(None, estimate, axes[0]),
         ),
-        element("h2", "Windows"),
+        element("h2", "Windows", id="windows"),
         _picture(
             "Above: what was measured over each window and what the model makes of it. Below: the difference. Windows "
             "in which the joint stands still are left out.",
@@ -95,7 +104,7 @@ def _pictures(estimate: Estimate) -> list[Html]:
     ]
     if estimate.convergence is not None:
         parts += [
-            element("h2", "Convergence"),
+            element("h2", "Convergence", id="convergence"),
             _picture(
                 "The genetic search, generation by generation; dashed: the penalty after the local polish.",
                 lambda axes: plot.convergence(estimate, axes[0]),

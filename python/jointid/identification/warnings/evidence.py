@@ -1,4 +1,4 @@
-"""What warnings are drawn from."""
+"""Inputs shared by all warning checks."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Regressor:
-    """The window integrals of all terms, and behind them of the torque, as far as least squares cares.
+    """The window integrals of all terms, and behind them of the torque, reduced to a triangle.
 
     Attributes
     ----------
@@ -45,8 +45,8 @@ class Regressor:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Facts:
-    """An estimate in the making, and where it came from.
+class Evidence:
+    """Inputs shared by all warning checks: a fit, and what it was made from.
 
     Attributes
     ----------
@@ -103,6 +103,12 @@ class Facts:
     def model(self) -> str:
         """Name of the friction model."""
         return self.problem.choice.model
+
+    @property
+    def sensor_parameters(self) -> tuple[str, ...]:
+        """Parameters of the torque sensor."""
+        names = ("sensor_gain", "sensor_offset")
+        return tuple(name for name in names if name in self.parameters)
 
     def regressor(self, best: Array | None = None) -> Regressor:
         """Every term's window integrals and the target's, at the shapes found or others [unit · s]."""

@@ -27,7 +27,7 @@ class Inspected:
     found: _core.Inspection
     channels: tuple[str, ...]
 
-    def facts(self, name: str) -> _core.SignalFacts:
+    def counts(self, name: str) -> _core.SignalFacts:
         """Counts of one signal."""
         return self.found.facts[self.channels.index(name)]
 
@@ -37,8 +37,8 @@ class Inspected:
 
     def stale_share(self, name: str) -> float:
         """Share of the moving samples at which a finely resolved signal does not change."""
-        facts = self.facts(name)
-        return facts.stale / facts.moving if facts.fine and facts.moving else 0.0
+        counts = self.counts(name)
+        return counts.stale / counts.moving if counts.fine and counts.moving else 0.0
 
 
 def inspect(recording: Recording, threads: int = 0) -> Inspected:

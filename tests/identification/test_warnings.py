@@ -1,4 +1,4 @@
-"""Warnings: each defect is named, good recordings stay silent, undetermined values and ripple are told."""
+"""Warnings: each defect is named, good recordings raise none, undetermined values and ripple are reported."""
 
 import math
 import re
@@ -12,16 +12,16 @@ from simulated_joint import TRUTH, simulate
 
 import jointid as jid
 from jointid.cli.demo import data_folder
-from jointid.estimate.statistics import Warned
-from jointid.identification.warnings.motion import _sensor_lag, _timing_errors
+from jointid.estimate.findings import Finding
+from jointid.identification.warnings.inspection import inspect
 
 
 def codes(estimate: jid.Estimate) -> set[str]:
-    return {warning.code for warning in estimate.warnings}
+    return {found.code for found in estimate.findings}
 
 
-def warned(estimate: jid.Estimate, code: str) -> Warned:
-    (found,) = (warning for warning in estimate.warnings if warning.code == code)
+def warned(estimate: jid.Estimate, code: str) -> Finding:
+    (found,) = (each for each in estimate.findings if each.code == code)
     return found
 
 
@@ -42,18 +42,18 @@ def simulated(folder: Path, name: str) -> jid.Recording:
 def test_a_good_recording_is_silent(well_excited: jid.Recording, residual: str) -> None:
     joint = jid.thesis_joint()
     estimate = jid.identify(well_excited, joint, residual=residual, method="separable")
-    assert estimate.warnings == ()
+    assert estimate.findings == ()
 
 
 def test_a_good_recording_without_its_velocity_is_silent(well_excited: jid.Recording) -> None:
-    assert separable(changed(well_excited, velocity=None)).warnings == ()
+    assert separable(changed(well_excited, velocity=None)).findings == ()
 
 
 @pytest.mark.parametrize("defect", DEFECTS)
 def test_a_defect_is_named(well_excited: jid.Recording, defect: str) -> None:
     make, code = DEFECTS[defect]
     estimate = separable(make(well_excited))
-    told = [warning for warning in estimate.warnings if warning.code == code]
+    told = [found for found in estimate.findings if found.code == code]
     assert len(told) == 1
     assert len(told[0].message) > 60  # what, how bad, what to do
     # None of the other defects' codes is raised beside it.
@@ -112,19 +112,19 @@ def test_the_lag_is_measured(well_excited: jid.Recording) -> None:
     assert "velocity lags the position by 3 ms" in told
     assert well_excited.sensor is not None
     late = np.interp(well_excited.time - 5e-3, well_excited.time, well_excited.sensor)
-    before, _ = _sensor_lag(well_excited)
-    lag, error = _sensor_lag(changed(well_excited, sensor=late))
+    before, _ = inspect(well_excited).found.sensor_lag
+    lag, error = inspect(changed(well_excited, sensor=late)).found.sensor_lag
     assert lag - before == pytest.approx(5e-3, rel=0.3)
     assert lag > 20 * error
 
 
 def test_the_jitter_is_measured(well_excited: jid.Recording) -> None:
-    stamped, even = _timing_errors(
-        DEFECTS["stamps jittered, samples even"][0](well_excited),
-    )
+    make, _ = DEFECTS["stamps jittered, samples even"]
+    stamped, even = inspect(make(well_excited)).found.timing_errors
     assert stamped == pytest.approx(0.2e-3, rel=0.15)
     assert even < 0.1 * stamped
-    stamped, even = _timing_errors(DEFECTS["samples jittered, stamps even"][0](well_excited))
+    make, _ = DEFECTS["samples jittered, stamps even"]
+    stamped, even = inspect(make(well_excited)).found.timing_errors
     assert stamped == pytest.approx(0.2e-3, rel=0.15)
     assert even == pytest.approx(stamped)
 
@@ -194,7 +194,7 @@ def test_an_inertia_that_noise_hides_is_named(shared_data: Path, name: str, grav
 def test_ripple_is_named_by_its_frequency(shared_data: Path, name: str) -> None:
     told = warned(separable(simulated(shared_data, name)), "ripple")
     assert "2 × motor angle" in told.message
-    assert "ripple=(2,)" in told.message
+    assert dict(told.advice[0].arguments) == {"model": "stribeck:ripple=2"}
 
 
 @pytest.mark.parametrize("multiple", [1, 4])
