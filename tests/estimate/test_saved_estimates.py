@@ -1,5 +1,6 @@
 """A saved estimate is read again whatever stands in it: values, one sentence, and no script in a page."""
 
+import functools
 import json
 import math
 from collections.abc import Iterator
@@ -11,6 +12,7 @@ from matplotlib.figure import Figure
 
 import jointid as jid
 from jointid.base import html
+from jointid.cli.demo import data_folder
 from jointid.report import html as report
 
 SAVED = Path(__file__).with_name("estimate_schema_1.json")
@@ -33,8 +35,19 @@ JUNK = {
 Path_ = tuple[str | int, ...]
 
 
-def document() -> dict[str, Any]:
-    return dict(json.loads(SAVED.read_text(encoding="utf-8")))
+@functools.cache
+def text_of(schema: int) -> str:
+    """An estimate as this code saves it, and one saved by code with an older schema."""
+    if schema == 1:
+        return SAVED.read_text(encoding="utf-8")
+    run = jid.load(data_folder() / "kr300_joint1.csv.gz")
+    joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
+    ga = jid.GaOptions(population=20, generations=3)
+    return jid.identify(run, joint, model="stribeck", windows=12, ga=ga).to_json()
+
+
+def document(schema: int = 2) -> dict[str, Any]:
+    return dict(json.loads(text_of(schema)))
 
 
 def paths(value: Any, here: Path_ = ()) -> Iterator[Path_]:
@@ -49,9 +62,9 @@ def paths(value: Any, here: Path_ = ()) -> Iterator[Path_]:
             yield from paths(value[i], (*here, i))
 
 
-def damaged(path: Path_, junk: str) -> str:
+def damaged(path: Path_, junk: str, schema: int = 2) -> str:
     """The saved estimate with one place set to this JSON text."""
-    changed: Any = {"all": document()}
+    changed: Any = {"all": document(schema)}
     inner = changed
     for key in ("all", *path)[:-1]:
         inner = inner[key]
@@ -91,11 +104,12 @@ def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(report, "_pictures", lambda _: [])
 
 
+@pytest.mark.parametrize("schema", [1, 2])
 @pytest.mark.parametrize("junk", JUNK)
-def test_every_place_of_a_saved_estimate(junk: str, no_pictures: None) -> None:
+def test_every_place_of_a_saved_estimate(junk: str, schema: int, no_pictures: None) -> None:
     accepted = 0
-    for path in paths(document()):
-        estimate = read(damaged(path, JUNK[junk]))
+    for path in paths(document(schema)):
+        estimate = read(damaged(path, JUNK[junk], schema))
         if estimate is not None:
             accepted += 1
             for page in pages(estimate):
@@ -115,7 +129,7 @@ def test_a_script_reaches_the_page_where_nothing_escapes(
 ) -> None:
     """What the tests above look for would be found."""
     monkeypatch.setattr(html, "escape", lambda text: text)
-    for path in (("joint", "name"), ("settings", "version"), ("warnings", 0, "message")):
+    for path in (("joint", "name"), ("settings", "version"), ("findings", 0, "cause")):
         estimate = read(damaged(path, JUNK["script"]))
         assert estimate is not None
         assert any("<script>" in page for page in pages(estimate)), path
@@ -162,6 +176,9 @@ def test_the_path_is_named() -> None:
         (("windows", "start"), "[1.0]", "same length"),
         (("convergence", "best"), "[1.0]", "same length"),
         (("windows", "recording", 0), "1", "not so many recordings"),
+        (("findings", 0, "advice", 0, "kind"), '"shout"', "known are call, record, inspect"),
+        (("findings", 0, "advice", 0, "arguments"), "{}", "a call needs arguments"),
+        (("findings", 0, "severity"), '"mild"', "known are info, warning, blocking"),
     ],
 )
 def test_fields_that_contradict_each_other(path: Path_, junk: str, reason: str) -> None:

@@ -27,9 +27,13 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         for name in inspected.channels:
             spike = inspected.spike(name)
             if spike.count:
-                unit, time = recording.unit(name), float(recording.time[spike.index])
+                unit = "" if name == "sensor" else recording.unit(name)
+                height, time = (
+                    f"{spike.height:.3g} {unit}".rstrip(),
+                    float(recording.time[spike.index]),
+                )
                 yield SPIKES.finding(
-                    f"{spike.count} spike(s) in {name}, the largest of {spike.height:.3g} {unit} at {time:.4g} s, "
+                    f"{spike.count} spike(s) in {name}, the largest of {height} at {time:.4g} s, "
                     "where the signal leaves its course and returns at once: least squares fits them, too",
                     Action("inspect", text="the logger, and cut the spikes out"),
                     evidence={
