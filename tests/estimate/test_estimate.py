@@ -92,6 +92,18 @@ def test_friction_band_is_the_interval_of_a_single_parameter(estimate: jid.Estim
     )
 
 
+def test_friction_of_each_recording_for_itself_is_their_mean() -> None:
+    run = jid.load(data_folder() / "kr300_joint1.csv.gz")
+    joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
+    runs = [run.crop(0.0, 5.0), run.crop(5.0, 10.0)]
+    arguments = {"per_recording": ("coulomb",), "method": "separable"}
+    own = jid.identify(runs, joint, **arguments)  # type: ignore[arg-type]
+    first, second = (own.parameters[f"coulomb[{i}]"].value for i in (0, 1))
+    expected = 0.5 * (first + second) + own.parameters["viscous"].value * 0.3
+    assert own.friction([0.3]).torque[0] == pytest.approx(expected)
+    assert jid.Estimate.from_json(own.to_json()).friction([0.3]).upper[0] > expected
+
+
 def test_saving_into_a_joint_file_keeps_what_was_there(robot: jid.Estimate, tmp_path: Path) -> None:
     path = tmp_path / "joint.toml"
     path.write_text((data_folder() / "kr300_joint1.toml").read_text())

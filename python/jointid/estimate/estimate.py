@@ -22,6 +22,7 @@ from jointid.estimate.statistics import (
 from jointid.problem.window_table import Prediction, WindowTable
 
 if TYPE_CHECKING:
+    from jointid.estimate.derived import DerivedValue
     from jointid.joint.joint import Joint
     from jointid.recording.recording import Recording
 
@@ -56,6 +57,9 @@ class Estimate:
         None without a genetic search.
     findings : tuple of Finding
         What the data and the fit show, the gravest first; `docs/findings.md` lists the codes.
+    derived : mapping of str to DerivedValue
+        Quantities that follow from the parameters: "breakaway" (coulomb + static) and
+        "stribeck_velocity" (1/√stribeck), with standard errors.
     warnings : tuple of Finding
         The findings of severity "warning" or "blocking".
     joint : Joint
@@ -86,6 +90,13 @@ class Estimate:
     def __repr__(self) -> str:
         values = ", ".join(f"{p.name}={p.value:.6g}" for p in self.parameters.values())
         return f"Estimate({values}; {len(self.warnings)} warnings)"
+
+    @property
+    def derived(self) -> Mapping[str, DerivedValue]:
+        """Breakaway torque and Stribeck velocity by name, with their errors, as far as the model has them."""
+        from jointid.estimate.derived import derived_values
+
+        return derived_values(self)
 
     @property
     def warnings(self) -> tuple[Finding, ...]:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from jointid.base.html import Html, element, table
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Finding
-from jointid.estimate.tables import HEAD, quality, rows
+from jointid.estimate.tables import HEAD, quality, rows, shown_name
 from jointid.estimate.wording import two_digits
 
 
@@ -24,10 +24,10 @@ def html_quality(estimate: Estimate) -> Html:
 def html_correlation(estimate: Estimate) -> Html:
     """The correlation matrix of the free parameters."""
     body: list[list[Html | str]] = [
-        [element("th", name), *(f"{x:.2f}" for x in row)]
+        [element("th", shown_name(name)), *(f"{x:.2f}" for x in row)]
         for name, row in zip(estimate.free, estimate.correlation, strict=True)
     ]
-    return table(body, head=["", *estimate.free], class_="numbers")
+    return table(body, head=["", *map(shown_name, estimate.free)], class_="numbers")
 
 
 def html_shifts(estimate: Estimate) -> Html:
@@ -37,7 +37,7 @@ def html_shifts(estimate: Estimate) -> Html:
         if p.vary:
             shifts = ("–" if s is None else f"{s:+.3g}" for s in (p.shift_halved, p.shift_doubled))
             error = "–" if p.stderr is None else two_digits(p.stderr)
-            body.append([element("th", p.name), *shifts, error, element("th", p.unit)])
+            body.append([element("th", shown_name(p.name)), *shifts, error, element("th", p.unit)])
     head = ["parameter", "windows halved", "windows doubled", "std. error", "unit"]
     return table(body, head=head, class_="numbers")
 

@@ -127,7 +127,8 @@ _FIELDS: dict[str, Kind] = {
 }
 _ESTIMATE = {
     1: Record({**_FIELDS, "warnings": ListOf(_WARNING)}),
-    2: Record({**_FIELDS, "findings": ListOf(_FINDING)}),
+    # What is derived is computed again.
+    2: Record({**_FIELDS, "findings": ListOf(_FINDING)}, {"derived": Plain()}),
 }
 
 
@@ -136,6 +137,7 @@ def write_estimate(estimate: Estimate) -> str:
     document: dict[str, Any] = {"schema": SCHEMA, "kind": _KIND}
     for item in fields(Estimate):
         document[item.name] = _plain(getattr(estimate, item.name))
+    document["derived"] = _plain(estimate.derived)
     for entry, found in zip(document["findings"], estimate.findings, strict=True):
         entry["message"] = found.message  # for readers that are not ours
     return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)

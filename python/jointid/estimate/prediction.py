@@ -8,6 +8,7 @@ import numpy as np
 
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
+from jointid.estimate.friction_map import shared_value
 from jointid.estimate.settings import model_name
 from jointid.problem.problem import Problem, listed
 from jointid.problem.terms import TermChoice
@@ -45,18 +46,11 @@ def predict(estimate: Estimate, recording: Recording) -> Prediction:
         mask_standstill=settings["mask_standstill"],
     )
     penalty = problem.penalty(settings["windows"])
-    theta = np.array([_predicting(estimate, name) for name in penalty.names])
+    values = {name: parameter.value for name, parameter in estimate.parameters.items()}
+    theta = np.array([shared_value(values, name) for name in penalty.names])
     table = problem.table(penalty, theta)
     return Prediction(
         windows=table,
         relative=relative_residual(table),
         r_squared=r_squared(table),
     )
-
-
-def _predicting(estimate: Estimate, name: str) -> float:
-    """A parameter's value; of one that each recording had for itself, the mean."""
-    if name in estimate.parameters:
-        return estimate.parameters[name].value
-    own = [p.value for key, p in estimate.parameters.items() if key.startswith(f"{name}[")]
-    return float(np.mean(own))

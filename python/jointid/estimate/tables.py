@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from jointid.base.advice import Action
+from jointid.estimate.derived import DerivedValue
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.settings import model_description, residual_unit
 from jointid.estimate.statistics import ParameterEstimate
@@ -20,17 +21,32 @@ def remark(p: ParameterEstimate) -> str:
     return f"at its {'lower' if p.at_bound == 'min' else 'upper'} bound" if p.at_bound else ""
 
 
+def shown_name(name: str) -> str:
+    """A parameter's or a derived quantity's name for people."""
+    if name.startswith("static"):
+        return f"{name} (above Coulomb)"
+    if name == "stribeck_velocity":
+        return "Stribeck velocity"
+    base, _, direction = name.partition("_")
+    if base.startswith("breakaway"):
+        shown = base.replace("breakaway", "breakaway friction")
+        return f"{shown}, {direction}" if direction else shown
+    return name
+
+
 def rows(estimate: Estimate) -> list[tuple[str, str, str, str, str, str]]:
-    """The parameter table, one row a parameter."""
-    table = []
-    for p in estimate.parameters.values():
-        error = interval = ""
-        if p.stderr is not None and p.interval is not None:
-            share = f" ({percent(p.stderr / abs(p.value))})" if p.value else ""
-            error = f"{two_digits(p.stderr)}{share}"
-            interval = f"{p.interval[0]:.5g} … {p.interval[1]:.5g}"
-        table.append((p.name, number(p.value), error, interval, p.unit, remark(p)))
-    return table
+    """The parameter table: one row a parameter, then one a derived quantity."""
+    table = [_row(p, remark(p)) for p in estimate.parameters.values()]
+    return table + [_row(each, f"= {each.formula}") for each in estimate.derived.values()]
+
+
+def _row(p: ParameterEstimate | DerivedValue, text: str) -> tuple[str, str, str, str, str, str]:
+    error = interval = ""
+    if p.stderr is not None and p.interval is not None:
+        share = f" ({percent(p.stderr / abs(p.value))})" if p.value else ""
+        error = f"{two_digits(p.stderr)}{share}"
+        interval = f"{p.interval[0]:.5g} … {p.interval[1]:.5g}"
+    return shown_name(p.name), number(p.value), error, interval, p.unit, text
 
 
 def quality(estimate: Estimate) -> list[tuple[str, str]]:

@@ -28,10 +28,8 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             spike = inspected.spike(name)
             if spike.count:
                 unit = "" if name == "sensor" else recording.unit(name)
-                height, time = (
-                    f"{spike.height:.3g} {unit}".rstrip(),
-                    float(recording.time[spike.index]),
-                )
+                height = f"{spike.height:.3g} {unit}".rstrip()
+                time = float(recording.time[spike.index])
                 yield SPIKES.finding(
                     f"{spike.count} spike(s) in {name}, the largest of {height} at {time:.4g} s, "
                     "where the signal leaves its course and returns at once: least squares fits them, too",
@@ -45,13 +43,13 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
                 break
         jump = inspected.found.jump
         if jump >= 0:
-            height = float(recording.position[jump + 1] - recording.position[jump])
+            step = float(recording.position[jump + 1] - recording.position[jump])
             unit, time = recording.unit("position"), float(recording.time[jump])
             yield JUMPS.finding(
-                f"the position jumps by {height:.4g} {unit} at {time:.4g} s: a wrapped angle, a lost index or lost "
+                f"the position jumps by {step:.4g} {unit} at {time:.4g} s: a wrapped angle, a lost index or lost "
                 "samples",
                 Action("inspect", text="the recording there, and unwrap the angle or crop it"),
-                evidence={"height": Measured(height, unit), "time": Measured(time, "s")},
+                evidence={"height": Measured(step, unit), "time": Measured(time, "s")},
             )
 
 

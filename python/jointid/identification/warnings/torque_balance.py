@@ -10,7 +10,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
-from jointid.identification.warnings.unbounded import EXPLAINED, Unbounded, unbounded
+from jointid.identification.warnings.unbounded import EXPLAINED, Unbounded, without_bounds
 from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_advice
 from jointid.identification.warnings.velocity import REVERSED_SIGN
 
@@ -39,7 +39,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             evidence={"correlation_with_velocity": Measured(correlation)},
         )
         return
-    free = unbounded(evidence)
+    free = without_bounds(evidence)
     if free is None:
         return
     yield from _inertia_contradicts(evidence, free)

@@ -59,7 +59,7 @@ class Unbounded:
         return by_torque | {"sensor_gain": 1.0 / float(found[-1])}
 
 
-def unbounded(evidence: Evidence) -> Unbounded | None:
+def without_bounds(evidence: Evidence) -> Unbounded | None:
     """The best of the shape found and a few others: bounds may have bent the shape, too."""
     found = _at(evidence, None)
     shapes = [i for i, name in enumerate(evidence.penalty.names) if name == "stribeck"]
