@@ -1,4 +1,4 @@
-"""An estimate tells what it knows: JSON, notebook, friction map with its band, joint file, report, pictures."""
+"""What an estimate offers: JSON, notebook, friction map with its band, joint file, report, pictures."""
 
 import dataclasses
 import json
@@ -44,7 +44,7 @@ def test_json_holds_everything(estimate: jid.Estimate) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("{", "not JSON"),
         ("[]", "not a jointid estimate"),
@@ -52,12 +52,12 @@ def test_json_holds_everything(estimate: jid.Estimate) -> None:
         ('{"kind": "jointid estimate", "schema": 1}', "parameters: this is missing"),
     ],
 )
-def test_json_that_is_none_is_refused(text: str, told: str) -> None:
-    with pytest.raises(jid.InputError, match=told):
+def test_json_that_is_none_is_refused(text: str, message: str) -> None:
+    with pytest.raises(jid.InputError, match=message):
         jid.Estimate.from_json(text)
 
 
-def test_report_tells_values_and_warnings(estimate: jid.Estimate, robot: jid.Estimate) -> None:
+def test_report_shows_values_and_warnings(estimate: jid.Estimate, robot: jid.Estimate) -> None:
     text = estimate.report()
     for name in estimate.parameters:
         assert name in text

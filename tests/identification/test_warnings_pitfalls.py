@@ -29,7 +29,7 @@ def test_very_wide_bounds_hold_nothing() -> None:
 
 
 @pytest.mark.parametrize("method", ["ga", "separable"])
-def test_reversed_torque_is_told_and_no_crash(method: str) -> None:
+def test_reversed_torque_is_reported_and_no_crash(method: str) -> None:
     joint = jid.Joint(torque_offset=False)
     estimate = jid.identify(moving(0.1, sign=-1.0), joint, method=method)
     assert {p.at_bound for p in estimate.parameters.values()} == {"min"}
@@ -100,10 +100,10 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("options", "told"), BAD.values(), ids=BAD.keys())
-def test_odd_arguments_get_one_sentence(options: dict[str, object], told: str) -> None:
+@pytest.mark.parametrize(("options", "message"), BAD.values(), ids=BAD.keys())
+def test_odd_arguments_get_one_sentence(options: dict[str, object], message: str) -> None:
     well = jid.load(data_folder() / "well_excited.csv.gz")
-    with pytest.raises(jid.InputError, match=told) as refused:
+    with pytest.raises(jid.InputError, match=message) as refused:
         jid.identify(well, **{"joint": jid.thesis_joint(), **options})  # type: ignore[arg-type]
     assert "\n" not in str(refused.value)
 

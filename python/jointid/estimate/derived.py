@@ -1,4 +1,4 @@
-"""Quantities that the field quotes and the parameters imply: breakaway torque and Stribeck velocity, with errors."""
+"""Quantities that follow from the parameters: breakaway friction and Stribeck velocity, with standard errors."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class DerivedValue:
 
 
 def derived_values(estimate: Estimate) -> dict[str, DerivedValue]:
-    """The breakaway torques, one a direction and recording, and the Stribeck velocity, as far as modelled."""
+    """Breakaway friction of each direction and recording, and the Stribeck velocity, if the model has them."""
     values = (*_breakaway(estimate), *_stribeck_velocity(estimate))
     return {each.name: each for each in values}
 

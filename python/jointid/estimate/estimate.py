@@ -1,4 +1,4 @@
-"""What an identification found, and how far it can be believed."""
+"""The result of an identification: values, uncertainty, findings."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Estimate:
-    """The result of `identify`: numbers, their uncertainty, and what to mind.
+    """The result of `identify`: values, their uncertainty, and findings.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class Estimate:
     status : str
         "converged", or "stopped" when a callback ended the search early.
     message : str
-        How the search ended, in a sentence.
+        How the search ended.
     penalty : float
         Sum of squared window residuals, by the direct sum.
     correlation : ndarray, shape (p, p)
@@ -48,7 +48,7 @@ class Estimate:
     condition : float
         Condition number of the scaled regressor.
     weakest : tuple of str
-        Parameters in the direction that the data determine least.
+        Parameters with a large share in the least determined direction.
     covariance : ndarray, shape (p, p)
         Of the free parameters.
     residuals : ResidualStatistics
@@ -56,7 +56,7 @@ class Estimate:
     convergence : Convergence or None
         None without a genetic search.
     findings : tuple of Finding
-        What the data and the fit show, the gravest first; `docs/findings.md` lists the codes.
+        What the data and the fit show, the most severe first; `docs/findings.md` lists the codes.
     derived : mapping of str to DerivedValue
         Quantities that follow from the parameters: "breakaway" (coulomb + static) and
         "stribeck_velocity" (1/√stribeck), with standard errors.
@@ -93,7 +93,7 @@ class Estimate:
 
     @property
     def derived(self) -> Mapping[str, DerivedValue]:
-        """Breakaway torque and Stribeck velocity by name, with their errors, as far as the model has them."""
+        """Breakaway friction and Stribeck velocity with standard errors, if the model has them."""
         from jointid.estimate.derived import derived_values
 
         return derived_values(self)
@@ -110,13 +110,31 @@ class Estimate:
         ----------
         velocity : array_like, shape (n,)
             [rad/s or m/s]
+
+        Returns
+        -------
+        FrictionCurve
+
+        Examples
+        --------
+        >>> estimate.friction([0.1, 0.2]).torque  # doctest: +SKIP
+        array([34.36, 29.37])
         """
         from jointid.estimate.friction_map import friction_curve
 
         return friction_curve(self, np.atleast_1d(np.asarray(velocity, dtype=np.float64)))
 
     def predict(self, recording: Recording) -> Prediction:
-        """Hold the estimate against a recording: window integrals measured and predicted.
+        """Predict the window integrals of a recording, and compare them with the measured ones.
+
+        Parameters
+        ----------
+        recording : Recording
+            Of the same joint; it need not be one that the estimate was made from.
+
+        Returns
+        -------
+        Prediction
 
         Raises
         ------
@@ -128,7 +146,7 @@ class Estimate:
         return predict(self, recording)
 
     def report(self) -> str:
-        """The estimate as text: parameters, quality of the fit, warnings."""
+        """Return the estimate as text: parameters, quality of the fit, findings."""
         from jointid.estimate.tables import text_report
 
         return text_report(self)
@@ -139,19 +157,25 @@ class Estimate:
         return str(html_summary(self))
 
     def to_json(self) -> str:
-        """Everything, as JSON with a schema version; `Estimate.from_json` reads it back."""
+        """Return the whole estimate as JSON with a schema version; `Estimate.from_json` reads it."""
         from jointid.estimate.json import write_estimate
 
         return write_estimate(self)
 
     @classmethod
     def from_json(cls, text: str) -> Estimate:
-        """Read what `to_json` wrote.
+        """Return the estimate that a JSON text holds.
+
+        Parameters
+        ----------
+        text : str
+            From `to_json`, of this schema or an older one.
 
         Raises
         ------
         InputError
-            Not JSON, not an estimate, or a newer schema.
+            Not JSON, not an estimate, a newer schema, or a value that cannot be used; its place is the
+            JSON path, e.g. "parameters.coulomb.value".
         """
         from jointid.estimate.json import read_estimate
 
@@ -160,7 +184,11 @@ class Estimate:
 
     @classmethod
     def load(cls, path: str | Path) -> Estimate:
-        """Read an estimate that was saved as .json.
+        """Return the estimate that a .json file holds.
+
+        Parameters
+        ----------
+        path : path-like
 
         Raises
         ------
@@ -182,12 +210,19 @@ class Estimate:
     def save(self, path: str | Path) -> None:
         """Save to a joint file (.toml: values go into its parameter table, comments stay) or to .json.
 
-        The file is written whole or not at all.
+        The file is written completely or not at all.
+
+        Parameters
+        ----------
+        path : path-like
+            The ending chooses the format.
 
         Raises
         ------
         InputError
-            Another extension, or an existing joint file that cannot be read.
+            Another ending, or an existing joint file that cannot be read.
+        OSError
+            The file cannot be written.
         """
         from jointid.base.files import write_whole
 
@@ -198,5 +233,7 @@ class Estimate:
             write_whole(path, self.to_json().encode())
         else:
             raise InputError(
-                f"{path}: an estimate is saved as .toml (joint file) or .json, not '{path.suffix}'"
+                "an estimate is saved as .toml (joint file) or .json",
+                argument="path",
+                value=path.name,
             )

@@ -1,4 +1,4 @@
-"""A finding: what the data or the fit show, how severe it is, why, and what to do; a value that each face words."""
+"""A finding: what the data or the fit show, how severe it is, why, and what to do; as data."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Finding:
     evidence : mapping of str to Measured
         The numbers it rests on, by name.
     cause : str
-        What was seen and its probable cause, in a sentence without the syntax of any face.
+        What was seen and its probable cause, in a sentence without the syntax of any interface.
     advice : tuple of Action
         What to do; the first that can be done helps.
     """
@@ -60,7 +60,7 @@ class Finding:
         object.__setattr__(self, "evidence", MappingProxyType(dict(self.evidence)))
 
     def worded(self, action: Callable[[Action], str] = str) -> str:
-        """The finding in a sentence: its cause, and its advice as a face words it.
+        """The finding in a sentence: its cause, and its advice as an interface words it.
 
         Parameters
         ----------

@@ -17,7 +17,7 @@ def html_table(estimate: Estimate) -> Html:
 
 
 def html_quality(estimate: Estimate) -> Html:
-    """How well it fits and what it rests on."""
+    """Quality of the fit and what it is based on."""
     return table([list(pair) for pair in quality(estimate)], class_="facts")
 
 

@@ -1,4 +1,4 @@
-"""An estimate held against a recording that it may never have seen."""
+"""Prediction of a recording by an estimate."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def predict(estimate: Estimate, recording: Recording) -> Prediction:
-    """Hold an estimate against a recording: see `Estimate.predict`."""
+    """Predict a recording: see `Estimate.predict`."""
     require_kind("recording", recording, Recording)
     settings = estimate.settings
     choice = TermChoice(
@@ -32,11 +32,13 @@ def predict(estimate: Estimate, recording: Recording) -> Prediction:
     )
     if recording.kind != settings["kind"]:
         raise InputError(
-            f"the estimate is of a {settings['kind']} joint, the recording is {recording.kind}"
+            f"the estimate is of a {settings['kind']} joint",
+            argument="recording.kind",
+            value=recording.kind,
         )
     if choice.sensor and recording.sensor is None:
         raise InputError(
-            "the estimate has a torque sensor, but the recording has no signal 'sensor'"
+            "the estimate has a torque sensor, the recording has none", argument="recording.sensor"
         )
     problem = Problem(
         recordings=listed(recording),

@@ -23,7 +23,7 @@ class ParameterEstimate:
     interval : tuple of float or None
         95 % confidence interval (Student's t).
     min, max : float
-        Where the search could look.
+        Bounds of the search.
     vary : bool
         False when it was fixed.
     at_bound : str or None
@@ -114,14 +114,14 @@ class Convergence:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FrictionCurve:
-    """The identified friction map; `numpy.asarray` of it is `torque`.
+    """The estimated friction map; `numpy.asarray` of it is `torque`.
 
     Attributes
     ----------
     velocity : ndarray
         [rad/s or m/s]
     torque : ndarray
-        [N·m or N]; 0 at rest, where friction takes any value up to Coulomb + static.
+        [N·m or N]; 0 at rest, where friction takes any value up to the breakaway friction.
     lower, upper : ndarray
         Pointwise 95 % band.
     """

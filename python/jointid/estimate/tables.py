@@ -15,7 +15,7 @@ HEAD = ("parameter", "value", "± std. error", "95 % interval", "unit", "remark"
 
 
 def remark(p: ParameterEstimate) -> str:
-    """What is special about a parameter, in a few words."""
+    """Whether a parameter is fixed or at a bound."""
     if not p.vary:
         return "fixed"
     return f"at its {'lower' if p.at_bound == 'min' else 'upper'} bound" if p.at_bound else ""
@@ -50,7 +50,7 @@ def _row(p: ParameterEstimate | DerivedValue, text: str) -> tuple[str, str, str,
 
 
 def quality(estimate: Estimate) -> list[tuple[str, str]]:
-    """How well it fits and what it rests on, as label and text."""
+    """Quality of the fit and what it is based on, as label and text."""
     r = estimate.residuals
     unit = residual_unit(estimate.settings)
     return [
@@ -75,7 +75,7 @@ def quality(estimate: Estimate) -> list[tuple[str, str]]:
 
 
 def strongest_correlation(estimate: Estimate) -> str:
-    """The pair of parameters that the recording separates least."""
+    """The pair of parameters with the strongest correlation."""
     size = np.abs(np.triu(estimate.correlation, 1))
     if size.size < 2:
         return "a single free parameter"

@@ -1,4 +1,4 @@
-"""All findings about an estimate: every check, less what another finding explains."""
+"""All findings about an estimate: the results of all checks, without those that another finding explains."""
 
 from jointid.estimate.findings import Finding
 from jointid.identification.warnings import registry, sensor_lag
@@ -6,14 +6,14 @@ from jointid.identification.warnings.evidence import Evidence
 
 
 def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
-    """All findings, the gravest first."""
+    """All findings, the most severe first."""
     raised = [(check, found) for check in registry.CHECKS for found in check.find(evidence)]
     codes = {found.code for _, found in raised}
-    # A controller feeds a rippling sensor back, and the motion that follows looks like a lag of it.
+    # A controller feeds the ripple of a sensor back; the resulting motion looks like a lag of the sensor.
     modelled = any(name.startswith("ripple_") for name in evidence.parameters)
     ripples = modelled or "ripple" in codes
     kept = [found for check, found in raised if not (ripples and check is sensor_lag.CHECK)]
     units = [found for found in kept if found.code == "implausible_units"]
-    # Degrees make the motor's angle wrong, too: what swings with it is not ripple.
+    # With degrees the motor's angle is wrong, too: a residual that oscillates with it is no ripple.
     spurious = [found for found in kept if units and found.code == "ripple"]
     return tuple(found for found in kept if found not in (*units[1:], *spurious))

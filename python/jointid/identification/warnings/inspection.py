@@ -1,4 +1,4 @@
-"""What a recording shows by itself: found in the core, in one go, for all checks."""
+"""Properties of the signals of one recording: computed by the core once, for all checks."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _CHANNELS = ("position", "velocity", *DRIVE, "sensor")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inspected:
-    """A recording and what its signals show.
+    """A recording and the properties of its signals.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class Inspected:
 
 
 def inspect(recording: Recording, threads: int = 0) -> Inspected:
-    """Look at all signals of a recording."""
+    """Inspect all signals of a recording."""
     signals = {
         name: signal
         for name in _CHANNELS

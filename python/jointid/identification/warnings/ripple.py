@@ -1,4 +1,4 @@
-"""Ripple that the model lacks: a peak of the residual at a multiple of the motor's or the joint's angle."""
+"""Ripple that is missing from the model: a peak of the residual at a multiple of the motor's or the joint's angle."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A sensor that reads what the link's motion asked for some milliseconds ago."""
+"""A sensor whose reading is late by some milliseconds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A motion that no joint makes: degrees taken for radians, most likely."""
+"""Motion that is too fast or too wide for a joint: probably degrees taken for radians."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             agreement is not None and abs(agreement.scale - 1.0) > MISMATCH
         ):
             continue  # what contradicts itself has no speed, and that is reported already
-        if gear > 1.0 and peak * gear > _MOTOR_SPEED:  # a single wild sample is no speed
+        if gear > 1.0 and peak * gear > _MOTOR_SPEED:  # one outlier is no speed
             peak = float(np.percentile(np.abs(recording.velocity), 99.0))
         swing = inspected.found.swing
         travel = abs(float(recording.position[-1] - recording.position[0]))

@@ -67,7 +67,7 @@ def _flip_the_torque(evidence: Evidence) -> tuple[Action, ...]:
 
 
 def _inertia_ratio(free: Unbounded, given: float) -> float | None:
-    """How many times the given inertia the recording shows, wherever the noise is; None if that fits."""
+    """Ratio of the inertia that the recording shows to the given one; None when they agree."""
     ratios = [free.values["inertia"] / given]
     reverse = free.with_noisy_sensor()
     if reverse is not None:
@@ -82,12 +82,12 @@ def _inertia_ratio(free: Unbounded, given: float) -> float | None:
 
 
 def _inertia_contradicts(evidence: Evidence, free: Unbounded) -> Iterator[Finding]:
-    """A known inertia is a scale: the recording must agree with it."""
+    """A known inertia fixes the scale: the recording must agree with it."""
     given = evidence.parameters.get("inertia")
     if given is None or given.vary or given.value == 0.0 or "inertia" not in free.values:
         return
     if free.relative > EXPLAINED:
-        return  # something else is wrong, and the inertia takes the blame
+        return  # something else is wrong, and the inertia absorbs it
     ratio = _inertia_ratio(free, given.value)
     if ratio is None or not free.sure("inertia", given.value):
         return

@@ -1,4 +1,4 @@
-"""The coefficients that the recording by itself shows: every term free, without bounds."""
+"""A fit with every coefficient free and without bounds."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Unbounded:
     relative: float
 
     def sure(self, name: str, wanted: float) -> bool:
-        """Whether the data contradict a value beyond doubt, slow drifts of the residual allowed for."""
+        """Whether the data contradict a value by many standard errors, robust to slow drifts of the residual."""
         names, penalty = list(self.values), self.evidence.penalty
         best = self.evidence.best if self.best is None else self.best
         columns = penalty.columns(best[penalty.coefficients :])
@@ -38,7 +38,7 @@ class Unbounded:
         return bool(abs(self.values[name] - wanted) > _SURE * spread.stderr[names.index(name)])
 
     def with_noisy_sensor(self) -> dict[str, float] | None:
-        """The coefficients that explain the sensor by all else; None without one, or when nothing does.
+        """Coefficients of the reverse regression, of the sensor by all other terms; None without a sensor.
 
         Noise of the sensor makes the gain too small in `values`, and leaves part of the link's inertia to
         the joint's; noise of the torque does the opposite here. The truth lies between.
@@ -60,7 +60,7 @@ class Unbounded:
 
 
 def without_bounds(evidence: Evidence) -> Unbounded | None:
-    """The best of the shape found and a few others: bounds may have bent the shape, too."""
+    """The best fit at the estimated shape and a few others, because bounds may have distorted the shape."""
     found = _at(evidence, None)
     shapes = [i for i, name in enumerate(evidence.penalty.names) if name == "stribeck"]
     if found is None or not shapes or found.relative < EXPLAINED:

@@ -1,4 +1,4 @@
-"""Values that another choice of windows, of noise, or chance itself would have made quite different."""
+"""Values that the recording does not determine: large errors, or a strong dependence on windows or noise."""
 
 from __future__ import annotations
 
@@ -106,12 +106,12 @@ def _advice(
 
 
 def _kind(name: str) -> str:
-    """The quantity behind a parameter's name, whatever its direction or recording."""
+    """A parameter's name without direction and recording."""
     return name.split("[")[0].removesuffix("_positive").removesuffix("_negative")
 
 
 def _scale(p: ParameterEstimate, evidence: Evidence) -> float:
-    """What 5 % refers to: an offset may rightly be zero, and so may one phase of a harmonic."""
+    """Reference of the 5 %: an offset, or one phase of a harmonic, may be zero."""
     if "offset" in p.name:
         return max(abs(p.value), evidence.torque_level)
     family, _, rest = p.name.partition("_")
@@ -171,7 +171,7 @@ def _guessed_sign(evidence: Evidence) -> _Reason | None:
 
 
 def _between_the_regressions(evidence: Evidence) -> Iterator[tuple[str, _Reason]]:
-    """Gain, and the offset that hangs on it, where the sensor's own noise is not small against its signal.
+    """Gain and offset, where the sensor's own noise is not small against its signal.
 
     With the noise in the sensor the gain is the value of one regression, with the noise in the torque
     that of the reverse one; the truth lies between (Frisch's bounds). Their distance is the noise that

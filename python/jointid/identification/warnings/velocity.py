@@ -1,4 +1,4 @@
-"""A velocity column that is late, of another unit or of another sign than the position."""
+"""A velocity signal that disagrees with the position: delay, unit or sign."""
 
 from __future__ import annotations
 
