@@ -1,5 +1,6 @@
 """The kinds of a schema: what each accepts, and the path named when it does not."""
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -16,6 +17,7 @@ from jointid.base.schema import (
     TableOf,
     Text,
     read_json,
+    read_text,
 )
 
 NUMBER = Number(low=0.0, high=10.0)
@@ -96,6 +98,17 @@ def test_refused(kind: Kind, value: Any, message: str) -> None:
 def test_text_that_is_no_file_of_ours(text: str, reason: str) -> None:
     with pytest.raises(InputError, match=reason):
         read_json(text)
+
+
+def test_a_large_file_is_not_read(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    path = tmp_path / "large.json"
+    path.write_text("[1, 2, 3, 4]", encoding="utf-8")
+    assert read_text(path) == "[1, 2, 3, 4]"
+    monkeypatch.setattr("jointid.base.schema.LARGEST", 10)
+    with pytest.raises(InputError, match=r"large\.json: too large: 12 bytes, 10 are allowed"):
+        read_text(path)
+    with pytest.raises(InputError, match=r"none\.json: it cannot be read: No such file"):
+        read_text(tmp_path / "none.json")
 
 
 def test_a_large_text_is_not_read(monkeypatch: pytest.MonkeyPatch) -> None:

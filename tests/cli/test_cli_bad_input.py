@@ -110,7 +110,7 @@ BAD = {
     "comparison saved into nowhere": (["compare", WELL, "--save", "no/where.json"], "no"),
     "report of nothing": (["report", "nothing.json"], "nothing.json"),
     "report of a folder": (["report", "folder.csv"], "folder.csv"),
-    "report of a recording": (["report", WELL], "no estimate"),
+    "report of a recording": (["report", WELL], "not text in UTF-8"),
     "report of other JSON": (["report", "other.json"], "other.json"),
     "report of a newer estimate": (["report", "newer.json"], "update jointid"),
     "report of half an estimate": (["report", "half.json"], "parameters: this is missing"),

@@ -197,6 +197,12 @@ def test_an_estimate_saved_before_is_still_read() -> None:
     assert jid.Estimate.from_json(estimate.to_json()).report() == estimate.report()
 
 
+def test_no_control_character_reaches_a_terminal() -> None:
+    estimate = read(damaged(("joint", "name"), '"a\\u001b[2Jb\\rc\\u009b"'))
+    assert estimate is not None
+    assert estimate.report().startswith("jointid estimate — a\ufffd[2Jb\ufffdc\ufffd\n")
+
+
 def test_a_file_is_read_and_named(tmp_path: Path) -> None:
     assert jid.Estimate.load(SAVED).joint.gear_ratio == 256.86
     path = tmp_path / "bad.json"

@@ -1,5 +1,7 @@
 """Findings are values: evidence for every number, advice that can be obeyed, one file and one line to add one."""
 
+import math
+import pickle
 import re
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
@@ -8,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from defects import DEFECTS, changed, late_velocity
+from simulated_joint import TRUTH
 
 import jointid as jid
 from jointid.base.advice import Action
@@ -66,6 +69,19 @@ def test_every_number_of_a_sentence_is_evidence(well_excited: jid.Recording, def
         for text in NUMBER.findall(found.cause):
             assert supported(text, found), (text, found)
     assert not supported("12345", found_in(separable(make(well_excited)), code))
+
+
+def test_every_number_of_other_sentences_is_evidence(well_excited: jid.Recording) -> None:
+    robot = jid.load(data_folder() / "kr300_joint1.csv.gz")
+    of_robot = jid.Joint.load(data_folder() / "kr300_joint1.toml")
+    estimates = [separable(make(well_excited), **given) for make, given in CALLS.values()]
+    estimates += [separable(robot, of_robot), separable(robot, of_robot, windows=12)]
+    codes = set()
+    for found in (found for estimate in estimates for found in estimate.findings):
+        codes.add(found.code)
+        for text in NUMBER.findall(found.cause):
+            assert supported(text, found), (text, found)
+    assert codes >= {"undetermined", "at_bound", "model_too_rich", "few_windows", "ripple"}
 
 
 @pytest.mark.parametrize("defect", DEFECTS)
@@ -181,6 +197,32 @@ def test_assumed_units_are_stated(well_excited: jid.Recording, tmp_path: Path) -
     assert set(action.arguments["units"]) >= {"position", "torque"}
     stated = separable(jid.load(path, **action.arguments))
     assert "assumed_units" not in {each.code for each in stated.findings}
+
+
+def test_a_guessed_sign_is_stated() -> None:
+    # Two degrees about the horizontal: the link's torque hardly varies, the reading is noise.
+    joint = jid.thesis_joint()
+    run = jid.simulate(
+        joint.with_parameters(TRUTH),
+        jid.Pd(stiffness=3000.0, damping=200.0),
+        jid.Trajectory.thesis(math.radians(2.0), cycle=10.0, duration=12.0),
+        sensors=jid.Sensors(torque_noise=0.5),
+        seed=0,
+    )
+    free = joint.replace(parameters={})
+    found = found_in(separable(run, free), "undetermined")
+    assert "fits almost as well" in found.cause
+    (action,) = (each for each in found.advice if each.kind == "call")
+    after = separable(run, free, **action.arguments)
+    assert all("fits almost as well" not in each.cause for each in after.findings)
+
+
+def test_findings_are_values(well_excited: jid.Recording) -> None:
+    found = found_in(separable(late_velocity(well_excited)), "signal_lag")
+    assert pickle.loads(pickle.dumps(found)) == found
+    assert len({found, found}) == 1
+    assert str(found) == found.message == f"{found.cause}; {found.advice[0]}"
+    assert found.worded(lambda action: action.kind) == f"{found.cause}; call"
 
 
 # --- Severity ---

@@ -10,11 +10,12 @@ import json
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, NoReturn, Protocol
 
 from jointid.base.errors import NOT_GIVEN, InputError
 
-LARGEST = 500_000_000  # characters of a text; an estimate of an hour's recording has 20 million
+LARGEST = 500_000_000  # bytes of a file, characters of a text; an estimate of an hour's recording has 20 million
 DEEPEST = 32  # lists and tables inside each other; an estimate has 5
 _NOT_FINITE = ("inf", "-inf", "nan")
 
@@ -24,6 +25,26 @@ class Kind(Protocol):
 
     def read(self, value: Any, place: str) -> Any:
         """Return the value, checked; raise an InputError at the place otherwise."""
+
+
+def read_text(path: Path) -> str:
+    """Return the text of a file of ours.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, is too large, or is not UTF-8; names the file.
+    """
+    place = str(path)
+    try:
+        size = path.stat().st_size
+        if size > LARGEST:
+            raise InputError(f"too large: {size} bytes, {LARGEST} are allowed", place=place)
+        return path.read_bytes().decode("utf-8")
+    except UnicodeDecodeError:
+        raise InputError("this is not text in UTF-8", place=place) from None
+    except OSError as error:
+        raise InputError(f"it cannot be read: {error.strerror}", place=place) from error
 
 
 def read_json(text: str) -> Any:

@@ -195,15 +195,12 @@ class Estimate:
         InputError
             No such file, not JSON, not an estimate, or a newer schema; names the file and the place in it.
         """
+        from jointid.base.schema import read_text
+
         path = require_path("path", path)
+        text = read_text(path)
         try:
-            return cls.from_json(path.read_bytes().decode("utf-8"))
-        except UnicodeDecodeError:
-            raise InputError(
-                "this is no estimate: it is not text in UTF-8", place=str(path)
-            ) from None
-        except OSError as error:
-            raise InputError(f"it cannot be read: {error.strerror}", place=str(path)) from error
+            return cls.from_json(text)
         except InputError as error:
             raise error.at(str(path)) from error
 

@@ -50,9 +50,9 @@ class Finding:
     code: str
     severity: Severity = "warning"
     parameters: tuple[str, ...] = ()
-    evidence: Mapping[str, Measured] = field(default_factory=dict)
+    evidence: Mapping[str, Measured] = field(default_factory=dict, hash=False)
     cause: str
-    advice: tuple[Action, ...] = ()
+    advice: tuple[Action, ...] = field(default=(), hash=False)
 
     def __post_init__(self) -> None:
         if self.severity not in get_args(Severity):

@@ -64,7 +64,7 @@ def quality(estimate: Estimate) -> list[tuple[str, str]]:
             "left out",
             f"{100.0 * r.left_out:.1f} % of the intervals; standing still in {100.0 * r.standing:.1f} % of the samples",
         ),
-        ("residuals", f"correlation of neighbours {r.autocorrelation:.2f}"),
+        ("residuals", f"autocorrelation of neighbouring windows {r.autocorrelation:.2f}"),
         (
             "condition",
             f"{estimate.condition:.3g}, weakest direction: {', '.join(estimate.weakest)}",
@@ -114,4 +114,9 @@ def text_report(estimate: Estimate, action: Callable[[Action], str] = str) -> st
     lines += [
         f"{found.severity} ({found.code}): {found.worded(action)}" for found in estimate.findings
     ]
-    return "\n".join(lines)
+    return _printable("\n".join(lines))
+
+
+def _printable(text: str) -> str:
+    """The text without control characters, which a saved estimate could send to a terminal."""
+    return "".join(c if c == "\n" or c.isprintable() else "\ufffd" for c in text)

@@ -56,10 +56,10 @@ def html_report(estimate: Estimate) -> str:
         element("h2", "Warnings"),
         html_findings(estimate, _shown_by(estimate)),
         *_pictures(estimate),
-        element("h2", "How far to trust it"),
+        element("h2", "Uncertainty"),
         element(
             "p",
-            "Shift of each value when the windows are halved and doubled; about a standard error is usual.",
+            "Change of each value when the windows are halved and doubled; about one standard error is usual.",
         ),
         html_shifts(estimate),
         element(
@@ -68,7 +68,7 @@ def html_report(estimate: Estimate) -> str:
             "indistinguishable.",
         ),
         html_correlation(estimate),
-        element("h2", "How it was found"),
+        element("h2", "Fit and search"),
         html_quality(estimate),
         _footer(estimate),
     ]
@@ -93,7 +93,7 @@ def _pictures(estimate: Estimate) -> list[Html]:
         ),
         element("h2", "Windows", id="windows"),
         _picture(
-            "Above: what was measured over each window and what the model makes of it. Below: the difference. Windows "
+            "Above: measured and fitted mean over each window. Below: the residual. Windows "
             "in which the joint stands still are left out.",
             lambda axes: (
                 plot.window_means(estimate, axes[0]),

@@ -100,8 +100,9 @@ def _advice(
         text = "the drive's data sheet: an inertia that is known need not be identified"
         yield Action("inspect", text=text)
     if sign_was_guessed:
-        positive = evidence.parameters["sensor_gain"].value > 0.0
-        bound = {"sensor_gain": {"min" if positive else "max": 0.0}}
+        gain = evidence.parameters["sensor_gain"].value
+        # A bound of 0 is refused: the sensor's residual is divided by the gain.
+        bound = {"sensor_gain": {"min" if gain > 0.0 else "max": float(f"{0.01 * gain:.1e}")}}
         yield Action("call", {"parameters": bound}, text="if that is its sign")
 
 
