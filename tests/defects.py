@@ -110,7 +110,7 @@ def spike(r: jid.Recording) -> jid.Recording:
 
 
 def wrong_gear_ratio(r: jid.Recording) -> jid.Recording:
-    """Torque reckoned with a gear of 121 instead of 101."""
+    """Torque computed with a gear of 121 instead of 101."""
     assert r.torque is not None
     return changed(r, torque=r.torque * 121.0 / 101.0)
 

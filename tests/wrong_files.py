@@ -32,8 +32,10 @@ def _recordings(folder: Path) -> None:
         "sensor_raw": run.sensor,
     }
 
+    arrays = {name: np.asarray(column) for name, column in columns.items()}
+
     def write(name: str, **headers: str) -> None:
-        table = np.column_stack([columns[column] for column in headers])  # type: ignore[arg-type]
+        table = np.column_stack([arrays[column] for column in headers])
         header = ",".join(headers.values())
         np.savetxt(folder / name, table, delimiter=",", header=header, comments="")
 

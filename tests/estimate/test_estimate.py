@@ -1,4 +1,4 @@
-"""An estimate tells what it knows: JSON, notebook, friction map with its band, joint file, report, pictures."""
+"""What an estimate offers: JSON, notebook, friction map with its band, joint file, report, pictures."""
 
 import dataclasses
 import json
@@ -46,27 +46,26 @@ def test_json_holds_everything(estimate: jid.Estimate) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("{", "not JSON"),
         ("[]", "not a jointid estimate"),
         ('{"kind": "jointid estimate", "schema": 99}', "99"),
-        ('{"kind": "jointid estimate", "schema": 1}', "damaged"),
+        ('{"kind": "jointid estimate", "schema": 1}', "parameters: this is missing"),
     ],
 )
-def test_json_that_is_none_is_refused(text: str, told: str) -> None:
-    with pytest.raises(jid.InputError, match=told):
+def test_json_that_is_none_is_refused(text: str, message: str) -> None:
+    with pytest.raises(jid.InputError, match=message):
         jid.Estimate.from_json(text)
 
 
-def test_report_tells_values_and_warnings(estimate: jid.Estimate, robot: jid.Estimate) -> None:
+def test_report_shows_values_and_warnings(estimate: jid.Estimate, robot: jid.Estimate) -> None:
     text = estimate.report()
     for name in estimate.parameters:
         assert name in text
     assert "no warnings" in text
     assert "structured_residual" in robot.report()
     assert "coulomb" in robot._repr_html_()
-    assert "<script" not in robot._repr_html_()
 
 
 def test_friction_is_the_model_and_odd(estimate: jid.Estimate) -> None:
@@ -93,6 +92,18 @@ def test_friction_band_is_the_interval_of_a_single_parameter(estimate: jid.Estim
     assert curve.upper[0] - curve.lower[0] == pytest.approx(
         2.0 * (interval[1] - interval[0]), rel=1e-6
     )
+
+
+def test_friction_of_each_recording_for_itself_is_their_mean() -> None:
+    run = jid.load(data_folder() / "kr300_joint1.csv.gz")
+    joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
+    runs = [run.crop(0.0, 5.0), run.crop(5.0, 10.0)]
+    model = jid.Model(per_recording=("coulomb",))
+    own = jid.identify(runs, joint, model=model, search="separable")
+    first, second = (own.parameters[f"coulomb[{i}]"].value for i in (0, 1))
+    expected = 0.5 * (first + second) + own.parameters["viscous"].value * 0.3
+    assert own.friction([0.3]).torque[0] == pytest.approx(expected)
+    assert jid.Estimate.from_json(own.to_json()).friction([0.3]).upper[0] > expected
 
 
 def test_saving_into_a_joint_file_keeps_what_was_there(robot: jid.Estimate, tmp_path: Path) -> None:

@@ -1,6 +1,5 @@
-"""Degrees taken for radians: the advice names what no header states, and following it ends the matter."""
+"""Degrees taken for radians: the advice states what no header states, and obeying it removes the warning."""
 
-import re
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +7,7 @@ import pytest
 
 import jointid as jid
 from jointid.cli.demo import data_folder
+from jointid.estimate.findings import Finding
 
 
 def written(folder: Path, position: str, velocity: str, *, both: bool = False) -> Path:
@@ -21,14 +21,11 @@ def written(folder: Path, position: str, velocity: str, *, both: bool = False) -
     return path
 
 
-def about_units(path: Path, units: dict[str, str] | None = None) -> list[str]:
+def about_units(path: Path, units: dict[str, str] | None = None) -> list[Finding]:
     recording = jid.load(path, columns={"position": 1, "velocity": 2}, units=units)
     codes = {"implausible_units", "velocity_mismatch", "wrong_scale"}
-    return [
-        warning.message
-        for warning in jid.identify(recording, jid.thesis_joint()).warnings
-        if warning.code in codes
-    ]
+    found = jid.identify(recording, jid.thesis_joint()).warnings
+    return [warning for warning in found if warning.code in codes]
 
 
 @pytest.mark.parametrize(
@@ -43,14 +40,15 @@ def test_the_advice_names_the_units_that_no_header_states(
     position: str, velocity: str, both: bool, units: dict[str, str], tmp_path: Path
 ) -> None:
     path = written(tmp_path, position, velocity, both=both)
-    (told,) = about_units(path)
-    advised = dict(re.findall(r"'(position|velocity)': '([a-z/]+)'", told))
-    assert advised == units
-    assert about_units(path, advised) == []
+    (warning,) = about_units(path)
+    advice = warning.advice[0]
+    assert (advice.kind, advice.function) == ("call", "load")
+    assert advice.arguments == {"units": units}
+    assert about_units(path, advice.arguments["units"]) == []
 
 
 @pytest.mark.parametrize("both", [False, True])
 def test_a_stated_unit_is_not_overruled(both: bool, tmp_path: Path) -> None:
-    (told,) = about_units(written(tmp_path, "position_rad", "velocity_rad_s", both=both))
-    assert "units=" not in told
-    assert "a header, or who made the recording, says radians" in told
+    (warning,) = about_units(written(tmp_path, "position_rad", "velocity_rad_s", both=both))
+    assert all(advice.kind == "inspect" for advice in warning.advice)
+    assert "the header or the program that made the recording" in warning.message

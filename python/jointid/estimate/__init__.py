@@ -1,1 +1,1 @@
-"""Estimates: what was found, and how far it can be believed."""
+"""Estimates: identified values, their uncertainty, findings, tables and files."""

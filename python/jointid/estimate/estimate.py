@@ -1,4 +1,4 @@
-"""What an identification found, and how far it can be believed."""
+"""The result of an identification: values, uncertainty, findings."""
 
 from __future__ import annotations
 
@@ -12,16 +12,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from jointid.base.argument_checks import require_kind, require_path
 from jointid.base.errors import InputError
+from jointid.estimate.findings import Finding
 from jointid.estimate.statistics import (
     Convergence,
     FrictionCurve,
     ParameterEstimate,
     ResidualStatistics,
-    Warned,
 )
 from jointid.problem.window_table import Prediction, WindowTable
 
 if TYPE_CHECKING:
+    from jointid.estimate.derived import DerivedValue
     from jointid.joint.joint import Joint
     from jointid.recording.recording import Recording
 
@@ -30,7 +31,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Estimate:
-    """The result of `identify`: numbers, their uncertainty, and what to mind.
+    """The result of `identify`: values, their uncertainty, and findings.
 
     Attributes
     ----------
@@ -39,7 +40,7 @@ class Estimate:
     status : str
         "converged", or "stopped" when a callback ended the search early.
     message : str
-        How the search ended, in a sentence.
+        How the search ended.
     penalty : float
         Sum of squared window residuals, by the direct sum.
     correlation : ndarray, shape (p, p)
@@ -47,14 +48,20 @@ class Estimate:
     condition : float
         Condition number of the scaled regressor.
     weakest : tuple of str
-        Parameters in the direction that the data determine least.
+        Parameters with a large share in the least determined direction.
     covariance : ndarray, shape (p, p)
         Of the free parameters.
     residuals : ResidualStatistics
     windows : WindowTable
     convergence : Convergence or None
         None without a genetic search.
-    warnings : tuple of Warned
+    findings : tuple of Finding
+        What the data and the fit show, the most severe first; `docs/findings.md` lists the codes.
+    derived : mapping of str to DerivedValue
+        Quantities that follow from the parameters: "breakaway" (coulomb + static) and
+        "stribeck_velocity" (1/√stribeck), with standard errors.
+    warnings : tuple of Finding
+        The findings of severity "warning" or "blocking".
     joint : Joint
         The joint with the estimated values, ready to be used or saved.
     settings : mapping
@@ -75,7 +82,7 @@ class Estimate:
     residuals: ResidualStatistics
     windows: WindowTable
     convergence: Convergence | None
-    warnings: tuple[Warned, ...]
+    findings: tuple[Finding, ...]
     joint: Joint
     settings: Mapping[str, Any]
     seconds: float = field(repr=False)
@@ -84,6 +91,18 @@ class Estimate:
         values = ", ".join(f"{p.name}={p.value:.6g}" for p in self.parameters.values())
         return f"Estimate({values}; {len(self.warnings)} warnings)"
 
+    @property
+    def derived(self) -> Mapping[str, DerivedValue]:
+        """Breakaway friction and Stribeck velocity with standard errors, if the model has them."""
+        from jointid.estimate.derived import derived_values
+
+        return derived_values(self)
+
+    @property
+    def warnings(self) -> tuple[Finding, ...]:
+        """Findings that may bias values or make them unusable."""
+        return tuple(found for found in self.findings if found.severity != "info")
+
     def friction(self, velocity: ArrayLike) -> FrictionCurve:
         """Friction at given velocities, with a pointwise 95 % band.
 
@@ -91,13 +110,31 @@ class Estimate:
         ----------
         velocity : array_like, shape (n,)
             [rad/s or m/s]
+
+        Returns
+        -------
+        FrictionCurve
+
+        Examples
+        --------
+        >>> estimate.friction([0.1, 0.2]).torque  # doctest: +SKIP
+        array([34.36, 29.37])
         """
         from jointid.estimate.friction_map import friction_curve
 
         return friction_curve(self, np.atleast_1d(np.asarray(velocity, dtype=np.float64)))
 
     def predict(self, recording: Recording) -> Prediction:
-        """Hold the estimate against a recording: window integrals measured and predicted.
+        """Predict the window integrals of a recording, and compare them with the measured ones.
+
+        Parameters
+        ----------
+        recording : Recording
+            Of the same joint; it need not be one that the estimate was made from.
+
+        Returns
+        -------
+        Prediction
 
         Raises
         ------
@@ -109,45 +146,80 @@ class Estimate:
         return predict(self, recording)
 
     def report(self) -> str:
-        """The estimate as text: parameters, quality of the fit, warnings."""
+        """Return the estimate as text: parameters, quality of the fit, findings."""
         from jointid.estimate.tables import text_report
 
         return text_report(self)
 
     def _repr_html_(self) -> str:
-        from jointid.estimate.tables import html_summary
+        from jointid.estimate.html_tables import html_summary
 
-        return html_summary(self)
+        return str(html_summary(self))
 
     def to_json(self) -> str:
-        """Everything, as JSON with a schema version; `Estimate.from_json` reads it back."""
+        """Return the whole estimate as JSON with a schema version; `Estimate.from_json` reads it."""
         from jointid.estimate.json import write_estimate
 
         return write_estimate(self)
 
     @classmethod
     def from_json(cls, text: str) -> Estimate:
-        """Read what `to_json` wrote.
+        """Return the estimate that a JSON text holds.
+
+        Parameters
+        ----------
+        text : str
+            From `to_json`, of this schema or an older one.
 
         Raises
         ------
         InputError
-            Not JSON, not an estimate, or a newer schema.
+            Not JSON, not an estimate, a newer schema, or a value that cannot be used; its place is the
+            JSON path, e.g. "parameters.coulomb.value".
         """
         from jointid.estimate.json import read_estimate
 
         require_kind("text", text, str)
         return read_estimate(text)
 
-    def save(self, path: str | Path) -> None:
-        """Save to a joint file (.toml: values go into its parameter table, comments stay) or to .json.
+    @classmethod
+    def load(cls, path: str | Path) -> Estimate:
+        """Return the estimate that a .json file holds.
 
-        The file is written whole or not at all.
+        Parameters
+        ----------
+        path : path-like
 
         Raises
         ------
         InputError
-            Another extension, or an existing joint file that cannot be read.
+            No such file, not JSON, not an estimate, or a newer schema; names the file and the place in it.
+        """
+        from jointid.base.schema import read_text
+
+        path = require_path("path", path)
+        text = read_text(path)
+        try:
+            return cls.from_json(text)
+        except InputError as error:
+            raise error.at(str(path)) from error
+
+    def save(self, path: str | Path) -> None:
+        """Save to a joint file (.toml: values go into its parameter table, comments stay) or to .json.
+
+        The file is written completely or not at all.
+
+        Parameters
+        ----------
+        path : path-like
+            The ending chooses the format.
+
+        Raises
+        ------
+        InputError
+            Another ending, or an existing joint file that cannot be read.
+        OSError
+            The file cannot be written.
         """
         from jointid.base.files import write_whole
 
@@ -158,5 +230,7 @@ class Estimate:
             write_whole(path, self.to_json().encode())
         else:
             raise InputError(
-                f"{path}: an estimate is saved as .toml (joint file) or .json, not '{path.suffix}'"
+                "an estimate is saved as .toml (joint file) or .json",
+                argument="path",
+                value=path.name,
             )

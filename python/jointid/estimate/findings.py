@@ -1,8 +1,8 @@
-"""A finding: what the data or the fit show, how grave it is, why, and what to do; a value that each face words."""
+"""A finding: what the data or the fit show, how severe it is, why, and what to do; as data."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, Literal, get_args
@@ -42,7 +42,7 @@ class Finding:
     evidence : mapping of str to Measured
         The numbers it rests on, by name.
     cause : str
-        What was seen and its probable cause, in a sentence without the syntax of any face.
+        What was seen and its probable cause, in a sentence without the syntax of any interface.
     advice : tuple of Action
         What to do; the first that can be done helps.
     """
@@ -50,19 +50,33 @@ class Finding:
     code: str
     severity: Severity = "warning"
     parameters: tuple[str, ...] = ()
-    evidence: Mapping[str, Measured] = field(default_factory=dict)
+    evidence: Mapping[str, Measured] = field(default_factory=dict, hash=False)
     cause: str
-    advice: tuple[Action, ...] = ()
+    advice: tuple[Action, ...] = field(default=(), hash=False)
 
     def __post_init__(self) -> None:
         if self.severity not in get_args(Severity):
             raise ValueError(f"a severity is one of {', '.join(get_args(Severity))}")
         object.__setattr__(self, "evidence", MappingProxyType(dict(self.evidence)))
 
-    def __str__(self) -> str:
-        """The sentence that Python shows."""
-        advice = " or ".join(str(action) for action in self.advice)
+    def worded(self, action: Callable[[Action], str] = str) -> str:
+        """The finding in a sentence: its cause, and its advice as an interface words it.
+
+        Parameters
+        ----------
+        action : callable
+            Words one action. Default: as at a Python prompt.
+        """
+        advice = " or ".join(action(each) for each in self.advice)
         return f"{self.cause}; {advice}" if advice else self.cause
+
+    @property
+    def message(self) -> str:
+        """The sentence that Python shows: cause and advice."""
+        return self.worded()
+
+    def __str__(self) -> str:
+        return self.message
 
     def __reduce__(self) -> tuple[Any, ...]:
         # A read-only mapping cannot be pickled.

@@ -1,4 +1,4 @@
-"""The identified friction map with its band."""
+"""The estimated friction map with its confidence band."""
 
 from collections.abc import Mapping, Sequence
 
@@ -15,14 +15,21 @@ Array = NDArray[np.float64]
 _STEP = 1e-6  # relative, for the derivative by a shape parameter
 
 
+def shared_value(values: Mapping[str, float], name: str) -> float:
+    """A parameter's value; of one that each recording has for itself, the mean."""
+    if name in values:
+        return values[name]
+    return float(np.mean([value for key, value in values.items() if key.startswith(f"{name}[")]))
+
+
 def friction_torque(terms: Sequence[str], values: Mapping[str, float], velocity: Array) -> Array:
     """Friction at each velocity [N·m or N], of those among the terms that belong to the friction map."""
     total = np.zeros_like(velocity)
     for key in terms:
         term = _core.term(key)
         if term.friction:
-            shapes = np.array([values[shape] for shape in term.shapes])
-            total += values[term.name] * _core.friction_basis(key, velocity, shapes)
+            shapes = np.array([shared_value(values, shape) for shape in term.shapes])
+            total += shared_value(values, term.name) * _core.friction_basis(key, velocity, shapes)
     return total
 
 

@@ -1,22 +1,28 @@
-"""The JSON form of an estimate: complete enough to redraw every picture and to repeat the run."""
+"""Estimates as JSON: complete enough to redraw every picture and to repeat the run."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid import _core
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
+from jointid.base.schema import Number, read_json
 from jointid.estimate.estimate import Estimate
-from jointid.estimate.statistics import Convergence, ParameterEstimate, ResidualStatistics, Warned
+from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.json_schema import ESTIMATE
+from jointid.estimate.settings import model_of
+from jointid.estimate.statistics import Convergence, ParameterEstimate, ResidualStatistics
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_document, joint_from_document
 from jointid.problem.window_table import WindowTable
 
-SCHEMA = 1
-"""Raised when a reader of the old form would misread the new one."""
+SCHEMA = 2
+"""Raised when a reader of the old form would misread the new one. 2: findings in place of warnings."""
 
 _KIND = "jointid estimate"
 
@@ -26,6 +32,9 @@ def write_estimate(estimate: Estimate) -> str:
     document: dict[str, Any] = {"schema": SCHEMA, "kind": _KIND}
     for item in fields(Estimate):
         document[item.name] = _plain(getattr(estimate, item.name))
+    document["derived"] = _plain(estimate.derived)
+    for entry, found in zip(document["findings"], estimate.findings, strict=True):
+        entry["message"] = found.message  # for readers that are not ours
     return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
 
 
@@ -35,72 +44,120 @@ def read_estimate(text: str) -> Estimate:
     Raises
     ------
     InputError
-        Not JSON, not an estimate, a newer schema, or a missing field.
+        Not JSON, not an estimate, a newer schema, or a field that cannot be used; its place is the
+        JSON path, e.g. "parameters.coulomb.value".
     """
-    try:
-        document = json.loads(text)
-    except json.JSONDecodeError as error:
-        raise InputError(
-            f"not JSON: {error}; an estimate is saved with estimate.save('name.json')"
-        ) from error
+    document = read_json(text)
     if not isinstance(document, dict) or document.get("kind") != _KIND:
-        raise InputError(f"this JSON is not a jointid estimate: its field 'kind' is not '{_KIND}'")
-    if document.get("schema") != SCHEMA:
         raise InputError(
-            f"the estimate has schema {document.get('schema')!r}, this jointid reads {SCHEMA}; update jointid"
+            f"this JSON is not a jointid estimate: its field 'kind' is not '{_KIND}'",
+            remedy="save one with identify",
         )
-    try:
-        return _estimate(document)
-    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-        raise InputError(
-            f"the estimate's JSON is damaged: {type(error).__name__} {error}"
-        ) from error
+    schema = int(Number(low=1, whole=True).read(document.get("schema"), "schema"))
+    if schema > SCHEMA:
+        reason = f"this jointid reads schemas up to {SCHEMA}"
+        raise InputError(reason, value=schema, place="schema", remedy="update jointid")
+    return _estimate(ESTIMATE[schema].read(document, ""))
 
 
 def _estimate(d: Mapping[str, Any]) -> Estimate:
+    for place, reason in _contradictions(d):
+        raise InputError(reason, place=place)
+    try:
+        model_of(d["settings"])
+    except InputError as error:
+        raise error.at("settings.model") from None
     history = d["convergence"]
     return Estimate(
         parameters={name: _parameter(entry) for name, entry in d["parameters"].items()},
         free=tuple(d["free"]),
         status=d["status"],
         message=d["message"],
-        penalty=float(d["penalty"]),
+        penalty=d["penalty"],
         correlation=_matrix(d["correlation"]),
-        condition=float(d["condition"]),
+        condition=d["condition"],
         weakest=tuple(d["weakest"]),
         covariance=_matrix(d["covariance"]),
         residuals=ResidualStatistics(**d["residuals"]),
-        windows=WindowTable(**_arrays(d["windows"], integers=("recording",))),
-        convergence=None
-        if history is None
-        else Convergence(**_arrays(history, integers=("generation", "evaluations"))),
-        warnings=tuple(
-            Warned(code=w["code"], parameters=tuple(w["parameters"]), message=w["message"])
-            for w in d["warnings"]
-        ),
-        joint=joint_from_document(d["joint"], "estimate"),
+        windows=WindowTable(**_arrays(d["windows"])),
+        convergence=None if history is None else Convergence(**_arrays(history)),
+        findings=tuple(_finding(each) for each in d["findings"])
+        if "findings" in d
+        else tuple(_old_warning(each) for each in d["warnings"]),
+        joint=joint_from_document(d["joint"], "joint"),
         settings=d["settings"],
-        seconds=float(d["seconds"]),
+        seconds=d["seconds"],
     )
 
 
+def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Places where fields, each right by itself, do not fit together."""
+    names, free = d["parameters"], d["free"]
+    for name, entry in names.items():
+        if entry["name"] != name:
+            yield f"parameters.{name}.name", "this is not the name of the entry"
+    for i, name in enumerate(free):
+        if name not in names or name in free[:i]:
+            yield f"free[{i}]", "this is none of the parameters, or there twice"
+    for i, found in enumerate(d.get("findings", ())):
+        for j, action in enumerate(found["advice"]):
+            if action["kind"] == "call" and not action["arguments"]:
+                yield f"findings[{i}].advice[{j}].arguments", "a call needs arguments"
+    for field in ("correlation", "covariance"):
+        if any(len(row) != len(free) for row in (d[field], *d[field])):
+            yield field, f"{len(free)} rows of {len(free)} are expected, as many as free parameters"
+    for field in ("windows", "convergence"):
+        if d[field] is not None and len({len(column) for column in d[field].values()}) > 1:
+            yield field, "lists of the same length are expected"
+    if max(d["windows"]["recording"]) >= len(d["settings"]["recordings"]):
+        yield "windows.recording", "there are not so many recordings in settings.recordings"
+    values = {name.partition("[")[0] for name in names}  # coulomb[0] is one recording's own
+    for i, key in enumerate(d["settings"]["terms"]):
+        term = _term(key)
+        if term is None or not {term.name, *term.shapes} <= values:
+            yield f"settings.terms[{i}]", "this is no term with a value among the parameters"
+
+
+def _term(key: str) -> _core.Term | None:
+    try:
+        return _core.term(key)
+    except ValueError:  # the core's answer to an unknown key
+        return None
+
+
 def _parameter(entry: Mapping[str, Any]) -> ParameterEstimate:
-    values = dict(entry)
-    for name in ("stderr", "shift_halved", "shift_doubled"):
-        values[name] = None if values[name] is None else float(values[name])
-    if values["interval"] is not None:
-        values["interval"] = (float(values["interval"][0]), float(values["interval"][1]))
-    return ParameterEstimate(**values)
+    interval = None if entry["interval"] is None else tuple(entry["interval"])
+    return ParameterEstimate(**{**entry, "interval": interval})
 
 
-def _matrix(rows: Sequence[Sequence[Any]]) -> NDArray[np.float64]:
-    matrix = np.array([[float(x) for x in row] for row in rows], dtype=np.float64)
-    return matrix.reshape(len(rows), len(rows))
+def _finding(entry: Mapping[str, Any]) -> Finding:
+    return Finding(
+        code=entry["code"],
+        severity=entry["severity"],
+        parameters=tuple(entry["parameters"]),
+        evidence={name: Measured(**measured) for name, measured in entry["evidence"].items()},
+        cause=entry["cause"],
+        advice=tuple(Action(**each) for each in entry["advice"]),
+    )
 
 
-def _arrays(columns: Mapping[str, Any], *, integers: Sequence[str]) -> dict[str, Any]:
+def _old_warning(entry: Mapping[str, Any]) -> Finding:
+    """A finding of schema 1: a finished sentence."""
+    return Finding(
+        code=entry["code"], parameters=tuple(entry["parameters"]), cause=entry["message"]
+    )
+
+
+def _matrix(rows: Sequence[Sequence[float]]) -> NDArray[np.float64]:
+    return np.array(rows, dtype=np.float64).reshape(len(rows), len(rows))
+
+
+_INTEGERS = ("recording", "generation", "evaluations")
+
+
+def _arrays(columns: Mapping[str, Any]) -> dict[str, Any]:
     return {
-        name: np.array(values, dtype=np.int64 if name in integers else np.float64)
+        name: np.array(values, dtype=np.int64 if name in _INTEGERS else np.float64)
         for name, values in columns.items()
     }
 

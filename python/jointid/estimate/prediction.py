@@ -1,4 +1,4 @@
-"""An estimate held against a recording that it may never have seen."""
+"""Prediction of a recording by an estimate."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ import numpy as np
 
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
-from jointid.joint.model import Model
+from jointid.estimate.friction_map import shared_value
+from jointid.estimate.settings import model_of
 from jointid.problem.problem import Problem, listed
 from jointid.problem.terms import TermChoice
 from jointid.problem.window_table import Prediction, r_squared, relative_residual
@@ -19,23 +20,25 @@ if TYPE_CHECKING:
 
 
 def predict(estimate: Estimate, recording: Recording) -> Prediction:
-    """Hold an estimate against a recording: see `Estimate.predict`."""
+    """Predict a recording: see `Estimate.predict`."""
     require_kind("recording", recording, Recording)
     settings = estimate.settings
     choice = TermChoice(
         terms=tuple(settings["terms"]),
-        model=Model.parse(settings["model"]),
+        model=model_of(settings),
         residual=settings["residual"],
         sensor="sensor_gain" in settings["terms"],
         gear_ratio=estimate.joint.gear_ratio,
     )
     if recording.kind != settings["kind"]:
         raise InputError(
-            f"the estimate is of a {settings['kind']} joint, the recording is {recording.kind}"
+            f"the estimate is of a {settings['kind']} joint",
+            argument="recording.kind",
+            value=recording.kind,
         )
     if choice.sensor and recording.sensor is None:
         raise InputError(
-            "the estimate has a torque sensor, but the recording has no signal 'sensor'"
+            "the estimate has a torque sensor, the recording has none", argument="recording.sensor"
         )
     problem = Problem(
         recordings=listed(recording),
@@ -45,18 +48,11 @@ def predict(estimate: Estimate, recording: Recording) -> Prediction:
         mask_standstill=settings["mask_standstill"],
     )
     penalty = problem.penalty(settings["windows"])
-    theta = np.array([_predicting(estimate, name) for name in penalty.names])
+    values = {name: parameter.value for name, parameter in estimate.parameters.items()}
+    theta = np.array([shared_value(values, name) for name in penalty.names])
     table = problem.table(penalty, theta)
     return Prediction(
         windows=table,
         relative=relative_residual(table),
         r_squared=r_squared(table),
     )
-
-
-def _predicting(estimate: Estimate, name: str) -> float:
-    """A parameter's value; of one that each recording had for itself, the mean."""
-    if name in estimate.parameters:
-        return estimate.parameters[name].value
-    own = [p.value for key, p in estimate.parameters.items() if key.startswith(f"{name}[")]
-    return float(np.mean(own))

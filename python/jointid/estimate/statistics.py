@@ -1,4 +1,4 @@
-"""The parts of an estimate: parameters, residuals, convergence, warnings, curves."""
+"""The parts of an estimate: parameters, residuals, convergence, curves."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -23,7 +23,7 @@ class ParameterEstimate:
     interval : tuple of float or None
         95 % confidence interval (Student's t).
     min, max : float
-        Where the search could look.
+        Bounds of the search.
     vary : bool
         False when it was fixed.
     at_bound : str or None
@@ -112,39 +112,16 @@ class Convergence:
     evaluations: NDArray[np.int64]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Warned:
-    """One warning.
-
-    Attributes
-    ----------
-    code : str
-        Stable name, e.g. "undetermined"; the README lists them.
-    parameters : tuple of str
-        Concerned parameters.
-    message : str
-        Plain language: what, how bad, what to do.
-    """
-
-    code: str
-    parameters: tuple[str, ...]
-    message: str
-
-    def worded(self, _: object) -> str:
-        """The sentence; its advice is not data yet."""
-        return self.message
-
-
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FrictionCurve:
-    """The identified friction map; `numpy.asarray` of it is `torque`.
+    """The estimated friction map; `numpy.asarray` of it is `torque`.
 
     Attributes
     ----------
     velocity : ndarray
         [rad/s or m/s]
     torque : ndarray
-        [N·m or N]; 0 at rest, where friction takes any value up to Coulomb + static.
+        [N·m or N]; 0 at rest, where friction takes any value up to the breakaway friction.
     lower, upper : ndarray
         Pointwise 95 % band.
     """

@@ -1,4 +1,4 @@
-"""From the minimum of the penalty to an estimate: errors, correlations, statistics, warnings."""
+"""From the minimum of the penalty to an estimate: errors, correlations, statistics, findings."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from jointid.identification.inference.inference import (
 from jointid.identification.inference.systematic import systematic_errors
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.warnings.diagnosis import diagnose
-from jointid.identification.warnings.evidence import Facts, regressor
+from jointid.identification.warnings.evidence import Evidence, regressor
 from jointid.identification.warnings.inspection import inspect
 from jointid.problem.inner_products import columns_with, size
 from jointid.problem.problem import Problem
@@ -81,8 +81,8 @@ def infer(
     named = sorted(zip(free, np.abs(spread.weakest), strict=True), key=lambda pair: -pair[1])
     weakest = tuple(domain.names[i] for i, share in named if share > _NAMED)
     torque_level = float(np.sqrt(np.mean((penalty.target / penalty.usable_duration) ** 2)))
-    warnings = diagnose(
-        Facts(
+    findings = diagnose(
+        Evidence(
             problem=problem,
             penalty=penalty,
             best=best,
@@ -118,7 +118,7 @@ def infer(
         residuals=statistics,
         windows=table,
         convergence=convergence,
-        warnings=warnings,
+        findings=findings,
         joint=joint_of(problem, parameters),
         settings=settings,
         seconds=seconds,

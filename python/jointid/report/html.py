@@ -5,21 +5,22 @@ from __future__ import annotations
 import base64
 import io
 from collections.abc import Callable
-from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jointid import plot
 from jointid.base.argument_checks import require_path
 from jointid.base.files import write_whole
+from jointid.base.html import Html, element, page
 from jointid.estimate.estimate import Estimate
-from jointid.estimate.tables import (
+from jointid.estimate.html_tables import (
     html_correlation,
+    html_findings,
+    html_quality,
     html_shifts,
     html_table,
-    html_warnings,
-    quality,
 )
+from jointid.identification.warnings.registry import finding_types
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,7 +36,7 @@ table.facts td:nth-child(2) { text-align: left; }
 table.numbers th { text-align: left; font-weight: normal; } table.numbers td { text-align: right; }
 figure { margin: 1rem 0; } img { max-width: 100%; height: auto; }
 figcaption { color: #555; font-size: .9rem; }
-ul.warnings li { margin-bottom: .4rem; }
+ul.findings li { margin-bottom: .4rem; } li.blocking b { color: #b00; } li.info { color: #555; }
 footer { margin-top: 3rem; color: #777; font-size: .85rem; }
 """
 
@@ -47,23 +48,52 @@ def html_report(estimate: Estimate) -> str:
     ----------
     estimate : Estimate
     """
-    title = f"{escape(estimate.joint.name or 'joint')}: friction identified by jointid"
-    parts = [
-        "<!doctype html><html lang='en'><head><meta charset='utf-8'>",
-        f"<title>{title}</title><style>{_CSS}</style></head><body><h1>{title}</h1>",
-        "<h2>Parameters</h2>",
+    title = f"{estimate.joint.name or 'joint'}: friction identified by jointid"
+    body = [
+        element("h1", title),
+        element("h2", "Parameters"),
         html_table(estimate),
-        "<h2>What to mind</h2>",
-        html_warnings(estimate),
-        "<h2>Friction map</h2>",
+        element("h2", "Warnings"),
+        html_findings(estimate, _shown_by(estimate)),
+        *_pictures(estimate),
+        element("h2", "Uncertainty"),
+        element(
+            "p",
+            "Change of each value when the windows are halved and doubled; about one standard error is usual.",
+        ),
+        html_shifts(estimate),
+        element(
+            "p",
+            "Correlation of the estimates (offsets taken at the mean reading); near ±1, two parameters are "
+            "indistinguishable.",
+        ),
+        html_correlation(estimate),
+        element("h2", "Fit and search"),
+        html_quality(estimate),
+        _footer(estimate),
+    ]
+    return page(title, _CSS, *body)
+
+
+def _shown_by(estimate: Estimate) -> dict[str, str]:
+    """The picture that shows each kind of finding."""
+    types = finding_types().items()
+    searched = estimate.convergence is not None
+    shown = {code: each.picture for code, each in types if each.picture}
+    return {code: name for code, name in shown.items() if searched or name != "convergence"}
+
+
+def _pictures(estimate: Estimate) -> list[Html]:
+    parts = [
+        element("h2", "Friction map", id="friction-map"),
         _picture(
             "Friction map: a grey point is the friction that the recording shows over one window, the line is the "
             "identified model with its 95 % band.",
             lambda axes: plot.friction_map(None, estimate, axes[0]),
         ),
-        "<h2>Windows</h2>",
+        element("h2", "Windows", id="windows"),
         _picture(
-            "Above: what was measured over each window and what the model makes of it. Below: the difference. Windows "
+            "Above: measured and fitted mean over each window. Below: the residual. Windows "
             "in which the joint stands still are left out.",
             lambda axes: (
                 plot.window_means(estimate, axes[0]),
@@ -74,24 +104,13 @@ def html_report(estimate: Estimate) -> str:
     ]
     if estimate.convergence is not None:
         parts += [
-            "<h2>Convergence</h2>",
+            element("h2", "Convergence", id="convergence"),
             _picture(
                 "The genetic search, generation by generation; dashed: the penalty after the local polish.",
                 lambda axes: plot.convergence(estimate, axes[0]),
             ),
         ]
-    parts += [
-        "<h2>How far to trust it</h2>",
-        "<p>Shift of each value when the windows are halved and doubled; about a standard error is usual.</p>",
-        html_shifts(estimate),
-        "<p>Correlation of the estimates (offsets taken at the mean reading); near ±1, two cannot be told apart.</p>",
-        html_correlation(estimate),
-        "<h2>How it was found</h2>",
-        _facts(estimate),
-        _footer(estimate),
-        "</body></html>",
-    ]
-    return "\n".join(parts)
+    return parts
 
 
 def save_report(estimate: Estimate, path: str | Path) -> Path:
@@ -101,7 +120,7 @@ def save_report(estimate: Estimate, path: str | Path) -> Path:
     return target
 
 
-def _picture(caption: str, draw: Callable[[list[Axes]], object], rows: int = 1) -> str:
+def _picture(caption: str, draw: Callable[[list[Axes]], object], rows: int = 1) -> Html:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -114,8 +133,8 @@ def _picture(caption: str, draw: Callable[[list[Axes]], object], rows: int = 1) 
         for upper in axes[:-1]:
             upper.set_xlabel("")
         image = _png(figure)
-    text = escape(caption)
-    return f"<figure><img alt='{text}' src='data:image/png;base64,{image}'><figcaption>{text}</figcaption></figure>"
+    picture = element("img", alt=caption, src=f"data:image/png;base64,{image}")
+    return element("figure", picture, element("figcaption", caption))
 
 
 def _png(figure: Figure) -> str:
@@ -124,18 +143,9 @@ def _png(figure: Figure) -> str:
     return base64.b64encode(buffer.getvalue()).decode("ascii")
 
 
-def _facts(estimate: Estimate) -> str:
-    rows = "".join(
-        f"<tr><td>{escape(label)}</td><td>{escape(text)}</td></tr>"
-        for label, text in quality(estimate)
-    )
-    return f"<table class='facts'>{rows}</table>"
-
-
-def _footer(estimate: Estimate) -> str:
+def _footer(estimate: Estimate) -> Html:
     settings = estimate.settings
     runs = "; ".join(
-        f"{escape(str(run['name'] or 'recording'))} ({escape(str(run['fingerprint']))})"
-        for run in settings["recordings"]
+        f"{run['name'] or 'recording'} ({run['fingerprint']})" for run in settings["recordings"]
     )
-    return f"<footer>jointid {escape(str(settings['version']))}, seed {settings['seed']}; {runs}</footer>"
+    return element("footer", f"jointid {settings['version']}, seed {settings['seed']}; {runs}")

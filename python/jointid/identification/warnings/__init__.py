@@ -1,1 +1,1 @@
-"""What the data and the fit show to be wrong."""
+"""Checks of data and fit, each in a file of its own; `registry.py` lists them."""

@@ -1,4 +1,4 @@
-"""What warnings are drawn from."""
+"""Inputs shared by all warning checks."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Regressor:
-    """The window integrals of all terms, and behind them of the torque, as far as least squares cares.
+    """The window integrals of all terms, then of the torque, as the triangle of a QR decomposition.
 
     Attributes
     ----------
@@ -45,8 +45,8 @@ class Regressor:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Facts:
-    """An estimate in the making, and where it came from.
+class Evidence:
+    """Inputs shared by all warning checks: a fit, and what it was made from.
 
     Attributes
     ----------
@@ -65,9 +65,9 @@ class Facts:
     guessed_sign : bool
         Whether the gain's sign is one of two that fit alike.
     inspections : tuple of Inspected
-        What each recording shows by itself.
+        Properties of the signals of each recording.
     at_best : Regressor
-        At the shapes found.
+        At the estimated shape parameters.
     correlations : mapping
         Of each pair of free parameters, offsets centred.
     """
@@ -91,12 +91,12 @@ class Facts:
 
     @property
     def recordings(self) -> tuple[Recording, ...]:
-        """What was identified from."""
+        """Recordings used."""
         return self.problem.recordings
 
     @property
     def joint(self) -> Joint | None:
-        """The joint as it was given."""
+        """The joint before the identification."""
         return self.problem.joint
 
     @property
@@ -104,8 +104,14 @@ class Facts:
         """Name of the friction model."""
         return self.problem.choice.model.resolved.name
 
+    @property
+    def sensor_parameters(self) -> tuple[str, ...]:
+        """Parameters of the torque sensor."""
+        names = ("sensor_gain", "sensor_offset")
+        return tuple(name for name in names if name in self.parameters)
+
     def regressor(self, best: Array | None = None) -> Regressor:
-        """Every term's window integrals and the target's, at the shapes found or others [unit · s]."""
+        """Window integrals of every term and of the target, at the estimated shape parameters or others [unit · s]."""
         if best is None:
             return self.at_best
         count = self.penalty.coefficients

@@ -1,4 +1,4 @@
-"""What a recording shows by itself: found in the core, in one go, for all checks."""
+"""Properties of the signals of one recording: computed by the core once, for all checks."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _CHANNELS = ("position", "velocity", *DRIVE, "sensor")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inspected:
-    """A recording and what its signals show.
+    """A recording and the properties of its signals.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class Inspected:
     found: _core.Inspection
     channels: tuple[str, ...]
 
-    def facts(self, name: str) -> _core.SignalFacts:
+    def counts(self, name: str) -> _core.SignalFacts:
         """Counts of one signal."""
         return self.found.facts[self.channels.index(name)]
 
@@ -37,12 +37,12 @@ class Inspected:
 
     def stale_share(self, name: str) -> float:
         """Share of the moving samples at which a finely resolved signal does not change."""
-        facts = self.facts(name)
-        return facts.stale / facts.moving if facts.fine and facts.moving else 0.0
+        counts = self.counts(name)
+        return counts.stale / counts.moving if counts.fine and counts.moving else 0.0
 
 
 def inspect(recording: Recording, threads: int = 0) -> Inspected:
-    """Look at all signals of a recording."""
+    """Inspect all signals of a recording."""
     signals = {
         name: signal
         for name in _CHANNELS

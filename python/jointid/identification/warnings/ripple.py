@@ -1,4 +1,4 @@
-"""Ripple that the model lacks: a peak of the residual at a multiple of the motor's or the joint's angle."""
+"""Ripple that is missing from the model: a peak of the residual at a multiple of the motor's or the joint's angle."""
 
 from __future__ import annotations
 
@@ -7,10 +7,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.estimate.statistics import Warned
+from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
-from jointid.identification.warnings.evidence import Facts
+from jointid.identification.warnings.check import Check, FindingType
+from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.model_advice import model_with_ripple
+
+RIPPLE = FindingType(
+    code="ripple",
+    meaning="the residual oscillates with a multiple of the motor's angle, which the finding names with the amplitude",
+    advice="add ripple of that order to the model, e.g. `stribeck:ripple=2`",
+    picture="windows",
+)
 
 _HALVES = 16  # multiples of half the motor's angle that are looked at: 0.5 to 8
 _SHARE = 0.05  # of the residual's variance
@@ -26,18 +36,18 @@ class _Peak:
     share: float
 
 
-def _highest_peak(facts: Facts, gear: float) -> _Peak | None:
+def _highest_peak(evidence: Evidence, gear: float) -> _Peak | None:
     """The multiple of the motor's angle that explains most of the residual over windows of two samples.
 
     Windows of fast motion average the highest multiple away, and are left out.
     """
-    period = min(recording.sample_period for recording in facts.recordings)
+    period = min(recording.sample_period for recording in evidence.recordings)
     try:
-        fine = facts.problem.parts(_FINE * period)
+        fine = evidence.problem.parts(_FINE * period)
     except InputError:
         return None
     windows, power, sums = fine.ripple(
-        facts.best, gear_ratio=gear, halves=_HALVES, threads=facts.problem.threads
+        evidence.best, gear_ratio=gear, halves=_HALVES, threads=evidence.problem.threads
     )
     if windows < 50:
         return None
@@ -53,21 +63,24 @@ def _highest_peak(facts: Facts, gear: float) -> _Peak | None:
     )
 
 
-def periodic_residual(facts: Facts) -> Iterator[Warned]:
-    """A periodic residual over the motor's angle."""
-    gear = abs(facts.joint.gear_ratio) if facts.joint is not None else 1.0
-    if gear == 1.0 or facts.recordings[0].kind == "prismatic":
+def _find(evidence: Evidence) -> Iterator[Finding]:
+    gear = abs(evidence.joint.gear_ratio) if evidence.joint is not None else 1.0
+    if gear == 1.0 or evidence.recordings[0].kind == "prismatic":
         return
-    peak = _highest_peak(facts, gear)
+    peak = _highest_peak(evidence, gear)
     if peak is not None:
-        multiple = f"{peak.multiple:g}"
-        term = f"ripple=({multiple},)" if peak.multiple.is_integer() else "a ripple term"
-        yield Warned(
-            code="ripple",
-            parameters=("sensor_gain",) if "sensor_gain" in facts.parameters else (),
-            message=(
-                f"the residual swings with {multiple} × motor angle: amplitude about {peak.amplitude:.2g} N·m, "
-                f"{percent(peak.share)} of the residual's variance, as a strain-wave gear's ripple does; "
-                f"it biases gain and static friction: add {term} to the model"
-            ),
+        yield RIPPLE.finding(
+            f"the residual oscillates with {peak.multiple:g} × motor angle: amplitude about {peak.amplitude:.2g} N·m, "
+            f"{percent(peak.share)} of the residual's variance, as the ripple of a strain-wave gear does; it biases "
+            "gain and static friction",
+            Action("call", {"model": model_with_ripple(evidence, peak.multiple)}),
+            evidence={
+                "multiple": Measured(peak.multiple),
+                "amplitude": Measured(peak.amplitude, "N·m"),
+                "share_of_variance": Measured(peak.share),
+            },
+            parameters=("sensor_gain",) if "sensor_gain" in evidence.parameters else (),
         )
+
+
+CHECK = Check(_find, (RIPPLE,))

@@ -1,4 +1,4 @@
-"""Warnings: each defect is named, good recordings stay silent, undetermined values and ripple are told."""
+"""Warnings: each defect is named, good recordings raise none, undetermined values and ripple are reported."""
 
 import math
 import re
@@ -12,16 +12,16 @@ from simulated_joint import TRUTH, simulate
 
 import jointid as jid
 from jointid.cli.demo import data_folder
-from jointid.estimate.statistics import Warned
-from jointid.identification.warnings.motion import _sensor_lag, _timing_errors
+from jointid.estimate.findings import Finding
+from jointid.identification.warnings.inspection import inspect
 
 
 def codes(estimate: jid.Estimate) -> set[str]:
-    return {warning.code for warning in estimate.warnings}
+    return {found.code for found in estimate.findings}
 
 
-def warned(estimate: jid.Estimate, code: str) -> Warned:
-    (found,) = (warning for warning in estimate.warnings if warning.code == code)
+def warned(estimate: jid.Estimate, code: str) -> Finding:
+    (found,) = (each for each in estimate.findings if each.code == code)
     return found
 
 
@@ -39,23 +39,25 @@ def simulated(folder: Path, name: str) -> jid.Recording:
 
 
 @pytest.mark.parametrize("residual", ["sensor", "torque"])
-def test_a_good_recording_is_silent(well_excited: jid.Recording, residual: str) -> None:
+def test_a_good_recording_raises_no_finding(well_excited: jid.Recording, residual: str) -> None:
     joint = jid.thesis_joint()
     estimate = jid.identify(well_excited, joint, residual=residual, search="separable")
-    assert estimate.warnings == ()
+    assert estimate.findings == ()
 
 
-def test_a_good_recording_without_its_velocity_is_silent(well_excited: jid.Recording) -> None:
-    assert separable(changed(well_excited, velocity=None)).warnings == ()
+def test_a_good_recording_without_its_velocity_raises_no_finding(
+    well_excited: jid.Recording,
+) -> None:
+    assert separable(changed(well_excited, velocity=None)).findings == ()
 
 
 @pytest.mark.parametrize("defect", DEFECTS)
 def test_a_defect_is_named(well_excited: jid.Recording, defect: str) -> None:
     make, code = DEFECTS[defect]
     estimate = separable(make(well_excited))
-    told = [warning for warning in estimate.warnings if warning.code == code]
-    assert len(told) == 1
-    assert len(told[0].message) > 60  # what, how bad, what to do
+    found = [each for each in estimate.findings if each.code == code]
+    assert len(found) == 1
+    assert len(found[0].message) > 60  # what, how bad, what to do
     # None of the other defects' codes is raised beside it.
     others = {other for _, other in DEFECTS.values()} - {code}
     assert codes(estimate) & others == set()
@@ -103,28 +105,30 @@ def test_a_once_too_often_multiplied_torque_names_the_gear_ratio(
     well_excited: jid.Recording,
 ) -> None:
     assert well_excited.torque is not None
-    told = warned(separable(changed(well_excited, torque=101 * well_excited.torque)), "wrong_scale")
-    assert "multiplied by the gear ratio" in told.message
+    found = warned(
+        separable(changed(well_excited, torque=101 * well_excited.torque)), "wrong_scale"
+    )
+    assert "multiplied by the gear ratio" in found.message
 
 
 def test_the_lag_is_measured(well_excited: jid.Recording) -> None:
-    told = warned(separable(late_velocity(well_excited)), "signal_lag").message
-    assert "velocity lags the position by 3 ms" in told
+    found = warned(separable(late_velocity(well_excited)), "signal_lag").message
+    assert "velocity lags the position by 3 ms" in found
     assert well_excited.sensor is not None
     late = np.interp(well_excited.time - 5e-3, well_excited.time, well_excited.sensor)
-    before, _ = _sensor_lag(well_excited)
-    lag, error = _sensor_lag(changed(well_excited, sensor=late))
+    before, _ = inspect(well_excited).found.sensor_lag
+    lag, error = inspect(changed(well_excited, sensor=late)).found.sensor_lag
     assert lag - before == pytest.approx(5e-3, rel=0.3)
     assert lag > 20 * error
 
 
 def test_the_jitter_is_measured(well_excited: jid.Recording) -> None:
-    stamped, even = _timing_errors(
-        DEFECTS["stamps jittered, samples even"][0](well_excited),
-    )
+    make, _ = DEFECTS["stamps jittered, samples even"]
+    stamped, even = inspect(make(well_excited)).found.timing_errors
     assert stamped == pytest.approx(0.2e-3, rel=0.15)
     assert even < 0.1 * stamped
-    stamped, even = _timing_errors(DEFECTS["samples jittered, stamps even"][0](well_excited))
+    make, _ = DEFECTS["samples jittered, stamps even"]
+    stamped, even = inspect(make(well_excited)).found.timing_errors
     assert stamped == pytest.approx(0.2e-3, rel=0.15)
     assert even == pytest.approx(stamped)
 
@@ -142,17 +146,17 @@ def test_uneven_but_true_time_stamps_are_no_jitter(well_excited: jid.Recording) 
 
 
 def test_poor_excitation_is_named(shared_data: Path) -> None:
-    told = warned(separable(simulated(shared_data, "poorly_excited")), "undetermined")
-    assert told.parameters == ("sensor_gain", "sensor_offset")
-    assert "gravity torque" in told.message
+    found = warned(separable(simulated(shared_data, "poorly_excited")), "undetermined")
+    assert found.parameters == ("sensor_gain", "sensor_offset")
+    assert "gravity torque" in found.message
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_poor_excitation_is_named_whatever_the_noise(seed: int) -> None:
     # Amplitudes of 4° about the vertical vary the sensed torque as little as ±20° about the horizontal.
     (run,) = simulate(1, duration=6.0, seed=seed, degrees=(4.0, 4.0))
-    told = warned(separable(run), "undetermined")
-    assert {"sensor_gain", "sensor_offset"} <= set(told.parameters)
+    found = warned(separable(run), "undetermined")
+    assert {"sensor_gain", "sensor_offset"} <= set(found.parameters)
 
 
 @pytest.mark.parametrize(("amplitude", "seed"), [(3.0, 0), (3.0, 1), (5.0, 0), (5.0, 1)])
@@ -168,9 +172,9 @@ def test_the_errors_that_a_warning_states_are_those_of_the_table(
         seed=seed,
     )
     estimate = separable(run, joint)
-    told = warned(estimate, "undetermined").message
+    found = warned(estimate, "undetermined").message
     printed = {line.split()[0]: line for line in estimate.report().splitlines() if line}
-    stated = re.findall(r"(\w+) has a standard error of ([\d.]+ %)", told)
+    stated = re.findall(r"(\w+) has a standard error of ([\d.]+ %)", found)
     assert len(stated) >= 2
     for name, share in stated:
         assert f"({share})" in printed[name]
@@ -192,19 +196,19 @@ def test_an_inertia_that_noise_hides_is_named(shared_data: Path, name: str, grav
 
 @pytest.mark.parametrize("name", ["rippled", "realistic"])
 def test_ripple_is_named_by_its_frequency(shared_data: Path, name: str) -> None:
-    told = warned(separable(simulated(shared_data, name)), "ripple")
-    assert "2 × motor angle" in told.message
-    assert "ripple=(2,)" in told.message
+    found = warned(separable(simulated(shared_data, name)), "ripple")
+    assert "2 × motor angle" in found.message
+    assert dict(found.advice[0].arguments) == {"model": "stribeck:ripple=2"}
 
 
 @pytest.mark.parametrize("multiple", [1, 4])
 def test_ripple_at_another_multiple(well_excited: jid.Recording, multiple: int) -> None:
     assert well_excited.sensor is not None
     wave = 0.4 * np.sin(101 * multiple * well_excited.position + 1.0)
-    told = warned(
+    found = warned(
         separable(changed(well_excited, sensor=well_excited.sensor + wave)), "ripple"
     ).message
-    assert f"{multiple} × motor angle" in told
+    assert f"{multiple} × motor angle" in found
 
 
 def test_a_backward_difference_is_noticed(shared_data: Path) -> None:
@@ -229,7 +233,7 @@ def test_stribeck_is_too_rich_for_the_kr300() -> None:
     assert "model_too_rich" in codes(rich)
 
 
-def test_units_are_told_once(well_excited: jid.Recording) -> None:
+def test_units_are_reported_once(well_excited: jid.Recording) -> None:
     found = [warning.code for warning in separable(degrees(well_excited)).warnings]
     assert found.count("implausible_units") == 1
     assert "ripple" not in found
@@ -240,7 +244,7 @@ def runs() -> list[jid.Recording]:
     return simulate(30, duration=6.0, seed=11)
 
 
-def test_simulated_runs_are_silent_and_their_intervals_hold_the_truth(
+def test_simulated_runs_raise_no_warning_and_their_intervals_hold_the_truth(
     runs: list[jid.Recording],
 ) -> None:
     found = [separable(run) for run in runs]

@@ -1,0 +1,132 @@
+"""HTML built from elements, so that no text can reach a page unescaped.
+
+There is no way to make an `Html` from a string of markup: `element` and `page` are the only makers, and
+both escape every text they are given.
+"""
+
+from __future__ import annotations
+
+import re
+from html import escape
+
+_TAGS = frozenset(
+    (
+        *(
+            "html",
+            "head",
+            "meta",
+            "title",
+            "style",
+            "body",
+            "section",
+            "footer",
+            "div",
+            "span",
+            "h1",
+            "h2",
+            "h3",
+        ),
+        *("p", "br", "b", "em", "strong", "small", "sub", "sup", "code", "a", "ul", "ol", "li"),
+        *("figure", "figcaption", "img", "table", "caption", "thead", "tbody", "tr", "th", "td"),
+    )
+)
+_EMPTY = frozenset(("br", "img", "meta"))
+_ATTRIBUTES = frozenset(["alt", "charset", "class", "colspan", "href", "id", "lang", "src"])
+# A page of ours needs no other file: pictures are inside, links stay on the page.
+_SAFE = {
+    "src": re.compile(r"data:image/png;base64,[A-Za-z0-9+/=]*"),
+    "href": re.compile(r"#[\w-]*"),
+}
+
+
+class Html:
+    """A fragment of a page; made by `element` and `page` alone."""
+
+    __slots__ = ("_markup",)
+
+    def __init__(self) -> None:
+        raise TypeError("an Html is made by element(), which escapes what it is given")
+
+    def __str__(self) -> str:
+        """The markup."""
+        return self._markup
+
+    _markup: str
+
+
+def element(tag: str, *children: Html | str, **attributes: str) -> Html:
+    """Return one element of a page.
+
+    Parameters
+    ----------
+    tag : str
+        Name of the element; one of those that a report needs.
+    *children : Html or str
+        What stands inside; texts are escaped.
+    **attributes : str
+        Values are escaped; an underscore at the end of a name is dropped (`class_`). `src` takes a
+        picture as data, `href` a place on the same page.
+
+    Returns
+    -------
+    Html
+
+    Examples
+    --------
+    >>> str(element("p", "a < b", class_="note"))
+    '<p class="note">a &lt; b</p>'
+    """
+    if tag not in _TAGS:
+        raise ValueError(f"no element '{tag}' in a report")
+    opened = tag
+    for key, value in attributes.items():
+        name = key.removesuffix("_")
+        if name not in _ATTRIBUTES or (name in _SAFE and not _SAFE[name].fullmatch(value)):
+            raise ValueError(f"no attribute {name}='{value[:40]}' in a report")
+        opened += f' {name}="{escape(value)}"'
+    if tag in _EMPTY:
+        return _made(f"<{opened}>")
+    return _made(f"<{opened}>{''.join(map(_inside, children))}</{tag}>")
+
+
+def table(
+    rows: list[list[Html | str]], *, head: list[str] | None = None, class_: str = "jointid"
+) -> Html:
+    """Return a table: rows of cells (an Html that is a cell stays, a text becomes one), and a head."""
+    lines = [element("tr", *map(_cell, row)) for row in rows]
+    parts = [element("tbody", *lines)]
+    if head is not None:
+        parts.insert(0, element("thead", element("tr", *(element("th", name) for name in head))))
+    return element("table", *parts, class_=class_)
+
+
+def page(title: str, style: str, *body: Html | str) -> str:
+    """Return a whole page that needs no other file.
+
+    Parameters
+    ----------
+    title : str
+    style : str
+        CSS, without any of the characters that HTML escapes.
+    *body : Html or str
+    """
+    head = element(
+        "head", element("meta", charset="utf-8"), element("title", title), element("style", style)
+    )
+    return f"<!doctype html>{element('html', head, element('body', *body), lang='en')}"
+
+
+def _cell(child: Html | str) -> Html:
+    already = isinstance(child, Html) and str(child).startswith(("<td", "<th"))
+    return child if already and isinstance(child, Html) else element("td", child)
+
+
+def _inside(child: Html | str) -> str:
+    # Anything else, even a number, is a text: nothing is trusted for what it claims to be.
+    return child._markup if type(child) is Html else escape(str(child))
+
+
+def _made(markup: str) -> Html:
+    made = object.__new__(Html)
+    made._markup = markup
+    return made

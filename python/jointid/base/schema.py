@@ -1,0 +1,260 @@
+"""What a file of ours may hold: declared once as a schema, checked as it is read.
+
+A schema is built from the kinds below. Each has one method, `read(value, place)`, which returns the
+checked value or raises an InputError whose place is the JSON path, e.g. "parameters.coulomb.value".
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NoReturn, Protocol
+
+from jointid.base.errors import NOT_GIVEN, InputError
+
+LARGEST = 500_000_000  # bytes of a file, characters of a text; an estimate of an hour's recording has 20 million
+DEEPEST = 32  # lists and tables inside each other; an estimate has 5
+_NOT_FINITE = ("inf", "-inf", "nan")
+
+
+class Kind(Protocol):
+    """A kind of value."""
+
+    def read(self, value: Any, place: str) -> Any:
+        """Return the value, checked; raise an InputError at the place otherwise."""
+
+
+def read_text(path: Path) -> str:
+    """Return the text of a file of ours.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, is too large, or is not UTF-8; names the file.
+    """
+    place = str(path)
+    try:
+        size = path.stat().st_size
+        if size > LARGEST:
+            raise InputError(f"too large: {size} bytes, {LARGEST} are allowed", place=place)
+        return path.read_bytes().decode("utf-8")
+    except UnicodeDecodeError:
+        raise InputError("this is not text in UTF-8", place=place) from None
+    except OSError as error:
+        raise InputError(f"it cannot be read: {error.strerror}", place=place) from error
+
+
+def read_json(text: str) -> Any:
+    """Return the value that a JSON text holds, not deeper and not larger than any file of ours.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    object
+        Of JSON's types; numbers may be infinite or NaN, which `Number` and `Plain` refuse.
+
+    Raises
+    ------
+    InputError
+        Not JSON, nested too deeply, or too large.
+    """
+    if len(text) > LARGEST:
+        raise InputError(f"too large: {len(text)} characters, {LARGEST} are allowed")
+    try:
+        value = json.loads(text)
+    except RecursionError:
+        raise InputError("not JSON of ours: nested too deeply") from None
+    except ValueError as error:  # mostly a JSONDecodeError; an integer of 5000 digits is another
+        raise InputError(f"not JSON: {error}") from None
+    level: list[Any] = [value]
+    for _ in range(DEEPEST + 1):
+        inside = [_items(each) for each in level if isinstance(each, list | dict)]
+        if not inside:
+            return value
+        level = [each for items in inside for each in items]
+    raise InputError("not JSON of ours: nested too deeply")
+
+
+def _items(value: list[Any] | dict[str, Any]) -> Iterable[Any]:
+    return value.values() if isinstance(value, dict) else value
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Number:
+    """A number between `low` and `high`, both included; an integer when `whole`.
+
+    With `infinite`, the texts "inf" and "-inf" stand for infinite numbers (JSON has none); with
+    `undefined`, "nan" stands for an undefined one.
+    """
+
+    low: float = -math.inf
+    high: float = math.inf
+    whole: bool = False
+    infinite: bool = False
+    undefined: bool = False
+
+    def read(self, value: Any, place: str) -> float | int:
+        """Return a float, or an int when whole."""
+        number = value
+        if isinstance(value, str) and value in _NOT_FINITE:
+            number = float(value)
+            if not (self.undefined if math.isnan(number) else self.infinite):
+                _refuse(place, value, "a finite number is expected")
+        elif isinstance(value, bool) or not isinstance(value, int | float):
+            _refuse(place, value, "a number is expected")
+        elif isinstance(value, float) and not math.isfinite(value):
+            _refuse(place, value, "a finite number is expected")
+        elif self.whole and not isinstance(value, int):
+            _refuse(place, value, "an integer is expected")
+        if number < self.low or number > self.high:
+            _refuse(place, value, f"a number from {self.low:g} to {self.high:g} is expected")
+        if self.whole:
+            return int(number)
+        try:
+            return float(number)
+        except OverflowError:
+            _refuse(place, NOT_GIVEN, "the number is too large")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Text:
+    """A text of at most `longest` characters; one of `known` when that is not empty."""
+
+    longest: int = 10_000
+    known: tuple[str, ...] = ()
+
+    def read(self, value: Any, place: str) -> str:
+        """Return the text."""
+        if not isinstance(value, str):
+            _refuse(place, value, "a text is expected")
+        if len(value) > self.longest:
+            reason = f"{len(value)} characters, at most {self.longest} are expected"
+            _refuse(place, NOT_GIVEN, reason)
+        if any("\ud800" <= letter <= "\udfff" for letter in value):
+            _refuse(place, NOT_GIVEN, "half a character, which no file can hold")
+        if self.known and value not in self.known:
+            _refuse(place, value, f"known are {', '.join(self.known)}")
+        return value
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Flag:
+    """True or false."""
+
+    def read(self, value: Any, place: str) -> bool:
+        """Return the flag."""
+        if not isinstance(value, bool):
+            _refuse(place, value, "true or false is expected")
+        return value
+
+
+@dataclass(frozen=True, slots=True)
+class OrNull:
+    """What `kind` allows, or null."""
+
+    kind: Kind
+
+    def read(self, value: Any, place: str) -> Any:
+        """Return the value, or None."""
+        return None if value is None else self.kind.read(value, place)
+
+
+@dataclass(frozen=True, slots=True)
+class ListOf:
+    """A list of `shortest` to `longest` items of one kind."""
+
+    item: Kind
+    shortest: int = 0
+    longest: int = 10_000_000
+
+    def read(self, value: Any, place: str) -> list[Any]:
+        """Return a list."""
+        if not isinstance(value, list):
+            _refuse(place, value, "a list is expected")
+        if not self.shortest <= len(value) <= self.longest:
+            many = f"{self.shortest} to {self.longest} items are expected, not {len(value)}"
+            _refuse(place, NOT_GIVEN, many)
+        return [self.item.read(each, f"{place}[{i}]") for i, each in enumerate(value)]
+
+
+@dataclass(frozen=True, slots=True)
+class TableOf:
+    """A table with any names, at most `longest`, and entries of one kind."""
+
+    entry: Kind
+    longest: int = 10_000
+
+    def read(self, value: Any, place: str) -> dict[str, Any]:
+        """Return a dict in the file's order."""
+        table = _table(value, place)
+        if len(table) > self.longest:
+            reason = f"at most {self.longest} entries are expected, not {len(table)}"
+            _refuse(place, NOT_GIVEN, reason)
+        name = Text(longest=200)
+        return {
+            name.read(key, place): self.entry.read(entry, _inside(place, key))
+            for key, entry in table.items()
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """A table with known keys: `fields` must be there, `optional` may be; others are `other`, or refused."""
+
+    fields: Mapping[str, Kind]
+    optional: Mapping[str, Kind] = field(default_factory=dict)
+    other: Kind | None = None
+
+    def read(self, value: Any, place: str) -> dict[str, Any]:
+        """Return a dict of what is there."""
+        table = _table(value, place)
+        for key in self.fields:
+            if key not in table:
+                _refuse(_inside(place, key), NOT_GIVEN, "this is missing")
+        known = {**self.optional, **self.fields}
+        result = {}
+        for key, entry in table.items():
+            kind = known.get(key, self.other)
+            Text(longest=200).read(key, place)
+            if kind is None:
+                _refuse(_inside(place, key), NOT_GIVEN, f"unknown; known are {', '.join(known)}")
+            result[key] = kind.read(entry, _inside(place, key))
+        return result
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plain:
+    """Any value of JSON's types with finite numbers: what another reader checks, or what is only shown."""
+
+    def read(self, value: Any, place: str) -> Any:
+        """Return the value."""
+        if isinstance(value, list):
+            return ListOf(self).read(value, place)
+        if isinstance(value, dict):
+            return TableOf(self).read(value, place)
+        if isinstance(value, str):
+            return Text().read(value, place)
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            Number().read(value, place)
+        return value
+
+
+def _table(value: Any, place: str) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        _refuse(place, value, "a table is expected")
+    return value
+
+
+def _inside(place: str, key: str) -> str:
+    name = key if len(key) <= 60 else f"{key[:60]}…"
+    return f"{place}.{name}" if place else name
+
+
+def _refuse(place: str, value: object, reason: str) -> NoReturn:
+    raise InputError(reason, value=value, place=place)

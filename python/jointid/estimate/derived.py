@@ -1,0 +1,126 @@
+"""Quantities that follow from the parameters: breakaway friction and Stribeck velocity, with standard errors."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jointid.estimate.student import quantile
+
+if TYPE_CHECKING:
+    from jointid.estimate.estimate import Estimate
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DerivedValue:
+    """A quantity that follows from the parameters.
+
+    Attributes
+    ----------
+    name : str
+        "breakaway" or "stribeck_velocity", with the parameters' suffix for direction or recording.
+    meaning : str
+    unit : str
+    value : float
+    stderr : float or None
+        Standard error by the delta method, correlations of the parameters included; None when a
+        parameter was held at a bound, or is not determined, or all are fixed.
+    interval : tuple of float or None
+        95 % confidence interval (Student's t).
+    formula : str
+        How it follows, e.g. "coulomb + static".
+    """
+
+    name: str
+    meaning: str
+    unit: str
+    value: float
+    stderr: float | None
+    interval: tuple[float, float] | None
+    formula: str
+
+
+def derived_values(estimate: Estimate) -> dict[str, DerivedValue]:
+    """Breakaway friction of each direction and recording, and the Stribeck velocity, if the model has them."""
+    values = (*_breakaway(estimate), *_stribeck_velocity(estimate))
+    return {each.name: each for each in values}
+
+
+def _breakaway(estimate: Estimate) -> Iterator[DerivedValue]:
+    """The friction to overcome at rest: Coulomb friction and the static excess over it."""
+    parameters = estimate.parameters
+    for direction in ("", "_positive", "_negative"):
+        pair = (f"coulomb{direction}", f"static{direction}")
+        own = re.compile(rf"(?:coulomb|static){direction}(\[\d+\])")
+        runs = [found[1] for name in parameters if (found := own.fullmatch(name))]
+        for run in dict.fromkeys(runs) or ("",):
+            names = [name + run if name + run in parameters else name for name in pair]
+            if all(name in parameters for name in names):
+                yield _derived(
+                    estimate,
+                    name=f"breakaway{direction}{run}",
+                    meaning="friction to overcome at rest",
+                    unit=parameters[names[0]].unit,
+                    value=sum(parameters[name].value for name in names),
+                    slopes=dict.fromkeys(names, 1.0),
+                    formula=" + ".join(names),
+                )
+
+
+def _stribeck_velocity(estimate: Estimate) -> Iterator[DerivedValue]:
+    """The speed at which the static excess has decayed to 1/e."""
+    shape = estimate.parameters.get("stribeck")
+    if shape is not None and shape.value > 0.0:
+        yield _derived(
+            estimate,
+            name="stribeck_velocity",
+            meaning="speed at which the static excess has decayed to 1/e",
+            unit="m/s" if estimate.settings["kind"] == "prismatic" else "rad/s",
+            value=1.0 / math.sqrt(shape.value),
+            slopes={"stribeck": -0.5 * shape.value**-1.5},
+            formula="1/√stribeck",
+        )
+
+
+def _derived(
+    estimate: Estimate,
+    *,
+    name: str,
+    meaning: str,
+    unit: str,
+    value: float,
+    slopes: Mapping[str, float],
+    formula: str,
+) -> DerivedValue:
+    stderr = _error(estimate, slopes)
+    interval = None
+    if stderr is not None:
+        freedom = max(1, estimate.residuals.windows - len(estimate.free))
+        half = quantile(0.975, freedom) * stderr
+        interval = (value - half, value + half)
+    return DerivedValue(
+        name=name,
+        meaning=meaning,
+        unit=unit,
+        value=value,
+        stderr=stderr,
+        interval=interval,
+        formula=formula,
+    )
+
+
+def _error(estimate: Estimate, slopes: Mapping[str, float]) -> float | None:
+    """Standard error of a quantity with these slopes by the parameters: √(slopes · covariance · slopes)."""
+    free = [name for name in slopes if name in estimate.free]
+    held = [name for name in slopes if name not in free and estimate.parameters[name].vary]
+    if not free or held:
+        return None
+    places = [estimate.free.index(name) for name in free]
+    slope = np.array([slopes[name] for name in free])
+    variance = float(slope @ estimate.covariance[np.ix_(places, places)] @ slope)
+    return math.sqrt(max(variance, 0.0)) if math.isfinite(variance) else None

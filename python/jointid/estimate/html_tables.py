@@ -1,0 +1,78 @@
+"""The tables of an estimate as HTML, for notebooks and the report."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from jointid.base.html import Html, element, table
+from jointid.estimate.estimate import Estimate
+from jointid.estimate.findings import Finding
+from jointid.estimate.tables import HEAD, quality, rows, shown_name
+from jointid.estimate.wording import two_digits
+
+
+def html_table(estimate: Estimate) -> Html:
+    """The parameter table."""
+    return table([list(row) for row in rows(estimate)], head=list(HEAD))
+
+
+def html_quality(estimate: Estimate) -> Html:
+    """Quality of the fit and what it is based on."""
+    return table([list(pair) for pair in quality(estimate)], class_="facts")
+
+
+def html_correlation(estimate: Estimate) -> Html:
+    """The correlation matrix of the free parameters."""
+    body: list[list[Html | str]] = [
+        [element("th", shown_name(name)), *(f"{x:.2f}" for x in row)]
+        for name, row in zip(estimate.free, estimate.correlation, strict=True)
+    ]
+    return table(body, head=["", *map(shown_name, estimate.free)], class_="numbers")
+
+
+def html_shifts(estimate: Estimate) -> Html:
+    """How each value moves when the windows are halved and doubled."""
+    body: list[list[Html | str]] = []
+    for p in estimate.parameters.values():
+        if p.vary:
+            shifts = ("–" if s is None else f"{s:+.3g}" for s in (p.shift_halved, p.shift_doubled))
+            error = "–" if p.stderr is None else two_digits(p.stderr)
+            body.append([element("th", shown_name(p.name)), *shifts, error, element("th", p.unit)])
+    head = ["parameter", "windows halved", "windows doubled", "std. error", "unit"]
+    return table(body, head=head, class_="numbers")
+
+
+def html_findings(estimate: Estimate, pictures: Mapping[str, str] | None = None) -> Html:
+    """The findings as a list, or a line that says there are none.
+
+    Parameters
+    ----------
+    estimate : Estimate
+    pictures : mapping of str to str, optional
+        Code → section of the page that shows it, which the finding then links to. Default: no links.
+    """
+    if not estimate.findings:
+        return element("p", "No warnings.")
+    return element(
+        "ul", *(_finding(found, pictures or {}) for found in estimate.findings), class_="findings"
+    )
+
+
+def _finding(found: Finding, pictures: Mapping[str, str]) -> Html:
+    parts: list[Html | str] = [element("b", found.code), f" ({found.severity}): {found.message}"]
+    if found.code in pictures:
+        parts += [" ", element("a", "picture", href=f"#{pictures[found.code]}")]
+    return element("li", *parts, class_=found.severity)
+
+
+def html_summary(estimate: Estimate) -> Html:
+    """What a notebook shows for an estimate."""
+    r = estimate.residuals
+    caption = (
+        f"R² {r.r_squared:.5f}, relative residual {100.0 * r.relative:.2f} %, {r.windows} windows of "
+        f"{1e3 * r.window_duration:.4g} ms"
+    )
+    title = element("b", f"jointid estimate — {estimate.joint.name or 'joint'}")
+    return element(
+        "div", title, html_table(estimate), element("p", caption), html_findings(estimate)
+    )

@@ -1,0 +1,102 @@
+"""What the JSON of an estimate may hold, by schema number."""
+
+from typing import get_args
+
+from jointid.base.advice import Kind as ActionKind
+from jointid.base.schema import Flag, Kind, ListOf, Number, OrNull, Plain, Record, TableOf, Text
+from jointid.estimate.findings import Severity
+from jointid.estimate.settings import SETTINGS
+
+_VALUE = Number(low=-1e100, high=1e100)  # far beyond any joint, and its square is still a number
+_NOT_NEGATIVE = Number(low=0.0, high=1e100)
+_POSITIVE = Number(low=1e-12, high=1e100)
+_COUNT = Number(low=0, high=2**62, whole=True)
+_LIMIT = Number(infinite=True)
+_ANY = Number(infinite=True, undefined=True)
+_MATRIX = ListOf(ListOf(_ANY))
+
+_PARAMETER = Record(
+    {
+        "name": Text(),
+        "meaning": Text(),
+        "unit": Text(),
+        "value": _VALUE,
+        "stderr": OrNull(_ANY),
+        "interval": OrNull(ListOf(_ANY, 2, 2)),
+        "min": _LIMIT,
+        "max": _LIMIT,
+        "vary": Flag(),
+        "at_bound": OrNull(Text(known=("min", "max"))),
+        "shift_halved": OrNull(_ANY),
+        "shift_doubled": OrNull(_ANY),
+    }
+)
+_RESIDUALS = Record(
+    {
+        "windows": _COUNT,
+        "window_duration": _POSITIVE,
+        "samples": _COUNT,
+        **dict.fromkeys(("noise_share", "rms", "relative", "r_squared"), _ANY),
+        **dict.fromkeys(("autocorrelation", "left_out", "standing"), _ANY),
+    }
+)
+_WINDOWS = Record(
+    {
+        "recording": ListOf(_COUNT, 1),
+        "duration": ListOf(_POSITIVE, 1),
+        **{name: ListOf(_VALUE, 1) for name in ("start", "stop", "measured", "fitted")},
+        **{name: ListOf(_VALUE, 1) for name in ("velocity", "friction")},
+    }
+)
+_CONVERGENCE = Record(
+    {
+        **{name: ListOf(_COUNT, 1) for name in ("generation", "evaluations")},
+        **{name: ListOf(_NOT_NEGATIVE, 1) for name in ("best", "mean")},
+        "diversity": ListOf(_ANY, 1),
+        **{f"{name}_probability": ListOf(_ANY, 1) for name in ("crossover", "mutation")},
+    }
+)
+_WARNING = Record({"code": Text(), "parameters": ListOf(Text()), "message": Text()})
+_ACTION = Record(
+    {
+        "kind": Text(known=get_args(ActionKind)),
+        "arguments": TableOf(Plain()),
+        "text": Text(),
+        "function": Text(),
+    }
+)
+_FINDING = Record(
+    {
+        "code": Text(),
+        "severity": Text(known=get_args(Severity)),
+        "parameters": ListOf(Text()),
+        "evidence": TableOf(Record({"value": _ANY, "unit": Text()})),
+        "cause": Text(),
+        "advice": ListOf(_ACTION),
+        "message": Text(),
+    }
+)
+_FIELDS: dict[str, Kind] = {
+    "schema": _COUNT,
+    "kind": Text(),
+    "parameters": TableOf(_PARAMETER),
+    "free": ListOf(Text()),
+    "status": Text(),
+    "message": Text(),
+    "penalty": _NOT_NEGATIVE,
+    "correlation": _MATRIX,
+    "covariance": _MATRIX,
+    "condition": _ANY,
+    "weakest": ListOf(Text()),
+    "residuals": _RESIDUALS,
+    "windows": _WINDOWS,
+    "convergence": OrNull(_CONVERGENCE),
+    "joint": TableOf(Plain()),  # the joint has a reader of its own
+    "settings": SETTINGS,
+    "seconds": _NOT_NEGATIVE,
+}
+ESTIMATE: dict[int, Kind] = {
+    1: Record({**_FIELDS, "warnings": ListOf(_WARNING)}),
+    # What is derived is computed again.
+    2: Record({**_FIELDS, "findings": ListOf(_FINDING)}, {"derived": Plain()}),
+}

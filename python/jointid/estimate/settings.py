@@ -1,0 +1,62 @@
+"""How an estimate was made: the settings it carries, and the one place that reads the model from them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from jointid.base.schema import Flag, ListOf, Number, OrNull, Plain, Record, TableOf, Text
+from jointid.joint.model import FIELDS, Model
+
+# Only what is read again is declared. All else is there for people, and to repeat the run.
+SETTINGS = Record(
+    fields={
+        "version": Text(),
+        "kind": Text(known=("revolute", "prismatic")),
+        "method": Text(),
+        "model": Text(),
+        "terms": ListOf(Text(), shortest=1, longest=1000),
+        "residual": Text(known=("sensor", "torque")),
+        "windows": Number(low=1e-9, high=1e9),
+        "torque_hold": OrNull(Text(known=("zoh", "linear"))),
+        "mask_standstill": Flag(),
+        "seed": Number(low=0, high=2**64 - 1, whole=True),
+        "ga": OrNull(TableOf(Plain())),
+        "recordings": ListOf(
+            Record({"name": OrNull(Text()), "fingerprint": Text()}, other=Plain()), shortest=1
+        ),
+    },
+    optional={
+        "dropped": Text(),
+        "bounds_from_data": ListOf(Text()),
+    },
+    other=Plain(),
+)
+
+
+def model_of(settings: Mapping[str, Any]) -> Model:
+    """The model that was identified; settings of schema 1 have its fields beside its name.
+
+    Raises
+    ------
+    InputError
+        A saved model that cannot be.
+    """
+    beside = {name: settings[name] for name in FIELDS if name in settings}
+    return Model.of(beside).over(Model.parse(settings["model"]))
+
+
+def model_description(settings: Mapping[str, Any]) -> str:
+    """The model and the residual, for people, e.g. "stribeck:ripple=2, residual of the sensor"."""
+    text = f"{model_of(settings).resolved}, residual of the {settings['residual']}"
+    return f"{text} (without {settings['dropped']})" if settings.get("dropped") else text
+
+
+def torque_unit(settings: Mapping[str, Any]) -> str:
+    """Unit of the drive's torque or force."""
+    return "N" if settings["kind"] == "prismatic" else "N·m"
+
+
+def residual_unit(settings: Mapping[str, Any]) -> str:
+    """Unit of the signal that the residual compares."""
+    return "sensor units" if settings["residual"] == "sensor" else torque_unit(settings)

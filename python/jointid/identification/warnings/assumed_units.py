@@ -1,0 +1,40 @@
+"""Signals whose unit no header states."""
+
+from collections.abc import Iterator
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding
+from jointid.identification.warnings.check import Check, FindingType
+from jointid.identification.warnings.evidence import Evidence
+from jointid.recording.signals import SIGNALS, header_unit
+
+ASSUMED_UNITS = FindingType(
+    code="assumed_units",
+    meaning="a column has no unit; SI is assumed",
+    advice="name the unit in the header (`position_rad`), or state it when loading",
+)
+
+
+def _find(evidence: Evidence) -> Iterator[Finding]:
+    signals = dict.fromkeys(
+        str(signal)
+        for recording in evidence.recordings
+        for signal in _sequence(recording.metadata.get("assumed_units"))
+    )
+    kind = evidence.recordings[0].kind
+    units = {name: header_unit(name, kind) for name in signals if name in SIGNALS}
+    if signals:
+        advice = [Action("inspect", text="the header, and name the unit there (position_rad)")]
+        if units:
+            purpose = "or whatever the units are"
+            advice.append(Action("call", {"units": units}, text=purpose, function="load"))
+        yield ASSUMED_UNITS.finding(
+            f"no unit is stated for {', '.join(signals)}; SI is assumed", *advice
+        )
+
+
+def _sequence(value: object) -> tuple[object, ...]:
+    return tuple(value) if isinstance(value, list | tuple) else ()
+
+
+CHECK = Check(_find, (ASSUMED_UNITS,))

@@ -1,0 +1,41 @@
+"""Values that ended on a bound."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.identification.warnings.check import Check, FindingType
+from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.model_too_rich import SHAPES, STATIC, richness
+
+AT_BOUND = FindingType(
+    code="at_bound",
+    meaning="a value ended on its bound, so it has no standard error",
+    advice="widen the bound, or find out why",
+)
+
+
+def _find(evidence: Evidence) -> Iterator[Finding]:
+    reported = (*STATIC, *SHAPES) if richness(evidence) is not None else ()
+    for p in evidence.parameters.values():
+        if p.at_bound is None or p.name in reported:
+            continue
+        limit = p.min if p.at_bound == "min" else p.max
+        side = "lower" if p.at_bound == "min" else "upper"
+        advice = [Action("inspect", text="units, signs and gear ratio")]
+        if p.name not in evidence.bounds_from_data and limit != 0.0:
+            # NOTE: None takes the bound away, and a wide one comes from the data.
+            wider = {p.name: {p.at_bound: None}}
+            advice.insert(0, Action("call", {"parameters": wider}, text="a bound from the data"))
+        yield AT_BOUND.finding(
+            f"{p.name} ended at its {side} bound {limit:.6g} {p.unit}: the best value lies beyond it, or the data do "
+            "not determine it; other values are affected",
+            *advice,
+            evidence={f"{p.name}.{p.at_bound}": Measured(limit, p.unit)},
+            parameters=(p.name,),
+        )
+
+
+CHECK = Check(_find, (AT_BOUND,))

@@ -1,0 +1,67 @@
+"""What a check is: a function that yields findings, and the types of finding that it can yield."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured, Severity
+from jointid.identification.warnings.evidence import Evidence
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FindingType:
+    """One code: how severe it is, what it means, and what to do about it.
+
+    Attributes
+    ----------
+    code : str
+        Stable name.
+    severity : {"info", "warning", "blocking"}
+    meaning : str
+        When it is raised; a row of docs/findings.md.
+    advice : str
+        What to do, in general; a finding's own advice is data.
+    picture : str
+        Section of the HTML report that shows it: "friction-map", "windows" or "convergence". Default: none.
+    """
+
+    code: str
+    severity: Severity = "warning"
+    meaning: str
+    advice: str
+    picture: str = ""
+
+    def finding(
+        self,
+        cause: str,
+        *advice: Action,
+        evidence: Mapping[str, Measured] | None = None,
+        parameters: tuple[str, ...] = (),
+    ) -> Finding:
+        """Return a finding of this type."""
+        return Finding(
+            code=self.code,
+            severity=self.severity,
+            parameters=parameters,
+            evidence=evidence or {},
+            cause=cause,
+            advice=advice,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One check.
+
+    Attributes
+    ----------
+    find : callable
+        Takes the `Evidence`, yields findings; yields nothing when all is well.
+    types : tuple of FindingType
+        What it can yield.
+    """
+
+    find: Callable[[Evidence], Iterator[Finding]]
+    types: tuple[FindingType, ...]

@@ -1,0 +1,73 @@
+"""A torque or a sensor that rests on its largest value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from jointid import _core
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.wording import percent
+from jointid.identification.warnings.check import Check, FindingType
+from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import DRIVE
+
+TORQUE_SATURATED = FindingType(
+    code="torque_saturated",
+    meaning="the torque rests on its limit in more than 1 % of the samples",
+    advice="record gentler motion, or the torque that the drive applied",
+)
+SENSOR_CLIPPED = FindingType(
+    code="sensor_clipped",
+    meaning="the sensor rests on its limit in more than 1 % of the samples",
+    advice="widen the sensor's range, or load the link less",
+)
+_CLIPPED = 0.01  # share of the samples on a limit
+
+
+def _on_a_limit(counts: _core.SignalFacts, samples: int) -> float:
+    """Share of the samples that lie on a limit which cuts the signal off."""
+    if counts.lowest == counts.highest:
+        return 0.0
+    share = 0.0
+    for limit in (counts.upper, counts.lower):
+        # At rest a clean signal stays where it is, and that may be its largest value.
+        if counts.fine or limit.moving > 3 * (limit.near - limit.there):
+            share += limit.moving / samples
+    # A signal of few levels (a square wave) rests on its limits by nature.
+    changing = counts.changes > 0.3 * (1.0 - share) * (samples - 1)
+    return share if changing else 0.0
+
+
+def _find(evidence: Evidence) -> Iterator[Finding]:
+    for inspected in evidence.inspections:
+        recording = inspected.recording
+        for name in inspected.channels:
+            if name not in (*DRIVE, "sensor"):
+                continue
+            signal = inspected.counts(name)
+            share = _on_a_limit(signal, len(recording))
+            if share < _CLIPPED:
+                continue
+            if name == "sensor":
+                yield SENSOR_CLIPPED.finding(
+                    f"the sensor rests on its limit in {percent(share)} of the samples, so its reading is less than "
+                    "the torque",
+                    Action("inspect", text="the sensor's range, and widen it"),
+                    Action("record", text="motion in which the link carries less"),
+                    evidence={"clipped": Measured(share)},
+                    parameters=evidence.sensor_parameters,
+                )
+            else:
+                limit = max(abs(signal.lowest), abs(signal.highest))
+                unit = recording.unit(name)
+                yield TORQUE_SATURATED.finding(
+                    f"{name} rests on its limit of {limit:.4g} {unit} in {percent(share)} of the samples; if the "
+                    "record was clipped and the torque was not, every value is wrong",
+                    Action("record", text="gentler motion"),
+                    Action("record", text="the torque that the drive applied"),
+                    evidence={"clipped": Measured(share), "limit": Measured(limit, unit)},
+                )
+
+
+CHECK = Check(_find, (TORQUE_SATURATED, SENSOR_CLIPPED))

@@ -1,0 +1,49 @@
+"""A sensor or torque that never changes, or freezes for a while as the joint moves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.wording import percent
+from jointid.identification.warnings.check import Check, FindingType
+from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import DRIVE
+
+CONSTANT_SIGNAL = FindingType(
+    code="constant_signal",
+    severity="blocking",
+    meaning="torque or sensor never change, or freeze for more than 5 % of the samples, while the joint moves",
+    advice="check cable and mapping",
+)
+_FROZEN = 0.05  # share of the samples in frozen runs
+
+
+def _find(evidence: Evidence) -> Iterator[Finding]:
+    for inspected in evidence.inspections:
+        for name in inspected.channels:
+            if name not in (*DRIVE, "sensor"):
+                continue
+            signal = inspected.counts(name)
+            share = signal.frozen / len(inspected.recording) if signal.fine else 0.0
+            if signal.lowest == signal.highest:
+                share = 1.0
+            if share < _FROZEN:
+                continue
+            names = evidence.sensor_parameters if name == "sensor" else ()
+            frozen = (
+                "never changes" if share == 1.0 else f"is frozen in {percent(share)} of the samples"
+            )
+            result = (
+                "gain and offset cannot be determined" if names else "the values cannot be used"
+            )
+            yield CONSTANT_SIGNAL.finding(
+                f"{name} {frozen} while the joint moves: {result}",
+                Action("inspect", text="the signal's cable and mapping"),
+                evidence={"frozen": Measured(share)},
+                parameters=names,
+            )
+
+
+CHECK = Check(_find, (CONSTANT_SIGNAL,))

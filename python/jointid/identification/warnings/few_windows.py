@@ -1,0 +1,31 @@
+"""Too few windows to know the standard errors."""
+
+from collections.abc import Iterator
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.identification.warnings.check import Check, FindingType
+from jointid.identification.warnings.evidence import Evidence
+
+FEW_WINDOWS = FindingType(
+    code="few_windows",
+    meaning="fewer than eight windows for each free parameter: the standard errors are themselves uncertain",
+    advice="record longer, or use shorter windows",
+)
+_FEW = 8  # windows for each free parameter
+_ADVISED = 12  # some of those asked for are left out
+
+
+def _find(evidence: Evidence) -> Iterator[Finding]:
+    free = sum(p.vary for p in evidence.parameters.values())
+    windows = evidence.residuals.windows
+    if windows < _FEW * free:
+        yield FEW_WINDOWS.finding(
+            f"{windows} windows for {free} parameters: the standard errors are themselves uncertain",
+            Action("record", text="for longer"),
+            Action("call", {"windows": _ADVISED * free}, text="shorter windows"),
+            evidence={"windows": Measured(windows), "free_parameters": Measured(free)},
+        )
+
+
+CHECK = Check(_find, (FEW_WINDOWS,))

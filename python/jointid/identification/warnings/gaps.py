@@ -1,0 +1,34 @@
+"""Recordings with gaps."""
+
+from collections.abc import Iterator
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.identification.warnings.check import Check, FindingType
+from jointid.identification.warnings.evidence import Evidence
+
+GAPS = FindingType(
+    code="gaps",
+    severity="info",
+    meaning="the time stamps jump; no window crosses a gap, so values are not affected",
+    advice="find out why samples are missing",
+)
+
+
+def _find(evidence: Evidence) -> Iterator[Finding]:
+    for recording in evidence.recordings:
+        if recording.gaps:
+            longest = max(recording.gaps, key=lambda gap: gap.duration)
+            yield GAPS.finding(
+                f"{len(recording.gaps)} gap(s) in the recording, the longest of {longest.duration:.3g} s at "
+                f"{longest.start:.3f} s; no window crosses them",
+                Action("inspect", text="why samples are missing"),
+                evidence={
+                    "gaps": Measured(len(recording.gaps)),
+                    "longest": Measured(longest.duration, "s"),
+                    "start_of_longest": Measured(longest.start, "s"),
+                },
+            )
+
+
+CHECK = Check(_find, (GAPS,))

@@ -1,0 +1,39 @@
+"""The list of all checks. A new check is a file beside this one and a line here."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from jointid.identification.warnings.check import Check, FindingType
+
+# In the order in which findings are listed: the most severe first. Each file has a CHECK.
+_FILES = (
+    "stopped",
+    "velocity",
+    "speed",
+    "torque_balance",
+    "constant",
+    "clipped",
+    "spikes",
+    "repeated",
+    "time_jitter",
+    "sensor_lag",
+    "noisy_velocity",
+    "model_too_rich",
+    "at_bound",
+    "undetermined",
+    "ripple",
+    "poor_fit",
+    "structured_residual",
+    "standing",
+    "few_windows",
+    "gaps",
+    "assumed_units",
+)
+
+CHECKS: tuple[Check, ...] = tuple(import_module(f"{__package__}.{file}").CHECK for file in _FILES)
+
+
+def finding_types() -> dict[str, FindingType]:
+    """Return every type of finding by its code, in the order of the checks."""
+    return {each.code: each for check in CHECKS for each in check.types}

@@ -1,0 +1,37 @@
+"""Samples that merely repeat the one before while the joint moves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.wording import percent
+from jointid.identification.warnings.check import Check, FindingType
+from jointid.identification.warnings.evidence import Evidence
+
+REPEATED_SAMPLES = FindingType(
+    code="repeated_samples",
+    meaning="more than 3 % of the moving samples repeat the one before",
+    advice="drop the copies, or record at the drive's own rate",
+)
+REPEATED = 0.03  # share of the moving samples
+
+
+def _find(evidence: Evidence) -> Iterator[Finding]:
+    for inspected in evidence.inspections:
+        stale = {}
+        for name in ("position", "velocity", "sensor"):
+            share = inspected.stale_share(name) if name in inspected.channels else 0.0
+            if share > REPEATED:
+                stale[name] = share
+        if stale:
+            yield REPEATED_SAMPLES.finding(
+                f"{' and '.join(stale)} repeat the sample before in {percent(max(stale.values()))} of the samples "
+                "though the joint moves: the logger was faster than the drive's bus",
+                Action("record", text="at the drive's own rate, or drop the copies"),
+                evidence={f"{name}.repeated": Measured(share) for name, share in stale.items()},
+            )
+
+
+CHECK = Check(_find, (REPEATED_SAMPLES,))

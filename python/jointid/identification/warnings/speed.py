@@ -1,0 +1,52 @@
+"""Motion that is too fast or too wide for a joint: probably degrees taken for radians."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.identification.warnings.check import Check
+from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_advice
+from jointid.identification.warnings.velocity import MISMATCH
+
+_MOTOR_SPEED = 2000.0  # [rad/s]: beyond any geared servo motor
+_SWING = 25.0  # [rad] back and forth: four turns
+
+
+def _find(evidence: Evidence) -> Iterator[Finding]:
+    gear = abs(evidence.joint.gear_ratio) if evidence.joint is not None else 1.0
+    for inspected in evidence.inspections:
+        recording, peak = inspected.recording, inspected.found.peak_speed
+        agreement = inspected.found.agreement
+        if recording.kind == "prismatic" or (
+            agreement is not None and abs(agreement.scale - 1.0) > MISMATCH
+        ):
+            continue  # what contradicts itself has no speed, and that is reported already
+        if gear > 1.0 and peak * gear > _MOTOR_SPEED:  # one outlier is no speed
+            peak = float(np.percentile(np.abs(recording.velocity), 99.0))
+        swing = inspected.found.swing
+        travel = abs(float(recording.position[-1] - recording.position[0]))
+        if gear > 1.0 and peak * gear > _MOTOR_SPEED:
+            speed = peak * gear * 60.0 / (2.0 * np.pi)
+            seen, shown = f"the motor would turn at {speed:.0f} rpm", Measured(speed, "rpm")
+            measured = {"motor_speed": shown}
+        elif swing > _SWING and travel < 0.5 * swing:
+            turns = swing / (2.0 * np.pi)
+            seen = f"the joint would swing through {turns:.0f} turns and back"
+            measured = {"swing": Measured(turns, "turns")}
+        else:
+            continue
+        signals = ("position",) if recording.velocity_derived else ("position", "velocity")
+        yield IMPLAUSIBLE_UNITS.finding(
+            f"{seen}: position and velocity may be in degrees, or the gear ratio is wrong",
+            degrees_advice(recording, signals),
+            Action("inspect", text="the gear ratio"),
+            evidence=measured,
+        )
+
+
+CHECK = Check(_find, (IMPLAUSIBLE_UNITS,))

@@ -1,0 +1,37 @@
+"""The table of all findings, docs/findings.md, written from the registry.
+
+python -m jointid.identification.warnings.table > docs/findings.md
+"""
+
+import sys
+
+from jointid.identification.warnings.registry import finding_types
+
+_HEAD = """# Findings
+
+An estimate carries `estimate.findings`, values with a code, a severity, the parameters concerned, the evidence (named
+numbers with units), the cause, and advice that a program can read. `estimate.warnings` are those of severity "warning"
+or "blocking". No warning means that nothing suspicious was found, not that the joint is as modelled.
+
+- **info**: worth knowing; values are not affected.
+- **warning**: values may be biased, or less certain than usual.
+- **blocking**: the values cannot be used before the cause is removed.
+
+This table is written from the checks in `python/jointid/identification/warnings`.
+
+| code | severity | meaning | what to do |
+|---|---|---|---|
+"""
+
+
+def findings_page() -> str:
+    """The page: a row a code, in the order in which findings are listed."""
+    rows = (
+        f"| `{each.code}` | {each.severity} | {each.meaning} | {each.advice} |\n"
+        for each in finding_types().values()
+    )
+    return _HEAD + "".join(rows)
+
+
+if __name__ == "__main__":
+    sys.stdout.write(findings_page())

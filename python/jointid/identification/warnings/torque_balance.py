@@ -1,0 +1,149 @@
+"""Whether torque, motion and sensor obey one torque balance: reversed signs, wrong scales."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.identification.warnings.check import Check, FindingType
+from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.unbounded import EXPLAINED, Unbounded, without_bounds
+from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_advice
+from jointid.identification.warnings.velocity import REVERSED_SIGN
+
+WRONG_SCALE = FindingType(
+    code="wrong_scale",
+    severity="blocking",
+    meaning="the recording by itself contradicts the known inertia by more than 5 %",
+    advice="correct gear ratio, torque constant, unit of the torque or inertia; or let the inertia vary",
+)
+
+_AGAINST = -0.1  # correlation of torque and velocity: friction makes it positive
+_SCALE = 0.05
+_HIDDEN = 0.5  # of the gain: noise leaves no more of it, and the link's inertia goes to the joint
+_GROSS = 1.5  # factor of an inertia that is wrong even then
+_DEGREE = np.pi / 180.0
+
+
+def _find(evidence: Evidence) -> Iterator[Finding]:
+    correlation = _torque_with_velocity(evidence)
+    if correlation is not None:
+        yield REVERSED_SIGN.finding(
+            "the torque works against the motion on the whole, which no joint with friction does: torque or position "
+            "has the wrong sign",
+            *_flip_the_torque(evidence),
+            Action("inspect", text="the signs of torque and position, and flip the wrong one"),
+            evidence={"correlation_with_velocity": Measured(correlation)},
+        )
+        return
+    free = without_bounds(evidence)
+    if free is None:
+        return
+    yield from _inertia_contradicts(evidence, free)
+    yield from _sensor_reversed(evidence, free)
+
+
+def _torque_with_velocity(evidence: Evidence) -> float | None:
+    """Correlation of torque and velocity where the drive takes power from the joint, else None.
+
+    Friction can only take power from the drive.
+    """
+    table = evidence.table
+    torque = np.asarray(evidence.penalty.target) / table.duration
+    power = float(np.mean(torque * table.velocity))
+    level = float(np.sqrt(np.mean(torque**2) * np.mean(table.velocity**2)))
+    return power / level if power < _AGAINST * level else None
+
+
+def _flip_the_torque(evidence: Evidence) -> tuple[Action, ...]:
+    """The sign of the gear ratio is that of a torque on the motor's side."""
+    joint = evidence.joint
+    if joint is None or any(run.torque is not None for run in evidence.recordings):
+        return ()
+    return (Action("call", {"gear_ratio": -joint.gear_ratio}, function="Joint"),)
+
+
+def _inertia_ratio(free: Unbounded, given: float) -> float | None:
+    """Ratio of the inertia that the recording shows to the given one; None when they agree."""
+    ratios = [free.values["inertia"] / given]
+    reverse = free.with_noisy_sensor()
+    if reverse is not None:
+        ratios.append(reverse["inertia"] / given)
+        hidden = 1.0 - free.values["sensor_gain"] / reverse["sensor_gain"] > _HIDDEN
+        if hidden and 1.0 / _GROSS < ratios[0] < _GROSS:
+            return None
+    if min(ratios) < 1.0 < max(ratios):
+        return None
+    nearest = min(ratios, key=lambda ratio: abs(ratio - 1.0))
+    return nearest if abs(nearest - 1.0) >= _SCALE else None
+
+
+def _inertia_contradicts(evidence: Evidence, free: Unbounded) -> Iterator[Finding]:
+    """A known inertia fixes the scale: the recording must agree with it."""
+    given = evidence.parameters.get("inertia")
+    if given is None or given.vary or given.value == 0.0 or "inertia" not in free.values:
+        return
+    if free.relative > EXPLAINED:
+        return  # something else is wrong, and the inertia absorbs it
+    ratio = _inertia_ratio(free, given.value)
+    if ratio is None or not free.sure("inertia", given.value):
+        return
+    seen = (
+        f"the recording by itself shows an inertia of {ratio * given.value:.4g} {given.unit}, {ratio:.3g} times the "
+        f"{given.value:.4g} given"
+    )
+    measured = {
+        "inertia": Measured(ratio * given.value, given.unit),
+        "given_inertia": Measured(given.value, given.unit),
+        "ratio": Measured(ratio),
+    }
+    if 0.8 < ratio / _DEGREE < 1.25:
+        yield IMPLAUSIBLE_UNITS.finding(
+            f"{seen}, as when degrees are taken for radians",
+            degrees_advice(evidence.recordings[0], ("position", "velocity")),
+            evidence=measured,
+            parameters=("inertia",),
+        )
+        return
+    yield WRONG_SCALE.finding(
+        f"{seen}{_gear_hint(evidence, ratio)}: gear ratio, torque constant, unit of the torque or the joint's inertia "
+        "is wrong, and with it every value",
+        Action(
+            "inspect",
+            text="gear ratio, torque constant, unit of the torque and inertia, and correct the wrong one",
+        ),
+        Action("call", {"parameters": {"inertia": {"vary": True}}}, text="to free the inertia"),
+        evidence=measured,
+        parameters=("inertia",),
+    )
+
+
+def _gear_hint(evidence: Evidence, ratio: float) -> str:
+    gear = abs(evidence.joint.gear_ratio) if evidence.joint is not None else 1.0
+    hint = ""
+    if gear > 1.0:
+        for factor, verb in ((gear, "multiplied"), (1.0 / gear, "divided")):
+            if 0.8 < ratio / factor < 1.25:
+                hint = f" (the torque seems {verb} by the gear ratio once too often)"
+    return hint
+
+
+def _sensor_reversed(evidence: Evidence, free: Unbounded) -> Iterator[Finding]:
+    gain = evidence.parameters.get("sensor_gain")
+    if gain is None or gain.min < 0.0 or "sensor_gain" not in free.values:
+        return
+    if free.values["sensor_gain"] < 0.0 and free.sure("sensor_gain", 0.0):
+        bounds = {"min": -gain.max, "max": 0.0 - gain.min}
+        yield REVERSED_SIGN.finding(
+            "the sensor's reading falls where the link's torque rises: its sign is reversed",
+            Action("inspect", text="the sensor's sign, and flip the column"),
+            Action("call", {"parameters": {"sensor_gain": bounds}}, text="a negative gain"),
+            evidence={"unbounded_gain": Measured(free.values["sensor_gain"], gain.unit)},
+            parameters=("sensor_gain",),
+        )
+
+
+CHECK = Check(_find, (REVERSED_SIGN, IMPLAUSIBLE_UNITS, WRONG_SCALE))

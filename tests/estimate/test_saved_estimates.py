@@ -1,0 +1,219 @@
+"""A saved estimate is read again whatever stands in it: values, one sentence, and no script in a page."""
+
+import functools
+import json
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from matplotlib.figure import Figure
+
+import jointid as jid
+from jointid.base import html
+from jointid.cli.demo import data_folder
+from jointid.report import html as report
+
+SAVED = Path(__file__).with_name("estimate_schema_1.json")
+SCRIPT = "<script>alert(1)</script>"
+DEEP = "[" * 100_000 + "]" * 100_000
+# By name, as it stands in the file: JSON knows no 1e400 and no NaN, Python's reader does.
+JUNK = {
+    "script": json.dumps(SCRIPT),
+    "null": "null",
+    "table": "{}",
+    "list": "[]",
+    "huge": "1e400",
+    "nan": "NaN",
+    "deep": DEEP,
+    "many digits": "1" * 5000,
+    "half a letter": '"\\ud800"',
+    "negative": "-1",
+    "large": "1e99",
+}
+Path_ = tuple[str | int, ...]
+
+
+@functools.cache
+def text_of(schema: int) -> str:
+    """An estimate as this code saves it, and one saved by code with an older schema."""
+    if schema == 1:
+        return SAVED.read_text(encoding="utf-8")
+    run = jid.load(data_folder() / "kr300_joint1.csv.gz")
+    joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
+    ga = jid.GaOptions(population=20, generations=3)
+    return jid.identify(
+        run, joint, model="stribeck", windows=12, search=jid.Search(ga=ga)
+    ).to_json()
+
+
+def document(schema: int = 2) -> dict[str, Any]:
+    return dict(json.loads(text_of(schema)))
+
+
+def paths(value: Any, here: Path_ = ()) -> Iterator[Path_]:
+    """Every place of a document: tables, lists and what they hold; of a long list of numbers, three."""
+    yield here
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            yield from paths(inner, (*here, key))
+    elif isinstance(value, list):
+        numbers = len(value) > 4 and all(isinstance(inner, float | int) for inner in value)
+        for i in (0, len(value) // 2, len(value) - 1) if numbers else range(len(value)):
+            yield from paths(value[i], (*here, i))
+
+
+def damaged(path: Path_, junk: str, schema: int = 2) -> str:
+    """The saved estimate with one place set to this JSON text."""
+    changed: Any = {"all": document(schema)}
+    inner = changed
+    for key in ("all", *path)[:-1]:
+        inner = inner[key]
+    inner[("all", *path)[-1]] = "JUNK"
+    return json.dumps(changed["all"]).replace('"JUNK"', junk)
+
+
+def renamed(path: Path_, name: str) -> str:
+    """The saved estimate with one key replaced."""
+    changed = document()
+    inner: Any = changed
+    for key in path[:-1]:
+        inner = inner[key]
+    inner[name] = inner.pop(path[-1])
+    return json.dumps(changed)
+
+
+def read(text: str) -> jid.Estimate | None:
+    """The estimate, or None when one sentence refused it."""
+    try:
+        return jid.Estimate.from_json(text)
+    except jid.InputError as error:
+        sentence = str(error)
+        assert "\n" not in sentence
+        assert 10 < len(sentence) < 600, sentence
+        return None
+
+
+def pages(estimate: jid.Estimate) -> list[str]:
+    estimate.report()
+    return [report.html_report(estimate), estimate._repr_html_()]
+
+
+@pytest.fixture
+def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pictures are drawn as PNG, which holds no markup, and take most of the time."""
+    monkeypatch.setattr(report, "_pictures", lambda _: [])
+
+
+@pytest.mark.parametrize("schema", [1, 2])
+@pytest.mark.parametrize("junk", JUNK)
+def test_every_place_of_a_saved_estimate(junk: str, schema: int, no_pictures: None) -> None:
+    accepted = 0
+    for path in paths(document(schema)):
+        estimate = read(damaged(path, JUNK[junk], schema))
+        if estimate is not None:
+            accepted += 1
+            for page in pages(estimate):
+                assert "<script" not in page.lower(), path
+    assert (accepted == 0) == (junk in ("huge", "nan", "deep", "many digits", "half a letter"))
+
+
+def test_every_key_of_a_saved_estimate(no_pictures: None) -> None:
+    for path in paths(document()):
+        if path and isinstance(path[-1], str):
+            for page in pages(found) if (found := read(renamed(path, SCRIPT))) else ():
+                assert "<script" not in page.lower(), path
+
+
+def test_a_script_reaches_the_page_where_nothing_escapes(
+    no_pictures: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What the tests above look for would be found."""
+    monkeypatch.setattr(html, "escape", lambda text: text)
+    for path in (("joint", "name"), ("settings", "version"), ("findings", 0, "cause")):
+        estimate = read(damaged(path, JUNK["script"]))
+        assert estimate is not None
+        assert any("<script>" in page for page in pages(estimate)), path
+
+
+@pytest.mark.filterwarnings("ignore:.*(overflow|invalid value):RuntimeWarning")
+@pytest.mark.parametrize("junk", ["null", "table", "list", "negative", "large", "script"])
+def test_whole_pages_of_what_was_accepted(junk: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every picture is drawn, too, from the places that pictures are drawn from."""
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: figure.draw_without_rendering())
+    drawn = ("convergence", "covariance", "settings", "windows")
+    most = 12 if junk in ("negative", "large") else 2  # else hardly any number is accepted
+    seen: set[tuple[str, ...]] = set()
+    for path in paths(document()):
+        kind: tuple[str, ...] = tuple("0" if isinstance(key, int) else key for key in path)
+        if path and path[0] in drawn and kind not in seen and len(seen) < most:
+            estimate = read(damaged(path, JUNK[junk]))
+            if estimate is not None:
+                seen.add(kind)
+                assert all("<script" not in page for page in pages(estimate))
+
+
+def test_the_path_is_named() -> None:
+    places: dict[tuple[str | int, ...], str] = {
+        ("parameters", "coulomb", "value"): r"^parameters\.coulomb\.value: this is None: a number",
+        ("windows", "start", 3): r"^windows\.start\[3\]: ",
+        ("settings", "seed"): r"^settings\.seed: ",
+        ("joint", "drive", "gear_ratio"): r"^joint: \[drive\]: gear_ratio",
+    }
+    for path, named in places.items():
+        with pytest.raises(jid.InputError, match=named):
+            jid.Estimate.from_json(damaged(path, "null"))
+
+
+@pytest.mark.parametrize(
+    ("path", "junk", "reason"),
+    [
+        (("free", 0), '"coulomb"', "there twice"),
+        (("free", 0), '"current"', "none of the parameters"),
+        (("settings", "terms", 0), '"ripple_cos_2"', "no term with a value"),
+        (("settings", "terms", 0), '"friction"', "no term with a value"),
+        (("parameters", "coulomb", "name"), '"static"', "not the name"),
+        (("covariance",), "[[1.0]]", "4 rows of 4"),
+        (("covariance", 1), "[1.0]", "4 rows of 4"),
+        (("windows", "start"), "[1.0]", "same length"),
+        (("convergence", "best"), "[1.0]", "same length"),
+        (("windows", "recording", 0), "1", "not so many recordings"),
+        (("findings", 0, "advice", 0, "kind"), '"shout"', "known are call, record, inspect"),
+        (("findings", 0, "advice", 0, "arguments"), "{}", "a call needs arguments"),
+        (("findings", 0, "severity"), '"mild"', "known are info, warning, blocking"),
+    ],
+)
+def test_fields_that_contradict_each_other(path: Path_, junk: str, reason: str) -> None:
+    with pytest.raises(jid.InputError, match=reason):
+        jid.Estimate.from_json(damaged(path, junk))
+
+
+def test_an_estimate_saved_before_is_still_read() -> None:
+    estimate = jid.Estimate.from_json(SAVED.read_text(encoding="utf-8"))
+    assert estimate.parameters["inertia"].value == 2027.8341819264738
+    assert math.isinf(jid.Estimate.from_json(damaged(("condition",), '"inf"')).condition)
+    assert [warning.code for warning in estimate.warnings] == [
+        *("signal_lag", "model_too_rich", "undetermined", "few_windows"),
+    ]
+    assert "leave the column out" in estimate.report()
+    assert jid.Estimate.from_json(estimate.to_json()).report() == estimate.report()
+
+
+def test_no_control_character_reaches_a_terminal() -> None:
+    estimate = read(damaged(("joint", "name"), '"a\\u001b[2Jb\\rc\\u009b"'))
+    assert estimate is not None
+    assert estimate.report().startswith("jointid estimate — a\ufffd[2Jb\ufffdc\ufffd\n")
+
+
+def test_a_file_is_read_and_named(tmp_path: Path) -> None:
+    assert jid.Estimate.load(SAVED).joint.gear_ratio == 256.86
+    path = tmp_path / "bad.json"
+    path.write_text(damaged(("penalty",), "true"))
+    with pytest.raises(jid.InputError, match=r"bad\.json: penalty: this is True"):
+        jid.Estimate.load(path)
+    path.write_bytes(b"\xff\xfe")
+    with pytest.raises(jid.InputError, match="not text in UTF-8"):
+        jid.Estimate.load(path)
+    with pytest.raises(jid.InputError, match="No such file"):
+        jid.Estimate.load(tmp_path / "none.json")
