@@ -75,6 +75,7 @@ def test_accepted(kind: Kind, value: Any) -> None:
         (RECORD, {}, r"x\.a: this is missing"),
         (RECORD, {"a": 1, "c": 2}, r"x\.c: unknown; known are b, a"),
         (RECORD, {"a": 1, "b": 2}, r"x\.b: this is 2: true or false"),
+        (Record({}, other=Plain()), {"a" * 300: 1}, "x: 300 characters"),
         (Plain(), [{"a": float("inf")}], r"x\[0\]\.a: this is inf"),
         (Plain(), {"a": "\udfff"}, r"x\.a: half a character"),
     ],

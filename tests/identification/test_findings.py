@@ -225,6 +225,17 @@ def test_findings_are_values(well_excited: jid.Recording) -> None:
     assert found.worded(lambda action: action.kind) == f"{found.cause}; call"
 
 
+def test_a_lag_of_the_sensor_is_not_reported_beside_ripple(well_excited: jid.Recording) -> None:
+    make, code = DEFECTS["sensor 3 ms late"]
+    late = make(well_excited)
+    assert code in {found.code for found in separable(late).findings}
+    modelled = separable(late, model="stribeck:ripple=2")
+    assert code not in {found.code for found in modelled.findings}
+    # A lag of the velocity is another matter.
+    velocity = separable(late_velocity(well_excited), model="stribeck:ripple=2")
+    assert code in {found.code for found in velocity.findings}
+
+
 # --- Severity ---
 
 
