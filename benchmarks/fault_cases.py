@@ -15,11 +15,11 @@ import can
 
 import jointid as jid
 from jointid.hardware.elmo.drive import ElmoDrive
+from jointid.hardware.elmo.emulated_converter import EmulatedConverter
+from jointid.hardware.elmo.emulated_drive import ElmoSettings, EmulatedElmo
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.elmo.torque_source import AnalogInput
 from jointid.hardware.emulated.bus import EmulatedBus
-from jointid.hardware.emulated.converter import EmulatedConverter
-from jointid.hardware.emulated.elmo import ElmoSettings, EmulatedElmo
 from jointid.hardware.emulated.faults import BusFault
 from jointid.hardware.session.drive import DriveSample
 from jointid.hardware.session.limits import SessionLimits

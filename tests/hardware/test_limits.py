@@ -227,7 +227,7 @@ def test_error_frames_in_words(classes: int, meaning: str) -> None:
 @pytest.mark.parametrize("name", [f.name for f in fields(SessionLimits) if f.name != "position"])
 @pytest.mark.parametrize("value", [0, -1, math.nan])
 def test_limit_that_is_none_is_refused(name: str, value: float) -> None:
-    with pytest.raises(jid.InputError, match=f"{name} is {value}; more than 0 is expected"):
+    with pytest.raises(jid.InputError, match=f"{name} is {value}: more than 0 is expected"):
         SessionLimits(**{name: value})  # type: ignore[arg-type]
 
 
@@ -252,10 +252,10 @@ def test_limits_of_a_joint() -> None:
 @pytest.mark.parametrize(
     ("build", "message"),
     [
-        (lambda: SessionOptions(period=0.0), "period is 0.0; more than 0"),
-        (lambda: SessionOptions(settle=-1.0), "settle is -1.0; at least 0"),
-        (lambda: SessionOptions(answer_timeout=0.0), "answer_timeout is 0.0; more than 0"),
-        (lambda: ElmoOptions(heartbeat=0.001), "heartbeat is 0.001; 0.005 to 10 s"),
+        (lambda: SessionOptions(period=0.0), "period is 0.0: more than 0"),
+        (lambda: SessionOptions(settle=-1.0), "settle is -1.0: at least 0"),
+        (lambda: SessionOptions(answer_timeout=0.0), "answer_timeout is 0.0: more than 0"),
+        (lambda: ElmoOptions(heartbeat=0.001), "heartbeat is 0.001: 0.005 to 10 s"),
         (lambda: ElmoOptions(drive_heartbeat=0.03), "0.001 s to half of heartbeat, 0.025 s"),
         (lambda: BusFault(kind="lost", start=0.0), "kind is 'lost'; one of drop, delay"),
         (lambda: drive_failure("fire"), "drive failure is 'fire'; one of encoder loss"),

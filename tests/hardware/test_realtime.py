@@ -115,11 +115,11 @@ def test_elsewhere_than_on_linux_it_says_so(monkeypatch: pytest.MonkeyPatch) -> 
 @pytest.mark.parametrize(
     ("wrong", "told"),
     [
-        ({"priority": 0}, "priority is 0; 1 to 99 is expected"),
+        ({"priority": 0}, "priority is 0: 1 to 99 is expected"),
         ({"priority": 100}, "priority is 100"),
-        ({"cpus": ()}, r"cpus is \(\); numbers of processors"),
+        ({"cpus": ()}, r"cpus is \(\): numbers of processors"),
         ({"cpus": (0, -1)}, "cpus is"),
-        ({"timer_slack": 0.0}, "timer_slack is 0.0; 1e-9 to 1 s"),
+        ({"timer_slack": 0.0}, "timer_slack is 0.0: 1e-9 to 1 s"),
         ({"timer_slack": float("nan")}, "timer_slack is nan"),
     ],
 )

@@ -20,12 +20,8 @@ from killed_session import DURATION
 from session_bench import JOINT, devices, law, limits, motion, session
 
 import jointid as jid
-from jointid.hardware import (
-    ElmoOptions,
-    EmulatedBus,
-    SessionRefusedError,
-    SessionStoppedError,
-)
+from jointid.hardware import EmulatedBus, SessionRefusedError, SessionStoppedError
+from jointid.hardware.elmo import ElmoOptions
 from jointid.hardware.session.appended_file import AppendedFile
 from jointid.hardware.session.recorder import Recorder
 from jointid.joint.joint_file import joint_document

@@ -15,10 +15,10 @@ from session_bench import JOINT, PERIOD, devices, law, limits, motion, session
 import jointid as jid
 from jointid.hardware import SessionRefusedError, SessionStoppedError
 from jointid.hardware.elmo.drive import ElmoDrive
+from jointid.hardware.elmo.emulated_drive import EmulatedElmo
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.elmo.torque_source import AnalogInput, SensorScaling, SyncedConverter
 from jointid.hardware.emulated.bus import EmulatedBus
-from jointid.hardware.emulated.elmo import EmulatedElmo
 from jointid.hardware.emulated.faults import BusFault
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.session import Session, SessionOptions
@@ -234,8 +234,8 @@ def test_options_that_cannot_be_are_refused(make: Callable[[], object], told: st
 def test_the_three_identifiers_are_settings_on_both_sides() -> None:
     from session_bench import joint
 
-    from jointid.hardware.emulated.converter import EmulatedConverter
-    from jointid.hardware.emulated.elmo import ElmoSettings
+    from jointid.hardware.elmo.emulated_converter import EmulatedConverter
+    from jointid.hardware.elmo.emulated_drive import ElmoSettings
 
     elmo = EmulatedElmo(joint(), ElmoSettings(cob_command=0x3F0, cob_reply=0x2F0))
     bus = EmulatedBus(elmo, EmulatedConverter(elmo))

@@ -9,7 +9,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import jointid as jid
-from jointid.hardware import Bench, ElmoDrive, EmulatedBus, Session, emulated_devices
+from jointid.hardware import Bench, EmulatedBus, Session, emulated_devices
+from jointid.hardware.elmo import ElmoDrive
 from jointid.hardware.session.session import SessionStoppedError
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "hardware" / "joint.toml"

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,10 +12,8 @@ import numpy as np
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.hardware.bench.bench import Bench
-from jointid.hardware.elmo.drive import ElmoDrive
-from jointid.hardware.emulated.bench import emulated_devices, true_joint
-from jointid.hardware.emulated.bus import EmulatedBus
-from jointid.hardware.session.drive import Drive
+from jointid.hardware.bench.opened_drive import open_drive
+from jointid.hardware.emulated.joint import true_joint
 from jointid.hardware.session.session import Session
 from jointid.identification.identification import identify
 from jointid.recording.recording import Recording
@@ -163,7 +160,7 @@ def commission(
     runs: list[BenchRun] = []
     estimates: list[Estimate] = []
     true_run: BenchRun | None = None
-    with bench_drive(bench, emulate=emulate, seed=seed) as drive:
+    with open_drive(bench, emulate=emulate, seed=seed) as drive:
 
         def run(name: str, law: Controller) -> BenchRun:
             tell(f"run: {name}")
@@ -206,30 +203,6 @@ def commission(
         true_run=true_run,
         without_ripple=plain,
     )
-
-
-@contextmanager
-def bench_drive(bench: Bench, *, emulate: bool, seed: int = 0) -> Iterator[Drive]:
-    """A bench's drive: the real one over its bus, or an emulated one on virtual time.
-
-    Raises
-    ------
-    InputError
-        The bus cannot be opened, or the bench says nothing of an emulated joint.
-    """
-    if emulate:
-        with EmulatedBus(
-            *emulated_devices(bench, seed), bitrate=float(bench.bus.bitrate)
-        ) as emulated:
-            yield ElmoDrive(emulated, bench.joint, bench.drive)
-        return
-    from jointid.hardware.can.bus import open_bus
-
-    where = bench.bus
-    with open_bus(
-        interface=where.interface, channel=where.channel, bitrate=where.bitrate, drive=bench.drive
-    ) as bus:
-        yield ElmoDrive(bus, bench.joint, bench.drive)
 
 
 def _assessed(name: str, recording: Recording, controller: Controller) -> BenchRun:

@@ -16,6 +16,7 @@ from jointid.hardware.elmo.decoder import ElmoDecoder
 from jointid.hardware.elmo.errors import DriveStatus, failure_meaning
 from jointid.hardware.elmo.link import ElmoLink, Tap
 from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.elmo.recorded_options import elmo_options_document
 from jointid.hardware.elmo.timing import command_latency
 from jointid.hardware.elmo.torque_source import AnalogInput, SyncedConverter
 from jointid.hardware.session.clock import Clock
@@ -62,8 +63,8 @@ class ElmoDrive:
     ) -> None:
         if joint.torque_constant is None:
             raise InputError(
-                "ElmoDrive: the joint has no torque_constant, so no torque can be commanded; give it in "
-                "the joint file under [drive]"
+                "missing, so no torque can be commanded; it stands in the joint file under [drive]",
+                argument="torque_constant",
             )
         self.joint = joint
         self.options = options if options is not None else ElmoOptions()
@@ -100,9 +101,18 @@ class ElmoDrive:
     def tap(self, tap: Tap | None) -> None:
         self._link.tap = tap
 
+    @property
+    def resolution(self) -> float:
+        """Output angle of an encoder count [rad]."""
+        return self.options.resolution(self.joint)
+
     def identity(self) -> dict[str, Any]:
-        """What the drive said of itself."""
+        """What the drive reported about itself."""
         return dict(self._identity)
+
+    def metadata(self) -> dict[str, Any]:
+        """What a replay of the frame log needs: drive type and options."""
+        return {"drive_type": "elmo", "drive_options": elmo_options_document(self.options)}
 
     def connect(self, period: float) -> None:
         """Reset the drive's communication, map its PDOs, arm the watchdogs; motor off, torque mode.
@@ -123,7 +133,7 @@ class ElmoDrive:
         self._unread = -1
         link.drain(0.01)
         self._seen.forget()
-        self._leave_strangers(_STRANGER)
+        self._refuse_if_motor_on(_STRANGER)
         link.booted = False
         link.forget_fault(but="bus")
         link.send(canopen.NMT, canopen.network(canopen.RESET_COMMUNICATION, node))
@@ -134,7 +144,7 @@ class ElmoDrive:
         elmo_setup.map_position(link, self.options)
         elmo_setup.arm_watchdogs(link, self.options)
         link.send(canopen.NMT, canopen.network(canopen.START, node))
-        self._leave_strangers()
+        self._refuse_if_motor_on()
         self._found_off = True
         for command in (_OFF, Command(letters="RM", value=0), Command(letters="UM", value=1)):
             link.ask(command)
@@ -300,7 +310,7 @@ class ElmoDrive:
             total += (bits(4) + bits(8)) / self.options.torque.every
         return total / (self.options.bitrate * period)
 
-    def _leave_strangers(self, timeout: float | None = None) -> None:
+    def _refuse_if_motor_on(self, timeout: float | None = None) -> None:
         """Refuse a drive whose motor is on, before anything is changed; without an answer it is not in use."""
         if timeout is None:
             on = self._status().motor_on

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -75,6 +76,7 @@ class Follower:
         self._drive, self._law, self._guard, self._options = drive, law, guard, options
         self._interruptions = interruptions
         self._observer, self._feedback = observer, feedback
+        assert options.resolution is not None, "the session has seen to it"
         self._estimate = VelocityEstimator(
             options.resolution, options.velocity_counts, options.velocity_time
         )
@@ -129,7 +131,8 @@ class Follower:
             if self._interruptions.reason is not None:
                 raise LimitError("user", self._interruptions.reason)
             sample = self._drive.read(timeout)
-            speed = self._estimate(sample.time, sample.position)
+            estimated = self._estimate(sample.time, sample.position)
+            speed = estimated if math.isnan(sample.velocity) else sample.velocity
             late = sample.time - begin - k * period
             first = late if first is None else first
             # To the nanosecond: rounding errors would turn the sign of a velocity of 0.

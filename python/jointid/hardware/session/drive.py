@@ -62,7 +62,7 @@ class DriveSample:
     Attributes
     ----------
     time : float
-        When the position was taken [s], on the drive's `clock`. The velocity is estimated from it.
+        When the position was taken [s], on the drive's `clock`.
     position : float
         At the output [rad]. A value that is no number stops the session.
     reading : float
@@ -76,6 +76,9 @@ class DriveSample:
         Active, in the motor [A]. Default: not a number, the drive does not tell.
     torque : float
         Of that current, at the output [N·m]. Default: not a number.
+    velocity : float
+        Measured by the drive, at the output [rad/s]. Default: not a number; the session then estimates it
+        from times and positions.
     """
 
     time: float
@@ -85,6 +88,7 @@ class DriveSample:
     clipped: bool = False
     current: float = float("nan")
     torque: float = float("nan")
+    velocity: float = float("nan")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,8 +121,10 @@ class Drive(Protocol):
     All of them may raise DriveFaultError. Torque and position are positive in the same direction.
     A drive may have an attribute `tap`, None at first: if so, the session sets it to a callable
     (time [s], identifier, payload, whether sent) for the time of the run, to be called with each frame,
-    for the frame log. It may have attributes `joint`, a `Joint`, and `options`, a dataclass: what they say
-    is in the recording's metadata then.
+    for the frame log. It may have an attribute `resolution`, the output angle of an encoder count [rad],
+    which `SessionOptions` must give otherwise; an attribute `joint`, a `Joint`; and a method `metadata`,
+    which returns ``{"drive_type": name, "drive_options": …}``, of JSON's types. Both are kept in the
+    recording, so that a replay of the frame log finds them.
     """
 
     @property

@@ -46,15 +46,15 @@ class RealTimeOptions:
     def __post_init__(self) -> None:
         if self.priority is not None and not 1 <= self.priority <= _HIGHEST_PRIORITY:
             raise InputError(
-                f"RealTimeOptions: priority is {self.priority!r}; 1 to {_HIGHEST_PRIORITY} is expected"
+                f"1 to {_HIGHEST_PRIORITY} is expected", argument="priority", value=self.priority
             )
         if self.cpus is not None and (not self.cpus or min(self.cpus) < 0):
             raise InputError(
-                f"RealTimeOptions: cpus is {self.cpus!r}; numbers of processors from 0 on are expected"
+                "numbers of processors, 0 or more, are expected", argument="cpus", value=self.cpus
             )
         slack = self.timer_slack
         if slack is not None and not (math.isfinite(slack) and 1e-9 <= slack <= 1.0):
-            raise InputError(f"RealTimeOptions: timer_slack is {slack!r}; 1e-9 to 1 s is expected")
+            raise InputError("1e-9 to 1 s is expected", argument="timer_slack", value=slack)
 
 
 class RealTime:

@@ -19,7 +19,7 @@ from jointid.hardware.session.drive import Drive, DriveEnd, DriveFaultError, che
 from jointid.hardware.session.guard import Guard
 from jointid.hardware.session.interruptions import Interruptions
 from jointid.hardware.session.limits import SessionLimits
-from jointid.hardware.session.metadata import notes_of_session
+from jointid.hardware.session.metadata import session_metadata
 from jointid.hardware.session.options import SessionOptions
 from jointid.hardware.session.realtime import RealTime, RealTimeOptions
 from jointid.hardware.session.recorder import Frame, Recorder, check_output
@@ -47,7 +47,7 @@ class Session:
     Parameters
     ----------
     drive : Drive
-        An `ElmoDrive`, or anything with a drive's methods.
+        Anything with a drive's methods; `open_drive` gives a bench's.
     controller : OpenLoop, Pd, Pid, CompensatedPid, AdaptiveRobust or LugreObserver
         The simulator's own; its law is computed in the core.
     trajectory : Trajectory
@@ -65,7 +65,7 @@ class Session:
     Raises
     ------
     InputError
-        The drive lacks a method.
+        The drive lacks a method, or the output angle of an encoder count is not known.
     """
 
     def __init__(
@@ -83,7 +83,9 @@ class Session:
         check_drive(drive)
         self._drive, self._controller, self._trajectory = drive, controller, trajectory
         self._limits = limits
-        self._options = options if options is not None else SessionOptions()
+        self._options = _with_resolution(
+            options if options is not None else SessionOptions(), drive
+        )
         self._output = None if output is None else Path(output)
         self._observer = observer
         self._real_time = RealTime(real_time)
@@ -203,6 +205,7 @@ class Session:
             feedback = not isinstance(self._controller, _core.OpenLoop)
             law = self._controller.start(period=options.period, torque_limit=limits.torque)
             course = Course.of(self._trajectory, options.period)
+            assert options.resolution is not None, "see __init__"
             follower = Follower(
                 self._drive,
                 law,
@@ -294,7 +297,7 @@ class Session:
     # What is left.
 
     def _metadata(self) -> dict[str, Any]:
-        return notes_of_session(
+        return session_metadata(
             self._drive, self._controller, self._trajectory, self._limits, self._options
         )
 
@@ -339,6 +342,19 @@ class Session:
                 **self._ending(stop),
             },
         )
+
+
+def _with_resolution(options: SessionOptions, drive: object) -> SessionOptions:
+    """Options whose resolution is known: their own, or the drive's."""
+    if options.resolution is not None:
+        return options
+    resolution = getattr(drive, "resolution", None)
+    if resolution is None:
+        raise InputError(
+            "not known: neither the session's options nor the drive give the output angle of an encoder count",
+            argument="resolution",
+        )
+    return replace(options, resolution=float(resolution))
 
 
 def _finite(value: Any) -> float | None:

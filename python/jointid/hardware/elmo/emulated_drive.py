@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import can
 
 from jointid.hardware.can import canopen_frames as canopen
+from jointid.hardware.elmo.emulated_interpreter import Interpreter
+from jointid.hardware.elmo.emulated_objects import ObjectDictionary
 from jointid.hardware.elmo.torque_source import SensorScaling
 from jointid.hardware.emulated.faults import drive_failure
-from jointid.hardware.emulated.interpreter import Interpreter
-from jointid.hardware.emulated.objects import ObjectDictionary
 
 if TYPE_CHECKING:
     from jointid._core import SteppedJoint

@@ -11,7 +11,7 @@ from jointid.base.errors import InputError
 from jointid.hardware.elmo.codec import Command, Reply, refusal
 
 if TYPE_CHECKING:
-    from jointid.hardware.emulated.elmo import EmulatedElmo
+    from jointid.hardware.elmo.emulated_drive import EmulatedElmo
 
 _KNOWN = {"MO", "UM", "RM", "TC", "PX", "VX", "IQ", "ID", "PL", "CL", "SR", "MF", "EC", "ST"}
 _KNOWN |= {"HL", "AN", "MS"}
