@@ -120,3 +120,10 @@ def test_an_unknown_type_in_a_joint_file_has_its_place(tmp_path: Path) -> None:
     assert (error.argument, error.value) == ("type", "elmu")
     assert error.place == f"{path}: [session.drive]"
     assert "did you mean 'elmo'?" in error.reason
+
+
+def test_the_documentation_has_each_member_of_a_type() -> None:
+    text = (EXAMPLE.parents[2] / "docs" / "hardware.md").read_text(encoding="utf-8")
+    section = text.partition("### Registering a drive type")[2]
+    for member in (name for name in vars(DriveType) if not name.startswith("_")):
+        assert f"| `{member}" in section, member

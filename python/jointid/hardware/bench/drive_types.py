@@ -138,9 +138,7 @@ class DriveType:
         frames: Iterable[LoggedFrame],
         joint: Joint,
         options: Any,
-        *,
         identity: Mapping[str, Any],
-        stamped: bool,
     ) -> Sequence[LoggedCycle]:
         """Return the control cycles that a session's frame log holds, in order.
 
@@ -151,9 +149,7 @@ class DriveType:
         joint : Joint
         options : object
         identity : mapping
-            What `Drive.identity` said in that session; empty when it is not known.
-        stamped : bool
-            Received frames bear their exact time of arrival.
+            What `Drive.identity` returned in that session; empty when it is not known.
 
         Raises
         ------

@@ -93,14 +93,11 @@ def replay(
         before = metadata.get("cycles_before", 0) if cycles_before is None else cycles_before
         if not isinstance(before, int) or before < 0:
             raise InputError("0 or more is expected", argument="cycles_before", value=before)
-        identity = metadata["drive"] if isinstance(metadata.get("drive"), Mapping) else {}
-        every = adapter.decode(
-            logged_frames(file),
-            joint,
-            drive_options,
-            identity=identity,
-            stamped=identity.get("stamped_frames", True) if stamped is None else stamped,
-        )
+        recorded = metadata.get("drive")
+        identity = dict(recorded) if isinstance(recorded, Mapping) else {}
+        if stamped is not None:
+            identity["stamped_frames"] = stamped
+        every = adapter.decode(logged_frames(file), joint, drive_options, identity)
         cycles = every[before:]
         _check_count(len(cycles), before, session)
     except InputError as error:

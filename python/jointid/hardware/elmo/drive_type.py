@@ -84,9 +84,7 @@ class ElmoType(DriveType):
         frames: Iterable[LoggedFrame],
         joint: Joint,
         options: ElmoOptions,
-        *,
         identity: Mapping[str, Any],
-        stamped: bool,
     ) -> Sequence[LoggedCycle]:
         """Return the cycles: a SYNC, its answers, a command and our heartbeat each."""
         if joint.torque_constant is None:
@@ -97,7 +95,7 @@ class ElmoType(DriveType):
         reader = CycleReader(
             joint,
             options,
-            stamped=stamped,
+            stamped=identity.get("stamped_frames", True),
             rated_current=identity.get("continuous_current", math.nan),
         )
         reader.read(frames)
