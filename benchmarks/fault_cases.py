@@ -269,8 +269,8 @@ def _controller(act: Callable[[float], float]) -> Script:
     return lambda bench: setattr(bench, "law", Tampered(bench.law, bench, act))
 
 
-def _divides_by_zero(torque: float) -> float:
-    return torque / 0.0
+def _refuses(torque: float) -> float:
+    raise jid.InputError("too small", argument="torque", value=torque)
 
 
 def _observer(error: BaseException) -> Script:
@@ -325,27 +325,27 @@ CASES = (
          detected=10 * PERIOD),
     # The drive.
     Case(name="over-temperature", stop="drive_fault", script=_fails("over-temperature"),
-         says="the drive says: over-temperature"),
+         says="the drive reports: over-temperature"),
     Case(name="short circuit", stop="drive_fault", script=_fails("short circuit"), says="short circuit"),
     Case(name="encoder loss", stop="drive_fault", script=_fails("encoder loss"), says="feedback lost"),
     Case(name="under-voltage", stop="drive_fault", script=_fails("under-voltage"), says="under-voltage"),
     Case(name="drive's speed limit", stop="drive_fault", says="speed limit exceeded",
          script=_set("settings", ElmoSettings(speed_limit=1000.0))),
     Case(name="emergency is lost", stop="drive_fault", script=_fails("over-temperature"),
-         faults=_bus("drop", EMERGENCY), says="the motor must be on (EC 58); the drive says: over-temp"),
+         faults=_bus("drop", EMERGENCY), says="the motor must be on (EC 58); the drive reports: over-temp"),
     Case(name="drive starts anew", stop="drive_fault", script=lambda b: b.at(BEGIN, b.elmo.restart),
          says="started anew"),
     Case(name="drive's heartbeat stays away", stop="heartbeat_lost", says="for",
          script=_set("silent_heartbeat", True), detected=0.06),
     # The host.
     Case(name="our heartbeat is lost", stop="host_heartbeat_lost", faults=_bus("drop", OURS),
-         says="0x8130); the drive says: heartbeat lost", detected=0.06),
+         says="0x8130); the drive reports: heartbeat lost", detected=0.06),
     Case(name="host stands still", stop="host_heartbeat_lost", script=_host_works(0.08, 1),
          says="heartbeat lost", detected=0.09),
-    Case(name="observer raises", stop="user", script=_observer(ValueError("no display")),
-         says="the observer raised ValueError: no display"),
-    Case(name="controller raises", stop="user", script=_controller(_divides_by_zero),
-         says="the controller raised ZeroDivisionError"),
+    Case(name="observer's file is full", stop="error", script=_observer(OSError("no space left")),
+         says="OSError: no space left"),
+    Case(name="controller refuses its input", stop="error", script=_controller(_refuses),
+         says="InputError: torque is"),
     Case(name="Ctrl-C in user code", stop="user", script=_observer(KeyboardInterrupt()), says="keyboard"),
     # The bus.
     Case(name="position is lost", stop="stale_position", faults=_bus("drop", POSITION), says="SYNC"),
@@ -358,7 +358,7 @@ CASES = (
     Case(name="commands are lost, then switching off too", stop="torque_difference",
          faults=_bus("drop", COMMAND), limits={"torque_difference": 5.0}, reachable=False, heard=False,
          detected=0.5, says="is commanded"),
-    Case(name="first two switchings-off are lost", stop="user", script=_observer(ValueError("late")),
+    Case(name="first two switchings-off are lost", stop="error", script=_observer(OSError("late")),
          faults=_bus("drop", COMMAND, stop=BEGIN + 1.9 * PERIOD), says="late"),
     Case(name="error frame, off the bus for 3 ms", stop="bus", says="error frame",
          faults=_bus("bus_off", None, stop=BEGIN + 1.5 * PERIOD)),

@@ -83,15 +83,15 @@ def test_torque_is_held_but_for_rounding(sign: float) -> None:
 
 def test_what_the_drive_is_told_is_held_too() -> None:
     watched = guard()
-    watched.told(100.0, 100.0 * (1.0 + 1e-7))  # a float of 32 bits
+    watched.accepted(100.0, 100.0 * (1.0 + 1e-7))  # a float of 32 bits
     for told in (100.1, -100.1, math.nan, math.inf):
-        assert stopped(lambda t=told: guard().told(100.0, t)).limit == "torque"
+        assert stopped(lambda t=told: guard().accepted(100.0, t)).limit == "torque"
     for asked, told in ((80.0, 75.0), (-80.0, -75.0), (0.0, 0.0)):  # rounded
         for _ in range(30):
-            watched.told(asked, told)
+            watched.accepted(asked, told)
     watched.commanded(0.0, 0)
     for _ in range(21):
-        watched.told(80.0, 40.0)  # the drive's own limit is lower
+        watched.accepted(80.0, 40.0)  # the drive's own limit is lower
     error = stopped(lambda: watched.commanded(0.0, 0))
     assert (error.limit, error.measured) == ("saturated_samples", 21)
 
@@ -133,7 +133,7 @@ def test_clipped_readings_count_in_a_row() -> None:
 def repeated(watched: Guard, velocity: float, torque: float, times: int) -> None:
     """A sample in motion, then the same position again and again at another torque."""
     watched.measured(sample(0.5), velocity, 0.0)
-    watched.told(torque, torque)
+    watched.accepted(torque, torque)
     for _ in range(times):
         watched.measured(sample(0.5), 0.0, 0.0)
 
@@ -150,9 +150,9 @@ def test_position_that_repeats_after_motion_is_an_encoder_that_hangs() -> None:
 def test_position_that_repeats_though_the_torque_has_changed_much() -> None:
     for torque, stops in ((0.0, False), (-50.1, True)):
         watched = guard()
-        watched.told(50.0, 50.0)
+        watched.accepted(50.0, 50.0)
         watched.measured(sample(0.5), 0.0, 0.0)
-        watched.told(torque, torque)
+        watched.accepted(torque, torque)
         for _ in range(10):
             watched.measured(sample(0.5), 0.0, 0.0)
         if not stops:
@@ -180,7 +180,7 @@ def test_measured_torque_beyond_the_limit() -> None:
 
 def test_measured_torque_that_stays_away_from_the_command() -> None:
     watched = guard()
-    watched.told(60.0, 60.0)
+    watched.accepted(60.0, 60.0)
     for _ in range(100):
         watched.measured(sample(torque=35.0), 0.0, 0.0)  # a quarter of 100 N·m off is allowed
     for torque in (60.0, 10.0) * 50:
@@ -200,12 +200,12 @@ def test_drive_that_is_a_cycle_behind_is_no_fault() -> None:
         torque = 90.0 * (-1.0) ** cycle  # chatter
         watched.measured(sample(torque=felt), 0.0, 0.0)
         felt = -torque
-        watched.told(torque, torque)
+        watched.accepted(torque, torque)
 
 
 def test_drive_that_tells_no_current_is_not_held_to_one() -> None:
     watched = guard()
-    watched.told(100.0, 100.0)
+    watched.accepted(100.0, 100.0)
     for _ in range(50):
         watched.measured(sample(), 0.0, 0.0)
 

@@ -228,7 +228,7 @@ def test_a_session_that_never_ran_says_so(tmp_path: Path) -> None:
 
     def refuse(phase: str, *_: object) -> None:
         if phase == "settle":
-            raise RuntimeError("enough")
+            raise OSError("enough")
 
     with EmulatedBus(*devices()) as bus, pytest.raises(SessionStoppedError):
         session(bus, output=path, observer=refuse).run()

@@ -13,7 +13,7 @@ import pytest
 from session_bench import JOINT, PERIOD, devices, law, limits, motion, session
 
 import jointid as jid
-from jointid.hardware import SessionRefusedError, SessionStoppedError
+from jointid.hardware import DriveFaultError, SessionRefusedError, SessionStoppedError
 from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.elmo.emulated_drive import EmulatedElmo
 from jointid.hardware.elmo.options import ElmoOptions
@@ -265,7 +265,7 @@ class StubbornDrive(ElmoDrive):
 
     def disable(self) -> Any:
         super().disable()
-        raise RuntimeError("relay stuck")
+        raise DriveFaultError("drive_fault", "relay stuck")
 
 
 def test_a_motor_that_does_not_go_off_after_a_run_is_no_success() -> None:
@@ -293,8 +293,8 @@ def test_without_a_sensor_there_is_no_column_of_it(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "returned", "told"),
     [
-        ("problems", "not homed", r"problems\(\) returned 'not homed'; a list of sentences"),
-        ("command", None, r"command\(\) returned None; the torque that it was told"),
+        ("problems", "not homed", r"problems\(\) is 'not homed': a list of sentences"),
+        ("command", None, r"command\(\) returned None; the torque that it accepted"),
     ],
 )
 def test_a_drive_that_returns_something_else_is_told(name: str, returned: Any, told: str) -> None:

@@ -149,7 +149,7 @@ class Table:
 
     def _check(self, name: str, value: object, type_: str) -> None:
         expected = _KINDS.get(type_.removesuffix(" | None"))
-        if expected is None:
+        if expected is None or (value is None and type_.endswith(" | None")):
             return
         kinds, text = expected
         if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from jointid.base.errors import InputError
+from jointid.hardware.bench.table import Table
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.elmo.torque_source import AnalogInput, SensorScaling, SyncedConverter
 from jointid.hardware.session.metadata import plain
 
-_SOURCES = {kind.__name__: kind for kind in (AnalogInput, SyncedConverter)}
+_SOURCES = (AnalogInput.__name__, SyncedConverter.__name__)
 
 
 def elmo_options_document(options: ElmoOptions) -> dict[str, Any]:
@@ -32,15 +32,14 @@ def elmo_options_of(metadata: Mapping[str, Any]) -> ElmoOptions:
     recorded = metadata.get("drive_options")
     if recorded is None:
         return ElmoOptions()
-    try:
-        torque = recorded["torque"]
-        if torque is not None:
-            rest = {name: entry for name, entry in torque.items() if name != "source"}
-            scaling = SensorScaling(**rest.pop("scaling"))
-            torque = _SOURCES[torque["source"]](**rest, scaling=scaling)
-        return ElmoOptions(**{**recorded, "torque": torque})
-    except (KeyError, TypeError, AttributeError) as error:  # of what a file holds
-        raise InputError(
-            f"not the options of an Elmo drive ({error}); pass the options",
-            argument="drive_options",
-        ) from None
+    table = Table(recorded, "drive_options", "metadata")
+    source: SyncedConverter | AnalogInput | None = None
+    if table.entries.get("torque") is not None:
+        torque = table.table("torque")
+        scaling = torque.table("scaling").make(SensorScaling)
+        rest = torque.without("source", "scaling")
+        if torque.choice("source", "", _SOURCES) == "AnalogInput":
+            source = rest.make(AnalogInput, scaling=scaling)
+        else:
+            source = rest.make(SyncedConverter, scaling=scaling)
+    return table.without("torque").make(ElmoOptions, torque=source)

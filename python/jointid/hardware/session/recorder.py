@@ -116,6 +116,8 @@ class Recorder:
         ------
         OSError
             It could not be written.
+        Exception
+            A bug in the writing thread.
         """
         if self._thread.is_alive():
             self._ending = ending
@@ -140,7 +142,7 @@ class Recorder:
             self._syncing.close()
             for file in files:
                 file.sync()
-        except OSError as error:
+        except Exception as error:  # an OSError, or a bug: the session's loop raises it
             self._failure = error
         finally:
             self._syncing.close()
