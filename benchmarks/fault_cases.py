@@ -172,7 +172,7 @@ class Outcome:
         return self.stop.moment - BEGIN
 
     @property
-    def told(self) -> float:
+    def commanded_off(self) -> float:
         """From the stop until TC = 0 and MO = 0 were sent [s]."""
         sent = self.bench.bus.assignments()
         last = [when for when, data in sent if data == OFF and when >= self.stop.moment]
@@ -303,8 +303,8 @@ CASES = (
          limits={"tracking_error": 0.01}, says="more than 0.01 rad"),
     Case(name="controller asks for too much", stop="torque", script=_controller(lambda t: t + 500.0),
          says="more than 159.984"),
-    Case(name="controller asks for no number", stop="torque", script=_controller(lambda _: math.nan),
-         says="no number"),
+    Case(name="controller asks for a value that is not finite", stop="torque", script=_controller(lambda _: math.nan),
+         says="finite"),
     Case(name="command jumps", stop="torque_rate", script=_controller(lambda t: t + 150.0),
          limits={"torque_rate": 6e4}, says="N·m/s"),
     Case(name="command is cut for long", stop="saturated_samples", script=_slips(0.2), limits=_WIDE,
@@ -317,8 +317,8 @@ CASES = (
          says="the encoder hangs", detected=15 * PERIOD),
     Case(name="sensor at its end", stop="clipped_samples", script=_sensor_rails, says="6 samples",
          detected=8 * PERIOD),
-    Case(name="sensor's reading is no number", stop="sensor", script=_set("stuck_voltage", math.nan),
-         drive=_SENSOR_AT_DRIVE, says="no number", detected=6 * PERIOD),
+    Case(name="sensor's reading is not finite", stop="sensor", script=_set("stuck_voltage", math.nan),
+         drive=_SENSOR_AT_DRIVE, says="finite", detected=6 * PERIOD),
     Case(name="sensor is not answered", stop="sensor", faults=_bus("drop", REPLY), detected=25 * PERIOD,
          drive=_SENSOR_AT_DRIVE, says="without an answer", heard=False),
     Case(name="host is late", stop="missed_deadlines", script=_host_works(0.8e-3), says="6 cycles",
@@ -334,7 +334,7 @@ CASES = (
     Case(name="emergency is lost", stop="drive_fault", script=_fails("over-temperature"),
          faults=_bus("drop", EMERGENCY), says="the motor must be on (EC 58); the drive reports: over-temp"),
     Case(name="drive starts anew", stop="drive_fault", script=lambda b: b.at(BEGIN, b.elmo.restart),
-         says="started anew"),
+         says="restarted"),
     Case(name="drive's heartbeat stays away", stop="heartbeat_lost", says="for",
          script=_set("silent_heartbeat", True), detected=0.06),
     # The host.

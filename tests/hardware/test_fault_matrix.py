@@ -44,7 +44,7 @@ def test_fault_stops_the_session_and_the_motor(case: Case, tmp_path: Path) -> No
     sent = bench.bus.assignments()
     assert [data for _, data in sent[-2:]] == [ZERO, OFF]
     assert {data for when, data in sent if when > stop.moment} <= {ZERO, OFF}
-    assert 0.0 <= found.told <= 3 * PERIOD
+    assert 0.0 <= found.commanded_off <= 3 * PERIOD
     assert not bench.elmo.motor_on
     assert bench.elmo.current == 0.0
     slowest = 4 * PERIOD if case.reachable else WATCHDOG + LOOK

@@ -161,7 +161,7 @@ def test_a_live_plot_of_a_session_ends_as_a_picture(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("wrong", "told"),
     [
-        ({"span": 0.0}, "span is 0.0; more than 0 s is expected"),
+        ({"span": 0.0}, "span is 0.0: more than 0 s is expected"),
         ({"window": False}, "neither a window nor a picture"),
     ],
 )

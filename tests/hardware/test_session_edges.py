@@ -152,7 +152,7 @@ def test_a_second_session_does_not_touch_a_drive_that_another_moves() -> None:
     with pytest.raises(SessionRefusedError):
         Session(drive, law(), motion(), limits(velocity=0.01), options=options).run()
     assert bus.sent == before
-    with pytest.raises(SessionRefusedError, match="something else commands the drive"):
+    with pytest.raises(SessionRefusedError, match="another program commands the drive"):
         Session(drive, law(), motion(), limits(), options=options).run()
     assert elmo.motor_on
     assert elmo.state == "operational"

@@ -1,7 +1,7 @@
 """A drive written from the protocol's documentation alone, without CAN, runs a session."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -162,6 +162,58 @@ def test_its_fault_stops_the_session_under_its_name() -> None:
     assert wheel.calls[-1] == "close"
 
 
+def test_the_resolution_is_the_drives_or_the_sessions() -> None:
+    wheel, options = Flywheel(), SessionOptions(period=PERIOD, settle=0.1)
+    with pytest.raises(InputError) as refused:
+        Session(wheel, LAW, SWING, LIMITS, options=options)
+    assert refused.value.argument == "resolution"
+    assert wheel.calls == []
+    wheel.resolution = 1e-9  # type: ignore[attr-defined]
+    recording = Session(wheel, LAW, SWING, LIMITS, options=options).run()
+    assert recording is not None
+    assert recording.metadata["options"]["resolution"] == 1e-9
+    again = Session(Flywheel(), LAW, SWING, LIMITS, options=OPTIONS).run()
+    assert again is not None
+    assert np.array_equal(again.position, recording.position)
+
+
+def test_a_measured_velocity_takes_the_place_of_the_estimated_one() -> None:
+    class Measuring(Flywheel):
+        offset = 0.0
+
+        def read(self, timeout: float) -> DriveSample:
+            return replace(super().read(timeout), velocity=self.velocity + self.offset)
+
+    seen: dict[str, list[float]] = {"measured": [], "estimated": []}
+
+    class Law:
+        """Keeps the velocity that the session gives to the controller."""
+
+        def __init__(self, name: str) -> None:
+            self.name, self.saturations = name, 0
+
+        def start(self, **options: float) -> "Law":
+            self.run = LAW.start(**options)
+            return self
+
+        def step(self, **measured: float) -> float:
+            seen[self.name].append(measured["velocity"])
+            return self.run.step(**measured)
+
+    for wheel, name in ((Measuring(), "measured"), (Flywheel(), "estimated")):
+        law: Any = Law(name)
+        Session(wheel, law, SWING, LIMITS, options=OPTIONS).run()
+        peak = max(map(abs, seen[name]))
+        assert 0.5 < peak < 5.0
+    # The estimate is the mean over past samples, so it lags behind.
+    assert seen["measured"] != seen["estimated"]
+    wrong = Measuring()
+    wrong.offset = 6.0
+    with pytest.raises(SessionStoppedError) as stopped:
+        Session(wrong, LAW, SWING, LIMITS, options=OPTIONS).run()
+    assert stopped.value.stop.limit == "velocity"
+
+
 METHODS = ["connect", "problems", "enable", "read", "command", "disable", "close"]
 METHODS += ["bus_load", "identity"]
 
@@ -174,7 +226,7 @@ def test_a_missing_method_is_told_before_anything_is_called(name: str) -> None:
         Session(wheel, LAW, SWING, LIMITS, options=OPTIONS)
     assert str(refused.value) == (
         f"the drive Incomplete lacks {name}(); "
-        "`jointid.hardware.session.drive.Drive` says what a session asks of a drive"
+        "`jointid.hardware.Drive` describes what a session needs of a drive"
     )
     assert wheel.calls == []
 

@@ -1,4 +1,4 @@
-"""The ring closed on a bench: run with what is believed, identify from it, run with what was identified."""
+"""Commissioning on a bench: run with assumed parameters, identify, run with the estimate."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class BenchRun:
         "initial", "cycle 1", …, "true parameters".
     recording : Recording
     controller : AdaptiveRobust, CompensatedPid or LugreObserver
-        With what it believed.
+        With the parameters that it assumed.
     tracking_error, peak_error : float
         Root mean square and largest magnitude of position less reference, without the first sixth
         [rad].
@@ -48,12 +48,12 @@ class BenchRun:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Commissioning:
-    """What the ring gave.
+    """Result of a commissioning.
 
     Attributes
     ----------
     runs : tuple of BenchRun
-        The initial one, then one for each cycle that was agreed to.
+        The initial one, then one for each cycle that `agree` allowed.
     estimates : tuple of Estimate
         One for each cycle, each of all that was recorded until then.
     truth : mapping of str to float
@@ -101,10 +101,10 @@ class Commissioning:
         }
 
     def report(self) -> str:
-        """Tables of tracking errors and parameters, in words."""
-        from jointid.commissioning.report import told
+        """Return tables of tracking errors and parameters."""
+        from jointid.commissioning.report import text_report
 
-        return told(self)
+        return text_report(self)
 
 
 def commission(
@@ -119,14 +119,14 @@ def commission(
     callback: Callable[[str], object] | None = None,
     agree: Callable[[Estimate], bool] | None = None,
 ) -> Commissioning:
-    """Move the joint, identify it from that, and move it again with what was identified.
+    """Move the joint, identify it from that, and move it again with the estimate.
 
     Parameters
     ----------
     bench : Bench
-        Whose joint holds what is believed at first.
+        Its joint holds the parameters assumed at first.
     cycles : int
-        How often to identify and run again. Default 2.
+        Number of cycles: identify and run again. Default 2.
     emulate : bool
         Move an emulated joint on a bus with virtual time; at the end once with the true parameters.
         Default False: the real one.
@@ -139,9 +139,9 @@ def commission(
     observer : callable, optional
         As in `Session`.
     callback : callable, optional
-        Called with a sentence before each step.
+        Called with a text before each step.
     agree : callable, optional
-        Asked before the joint moves with an estimate; False: it does not, and the ring ends there.
+        Asked before the joint moves with an estimate; False: it does not, and the commissioning ends there.
 
     Raises
     ------
@@ -151,9 +151,9 @@ def commission(
         As in `Session.run`; what was recorded until then is in the folder.
     """
     if cycles < 1:
-        raise InputError(f"cycles is {cycles}; at least 1 is expected")
+        raise InputError("at least 1 is expected", argument="cycles", value=cycles)
     controller = believing(bench.controller, bench.joint)
-    tell = callback if callback is not None else lambda _: None
+    report = callback if callback is not None else lambda _: None
     folder = None if output is None else Path(output)
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
@@ -163,7 +163,7 @@ def commission(
     with open_drive(bench, emulate=emulate, seed=seed) as drive:
 
         def run(name: str, law: Controller) -> BenchRun:
-            tell(f"run: {name}")
+            report(f"run: {name}")
             place = None if folder is None else folder / f"{name.replace(' ', '_')}.csv"
             recording = Session(
                 drive,
@@ -180,7 +180,7 @@ def commission(
 
         runs.append(run("initial", controller))
         for cycle in range(1, cycles + 1):
-            tell(f"identify: cycle {cycle}")
+            report(f"identify: cycle {cycle}")
             recordings = [each.recording for each in runs]
             estimate = identify(recordings, bench.joint, seed=seed, threads=threads)
             estimates.append(estimate)

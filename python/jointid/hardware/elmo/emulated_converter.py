@@ -1,4 +1,4 @@
-"""An analog-to-digital node that is not there: it converts the torque sensor's voltage at each SYNC."""
+"""An emulated analog-to-digital node: it converts the torque sensor's voltage at each SYNC."""
 
 from __future__ import annotations
 

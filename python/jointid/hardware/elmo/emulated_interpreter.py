@@ -149,7 +149,7 @@ class Interpreter:
 
 
 def _payload(command: Command, value: int | float) -> bytes:
-    """A reply's bytes, also of a value that is no number."""
+    """A reply's bytes, also of a value that is not finite."""
     if isinstance(value, float) and not math.isfinite(value):
         head = Reply(letters=command.letters, index=command.index, value=0.0).payload()[:4]
         return head + struct.pack("<f", value)

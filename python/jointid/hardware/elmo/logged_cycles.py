@@ -26,9 +26,9 @@ class CycleReader:
     joint : Joint
     options : ElmoOptions
     stamped : bool
-        The position's time of arrival is exact, and tells when it was sampled; else the SYNC's is taken.
+        The position's time of arrival is exact and gives the time of the sample; else the SYNC's is taken.
     rated_current : float
-        The drive's CL[1] [A], where the frames do not tell; not a number: not known.
+        The drive's CL[1] [A], where the frames do not have it; not a number: not known.
     """
 
     def __init__(
@@ -91,7 +91,7 @@ class CycleReader:
         try:
             reply = Reply.of(payload)
         except (DriveError, InputError):
-            return  # what it meant to the session, the session says
+            return  # the session's own recording has what it meant
         if reply.letters == "AN":
             self._seen.take_voltage(float(reply.value))
         elif reply.key == ("CL", 1):

@@ -86,7 +86,7 @@ class Guard:
         """
         limits = self._limits
         if not math.isfinite(torque):
-            raise LimitError("torque", f"the controller asks for {torque}, which is no number")
+            raise LimitError("torque", f"the controller asks for {torque}, which is not finite")
         # A law clamps to the limit itself; rounding is no excess.
         if abs(torque) > limits.torque * (1.0 + 1e-9):
             _hold("torque", torque, limits.torque, "N·m")
@@ -135,7 +135,7 @@ class Guard:
         """The torque sensor."""
         if not math.isfinite(sample.reading):
             raise LimitError(
-                "sensor", f"the torque sensor reads {sample.reading}, which is no number"
+                "sensor", f"the torque sensor reads {sample.reading}, which is not finite"
             )
         self._clipped = self._clipped + 1 if sample.clipped else 0
         if self._clipped > self._limits.clipped_samples:

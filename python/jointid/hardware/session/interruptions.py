@@ -1,4 +1,4 @@
-"""The user's wish to stop, by Ctrl-C, SIGTERM or a closed terminal, taken between two cycles."""
+"""A request to stop, by Ctrl-C, SIGTERM or a closed terminal, obeyed between two cycles."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _PATIENCE = 3  # Ctrl-C so often: a drive that does not come back is left by an 
 
 
 class Interruptions:
-    """Catches SIGINT, SIGTERM, SIGHUP and SIGQUIT as a wish to stop while it is entered, on the main thread.
+    """Catches SIGINT, SIGTERM, SIGHUP and SIGQUIT as a request to stop while it is entered, on the main thread.
 
     On other threads Python delivers no signals, and nothing is caught.
     """

@@ -185,7 +185,7 @@ class Session:
                     raise self._bug
                 return None
             if cause is None and interruptions.reason is not None:
-                cause = LimitError("user", interruptions.reason)  # it came with the end of the run
+                cause = LimitError("user", interruptions.reason)  # requested at the end of the run
             if cause is None and self._end is not None and self._end.motor_off is False:
                 cause = DriveFaultError("drive_fault", "the run is done, but the motor is not off")
             stop = None if cause is None else stop_of(cause, moment, self._follower, self._end)
@@ -234,7 +234,7 @@ class Session:
     def _guarded(
         self, recorder: Recorder | None, interruptions: Interruptions
     ) -> tuple[Exception | KeyboardInterrupt | None, float]:
-        """Enable, move, settle and run; what ended it early, if anything, and when. The motor is off then."""
+        """Enable, move, settle and run; return what ended it early, if anything, and when. The motor is off then."""
         options, limits = self._options, self._limits
         try:
             feedback = not isinstance(self._controller, _core.OpenLoop)
@@ -268,7 +268,7 @@ class Session:
         return None, moment
 
     def _approach(self, follower: Follower) -> None:
-        """To the start of the trajectory, smoothly, and stand there."""
+        """Move to the start of the trajectory, smoothly, and stop there."""
         options = self._options
         start = float(self._trajectory.sample(np.zeros(1))[0][0])
         here = self._drive.read(10.0 * options.period).position
@@ -281,7 +281,7 @@ class Session:
     # Ways out.
 
     def _switch_off(self) -> None:
-        """Torque to zero, motor off; what a drive raises now must not keep the rest from being done."""
+        """Torque to zero, motor off; an exception of the drive must not prevent the following steps."""
         try:
             self._end = self._drive.disable()
         except (Exception, KeyboardInterrupt) as error:

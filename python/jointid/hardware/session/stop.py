@@ -29,7 +29,7 @@ class Stop:
     message : str
         What happened, by how much.
     measured, allowed : float or None
-        The number that was beyond the limit, and the limit, in the limit's unit; None where there is no number.
+        The number that was beyond the limit, and the limit, in the limit's unit; None where there is none.
     motor_off : bool or None
         Whether the drive was asked afterwards and confirmed it; None: this drive cannot be asked.
     """
@@ -74,7 +74,7 @@ class LimitError(RuntimeError):
 
 
 class SessionRefusedError(RuntimeError):
-    """The session was not begun: the motor has not been on."""
+    """The session was not started: the motor has not been on."""
 
 
 class SessionStoppedError(RuntimeError):
