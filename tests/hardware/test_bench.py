@@ -7,10 +7,10 @@ import pytest
 
 import jointid as jid
 from jointid.hardware.bench.bench import Bench
+from jointid.hardware.bench.emulated_joints import true_joint
 from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.elmo.torque_source import AnalogInput, SyncedConverter
 from jointid.hardware.emulated.bus import EmulatedBus
-from jointid.hardware.emulated.joint import true_joint
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "hardware" / "joint.toml"
 TEXT = EXAMPLE.read_text(encoding="utf-8")

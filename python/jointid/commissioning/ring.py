@@ -12,8 +12,8 @@ import numpy as np
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.hardware.bench.bench import Bench
+from jointid.hardware.bench.emulated_joints import true_joint
 from jointid.hardware.bench.opened_drive import open_drive
-from jointid.hardware.emulated.joint import true_joint
 from jointid.hardware.session.session import Session
 from jointid.identification.identification import identify
 from jointid.recording.recording import Recording

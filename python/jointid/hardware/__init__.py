@@ -9,12 +9,12 @@ Each make of drive has a package of its own and is found by its `DriveType`.
 
 from jointid.hardware.bench.bench import Bench, BusOptions, Emulation
 from jointid.hardware.bench.drive_types import DriveType, drive_type, drive_type_names
+from jointid.hardware.bench.emulated_joints import emulated_joint, true_joint
 from jointid.hardware.bench.frame_replay import replay
 from jointid.hardware.bench.opened_drive import emulated_devices, open_drive
 from jointid.hardware.can.bus import open_bus
 from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.emulated.faults import BusFault
-from jointid.hardware.emulated.joint import emulated_joint, true_joint
 from jointid.hardware.emulated.thread import EmulatorThread
 from jointid.hardware.live.console import ConsoleLine
 from jointid.hardware.live.plot import LivePlot

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 from jointid.base.errors import InputError
 from jointid.hardware.bench.bench import Bench
+from jointid.hardware.bench.emulated_joints import emulated_joint, true_joint
 from jointid.hardware.elmo.emulated_converter import EmulatedConverter
 from jointid.hardware.elmo.emulated_drive import ElmoSettings, EmulatedElmo
 from jointid.hardware.elmo.torque_source import AnalogInput, SensorScaling, SyncedConverter
-from jointid.hardware.emulated.joint import emulated_joint, true_joint
 from jointid.simulation.plant import torque_limit
 
 

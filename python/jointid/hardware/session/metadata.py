@@ -6,9 +6,9 @@ import math
 import platform
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
+from importlib.metadata import version
 from typing import Any
 
-import can
 import numpy as np
 
 from jointid import _core
@@ -52,7 +52,7 @@ def session_metadata(
             "jointid": _core.__version__,
             "python": platform.python_version(),
             "numpy": np.__version__,
-            "python-can": can.__version__,
+            "python-can": version("python-can"),
         },
     }
     return {name: value for name, value in values.items() if value is not None}
