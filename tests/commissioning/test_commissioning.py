@@ -33,7 +33,7 @@ def test_what_is_identified_is_the_emulators_truth(ring: Commissioning) -> None:
     assert last.warnings == ()
 
 
-def test_what_ripple_costs_is_told(ring: Commissioning) -> None:
+def test_the_effect_of_ripple_is_reported(ring: Commissioning) -> None:
     assert ring.without_ripple is not None
     truth = ring.truth["static"]
     plain = abs(ring.without_ripple.parameters["static"].value / truth - 1.0)

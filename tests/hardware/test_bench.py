@@ -145,9 +145,7 @@ def driven(path: Path) -> ElmoDrive:
         ("torque_constant = 0.198", "", "torque_constant"),
     ],
 )
-def test_what_is_wrong_is_told_with_its_place(
-    tmp_path: Path, before: str, after: str, told: str
-) -> None:
+def test_an_error_names_its_place(tmp_path: Path, before: str, after: str, told: str) -> None:
     path = written(tmp_path, before, after)
     with pytest.raises(jid.InputError, match=told) as caught:
         driven(path)

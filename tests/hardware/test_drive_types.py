@@ -105,6 +105,15 @@ def test_a_type_that_cannot_be_had_is_refused(
     assert refused.value.value == name
 
 
+def test_a_type_without_a_decoder_is_refused_by_replay(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    installed(monkeypatch, ("wheel", f"{__name__}:Wheel"))
+    (tmp_path / "run.log").write_text("")
+    with pytest.raises(jid.InputError, match=r"run\.log: drive is 'Wheel': this type of drive dec"):
+        jid.hardware.replay(tmp_path / "run.log", jid.Joint(name="any"), drive="wheel", period=0.1)
+
+
 def test_a_type_that_is_built_in_cannot_be_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
     installed(monkeypatch, ("elmo", f"{__name__}:Wheel"))
     assert not isinstance(drive_type("elmo"), Wheel)

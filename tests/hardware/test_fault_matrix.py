@@ -74,7 +74,7 @@ def test_every_limit_has_a_case_and_a_line_in_the_documentation(repo: Path) -> N
 
 
 @pytest.mark.parametrize("kind", sorted(set(DRIVE_FAILURES) - {"host heartbeat lost"}))
-def test_failure_of_the_drive_is_told_in_words(kind: str) -> None:
+def test_a_failure_of_the_drive_is_explained(kind: str) -> None:
     case = Case(
         name=kind, stop="drive_fault", script=lambda b: b.at(BEGIN, lambda: b.elmo.fail(kind))
     )
@@ -95,7 +95,7 @@ def test_failure_of_the_drive_is_told_in_words(kind: str) -> None:
     ],
     ids=lambda fault: f"{fault.kind} {fault.identifier}",
 )
-def test_what_a_session_can_bear_does_not_stop_it(fault: BusFault) -> None:
+def test_a_tolerable_fault_does_not_stop_a_session(fault: BusFault) -> None:
     bench = EmulatedSession((fault,))
     recording = bench.session().run()
     assert recording is not None
@@ -131,7 +131,7 @@ def test_watchdog_stays_armed_when_the_motor_was_not_seen_off() -> None:
     assert outcome(case).bench.elmo.objects.consumer_time == WATCHDOG
 
 
-def test_cases_are_the_same_to_the_bit_each_time() -> None:
+def test_cases_are_bit_identical_each_time() -> None:
     case = next(case for case in CASES if case.name == "first two switchings-off are lost")
     once, again = outcome(case), outcome(case)
     assert once.stop == again.stop

@@ -81,7 +81,7 @@ def test_torque_is_held_but_for_rounding(sign: float) -> None:
     assert (error.limit, error.measured, error.allowed) == ("torque", sign * 100.01, 100.0)
 
 
-def test_what_the_drive_is_told_is_held_too() -> None:
+def test_the_torque_accepted_by_the_drive_is_checked_too() -> None:
     watched = guard()
     watched.accepted(100.0, 100.0 * (1.0 + 1e-7))  # a float of 32 bits
     for told in (100.1, -100.1, math.nan, math.inf):
@@ -214,7 +214,7 @@ def test_drive_that_tells_no_current_is_not_held_to_one() -> None:
     ("classes", "meaning"),
     [
         (0x40, "bus-off"),
-        (0x20, "nobody acknowledges"),
+        (0x20, "no node acknowledges"),
         (0x44, "controller in trouble.*bus-off"),
         (0x2000, "unknown class 0x2000"),
         (0x02, "^$"),

@@ -121,7 +121,7 @@ def test_a_sessions_line_ends_with_the_run() -> None:
     assert re.fullmatch(r"run +1\.00 s .*", lines[-1])  # 0.998 s
 
 
-def test_several_observers_are_told_and_closed_each() -> None:
+def test_several_observers_are_called_and_closed_each() -> None:
     told: list[str] = []
 
     class Closing:

@@ -114,7 +114,9 @@ def test_a_recording_says_how_it_was_made(tmp_path: Path) -> None:
     assert said["versions"]["jointid"] == jid.__version__
 
 
-def test_a_slow_disk_holds_up_nobody(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_slow_disk_does_not_delay_the_session(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     stuck, released = threading.Event(), threading.Event()
     sync = AppendedFile.sync
 

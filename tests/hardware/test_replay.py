@@ -138,7 +138,7 @@ def test_other_options_give_another_recording(
     assert np.allclose(again.position, recording.position + 0.25, rtol=0.0, atol=1e-12)
 
 
-def test_a_torn_log_and_a_torn_recording_give_their_beginning(
+def test_a_truncated_log_and_recording_give_their_beginning(
     made: Callable[[str], tuple[jid.Recording, Path]], tmp_path: Path
 ) -> None:
     recording, log = made("converter")

@@ -297,7 +297,7 @@ def test_without_a_sensor_there_is_no_column_of_it(tmp_path: Path) -> None:
         ("command", None, r"command\(\) returned None; the torque that it accepted"),
     ],
 )
-def test_a_drive_that_returns_something_else_is_told(name: str, returned: Any, told: str) -> None:
+def test_a_wrong_return_value_of_a_drive_is_reported(name: str, returned: Any, told: str) -> None:
     drive = ElmoDrive(EmulatedBus(*devices()), JOINT)
     setattr(drive, name, lambda *_: returned)
     options = SessionOptions(period=PERIOD, settle=0.05)

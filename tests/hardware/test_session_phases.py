@@ -123,7 +123,7 @@ def test_stop_on_the_way_to_the_start_has_no_recording() -> None:
     assert found.value.stop.time <= 0.5 + PERIOD
 
 
-def test_host_that_is_late_now_and_then_is_borne() -> None:
+def test_an_occasionally_late_host_is_tolerated() -> None:
     bench = EmulatedSession()
     for start in np.arange(0.8, 1.8, 0.1):
         bench.bus.at(start, lambda: setattr(bench.bus, "host_work", 0.9e-3))

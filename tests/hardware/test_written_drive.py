@@ -219,7 +219,7 @@ METHODS += ["bus_load", "identity"]
 
 
 @pytest.mark.parametrize("name", METHODS)
-def test_a_missing_method_is_told_before_anything_is_called(name: str) -> None:
+def test_a_missing_method_is_reported_before_anything_is_called(name: str) -> None:
     members = {key: value for key, value in vars(Flywheel).items() if key != name}
     wheel = type("Incomplete", (), members)()
     with pytest.raises(InputError) as refused:
@@ -231,7 +231,7 @@ def test_a_missing_method_is_told_before_anything_is_called(name: str) -> None:
     assert wheel.calls == []
 
 
-def test_all_that_is_missing_is_told_at_once() -> None:
+def test_all_missing_methods_are_reported_at_once() -> None:
     with pytest.raises(InputError, match=r"lacks connect\(\), .*, clock, command_latency;"):
         Session(object(), LAW, SWING, LIMITS)  # type: ignore[arg-type]
 

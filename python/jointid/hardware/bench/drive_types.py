@@ -33,7 +33,7 @@ _BUILT_IN = {"elmo": "jointid.hardware.elmo.drive_type:ElmoType"}
 class DriveType:
     """The adapter of a make of drive; a subclass, registered by an entry point, is all that a drive needs.
 
-    Only `options`, `open` and `emulate` must be written; `docs/hardware.md` shows one of 150 lines.
+    Only `options`, `open` and `emulate` must be written; `tests/third_party_drive` is an example.
 
     Attributes
     ----------
@@ -115,7 +115,7 @@ class DriveType:
     def metadata(self, options: Any) -> Mapping[str, Any]:
         """Return the options as JSON's types, to be kept in each recording as "drive_options".
 
-        A drive that is opened by this type says ``{"drive_type": name, "drive_options": …}`` in its own
+        A drive that is opened by this type returns ``{"drive_type": name, "drive_options": …}`` from its own
         `metadata`. Default: the fields of the dataclass.
         """
         from jointid.hardware.session.metadata import plain
@@ -126,12 +126,15 @@ class DriveType:
     def recorded_options(self, metadata: Mapping[str, Any]) -> Any:
         """Return the options that `metadata` wrote; the default ones when a recording has none.
 
+        Default: raises InputError, so that a frame log cannot be replayed.
+
         Raises
         ------
         InputError
             They are not those of this type.
         """
-        raise NotImplementedError
+        del metadata
+        raise self._no_replay()
 
     def decode(
         self,
@@ -141,6 +144,8 @@ class DriveType:
         identity: Mapping[str, Any],
     ) -> Sequence[LoggedCycle]:
         """Return the control cycles that a session's frame log holds, in order.
+
+        Default: raises InputError.
 
         Parameters
         ----------
@@ -156,12 +161,18 @@ class DriveType:
         InputError
             Frames are missing.
         """
-        raise NotImplementedError
+        del frames, joint, options, identity
+        raise self._no_replay()
 
     def command_latency(self, options: Any) -> float:
         """Return the time from sending a command until the drive acts on it [s]. Default: 0."""
         del options
         return 0.0
+
+    def _no_replay(self) -> InputError:
+        return InputError(
+            "this type of drive decodes no frame log", argument="drive", value=type(self).__name__
+        )
 
 
 def drive_type_names() -> tuple[str, ...]:
@@ -170,7 +181,7 @@ def drive_type_names() -> tuple[str, ...]:
 
 
 def drive_type(name: str) -> DriveType:
-    """Return the adapter of a drive type; a built-in type goes before an installed one of its name.
+    """Return the adapter of a drive type; a built-in type has precedence over an installed one of its name.
 
     Raises
     ------

@@ -158,7 +158,11 @@ class Table:
 
 def types_of(kind: Any) -> dict[str, str]:
     """Return the fields of a dataclass and their types as text."""
-    return {item.name: str(item.type) for item in fields(kind)}
+    # A type is a text already where annotations are postponed.
+    return {
+        item.name: item.type.__name__ if isinstance(item.type, type) else str(item.type)
+        for item in fields(kind)
+    }
 
 
 def _angle(value: Any) -> Any:

@@ -8,7 +8,7 @@ _CLASSES = {
     0x04: "controller in trouble (too many errors, or overflow)",
     0x08: "protocol violated: bit rate or wiring",
     0x10: "transceiver fault: wiring",
-    0x20: "nobody acknowledges: is the drive on, and the bus terminated?",
+    0x20: "no node acknowledges: is the drive on, and the bus terminated?",
     0x40: "bus-off: too many errors, the controller has left the bus",
     0x80: "bus error",
     0x100: "the controller was restarted after a bus-off",

@@ -185,7 +185,7 @@ class ElmoDrive:
         if status.failure and not self.options.acknowledge:
             meaning = failure_meaning(int(self._link.ask(Command(letters="MF")).value))
             reasons.append(
-                f"the drive has shut its motor down before ({meaning or 'MF says nothing'}); when that is "
+                f"the drive has shut its motor down before ({meaning or 'MF is 0'}); when that is "
                 "fixed, start with acknowledge = true"
             )
         if status.unit_mode != 1:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class ElmoType(DriveType):
-    """An Elmo SimplIQ drive on CANopen; `[session.torque]` says where the torque sensor is read."""
+    """An Elmo SimplIQ drive on CANopen; `[session.torque]` describes the torque sensor."""
 
     tables = ("torque",)
 

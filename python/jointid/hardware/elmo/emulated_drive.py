@@ -117,7 +117,7 @@ class EmulatedElmo:
 
     @property
     def bus(self) -> DeviceBus:
-        """The bus that it hangs on."""
+        """The bus to which it is connected."""
         assert self._bus is not None, "attach the drive to a bus"
         return self._bus
 

@@ -27,11 +27,11 @@ class ElmoOptions:
         COB-IDs of interpreter commands, replies, and the position's PDO. Default: 0x300, 0x280 and
         0x480 plus the node.
     heartbeat : float
-        Without our heartbeat for so long the drive stops by itself; without the drive's, the session [s].
+        Time without our heartbeat after which the drive stops by itself; without the drive's, the session [s].
     drive_heartbeat : float
         Between two heartbeats of the drive [s]; at most half of `heartbeat`.
     acknowledge : bool
-        Start although the drive has shut its motor down before; enabling clears what it says of it.
+        Start although the drive has shut its motor down before; enabling clears its report.
     torque : SyncedConverter, AnalogInput or None
         Where the joint's torque sensor is read.
     bitrate : float

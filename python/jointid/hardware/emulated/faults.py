@@ -63,7 +63,7 @@ def drive_failure(kind: str) -> tuple[int, int]:
     Raises
     ------
     InputError
-        There is none of this name.
+        There is no failure of this name.
     """
     if kind not in DRIVE_FAILURES:
         raise InputError(f"known are {', '.join(DRIVE_FAILURES)}", argument="kind", value=kind)

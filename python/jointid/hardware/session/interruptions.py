@@ -41,7 +41,7 @@ class Interruptions:
         trace: TracebackType | None,
     ) -> None:
         for number, before in self._before.items():
-            # None: it was installed by something that is not Python, and cannot be put back.
+            # None: it was installed by something that is not Python, and cannot be restored.
             signal.signal(number, signal.SIG_DFL if before is None else before)
 
     def _caught(self, number: int, frame: FrameType | None) -> None:
