@@ -29,12 +29,7 @@ def table(**entries: Any) -> Table:
 
 def test_keys_become_fields() -> None:
     made = table(port="a", speed="180deg", node=None, window=[1, 2]).make(Options)
-    assert (made.port, made.speed, made.node, made.window) == (
-        "a",
-        pytest.approx(3.14159),
-        None,
-        (1, 2),
-    )
+    assert made == Options(port="a", speed=math.pi, window=(1, 2))
     assert table(speed=2).make(Options, port="fixed").port == "fixed"
 
 
