@@ -35,7 +35,8 @@ def _analog(bench: Bench) -> Bench:
 def _coarse(bench: Bench) -> Bench:
     assert bench.emulation is not None
     drive = replace(bench.drive, mantissa_bits=4)
-    return replace(bench, drive=drive, emulation=replace(bench.emulation, mantissa_bits=4))
+    emulated = replace(bench.emulation.drive, mantissa_bits=4)
+    return replace(bench, drive=drive, emulation=replace(bench.emulation, drive=emulated))
 
 
 def _measured(bench: Bench) -> Bench:

@@ -15,11 +15,11 @@ import can
 
 import jointid as jid
 from jointid.hardware.elmo.drive import ElmoDrive
+from jointid.hardware.elmo.emulated_converter import EmulatedConverter
+from jointid.hardware.elmo.emulated_drive import ElmoSettings, EmulatedElmo
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.elmo.torque_source import AnalogInput
 from jointid.hardware.emulated.bus import EmulatedBus
-from jointid.hardware.emulated.converter import EmulatedConverter
-from jointid.hardware.emulated.elmo import ElmoSettings, EmulatedElmo
 from jointid.hardware.emulated.faults import BusFault
 from jointid.hardware.session.drive import DriveSample
 from jointid.hardware.session.limits import SessionLimits
@@ -172,7 +172,7 @@ class Outcome:
         return self.stop.moment - BEGIN
 
     @property
-    def told(self) -> float:
+    def commanded_off(self) -> float:
         """From the stop until TC = 0 and MO = 0 were sent [s]."""
         sent = self.bench.bus.assignments()
         last = [when for when, data in sent if data == OFF and when >= self.stop.moment]
@@ -269,8 +269,8 @@ def _controller(act: Callable[[float], float]) -> Script:
     return lambda bench: setattr(bench, "law", Tampered(bench.law, bench, act))
 
 
-def _divides_by_zero(torque: float) -> float:
-    return torque / 0.0
+def _refuses(torque: float) -> float:
+    raise jid.InputError("too small", argument="torque", value=torque)
 
 
 def _observer(error: BaseException) -> Script:
@@ -303,8 +303,8 @@ CASES = (
          limits={"tracking_error": 0.01}, says="more than 0.01 rad"),
     Case(name="controller asks for too much", stop="torque", script=_controller(lambda t: t + 500.0),
          says="more than 159.984"),
-    Case(name="controller asks for no number", stop="torque", script=_controller(lambda _: math.nan),
-         says="no number"),
+    Case(name="controller asks for a value that is not finite", stop="torque", script=_controller(lambda _: math.nan),
+         says="finite"),
     Case(name="command jumps", stop="torque_rate", script=_controller(lambda t: t + 150.0),
          limits={"torque_rate": 6e4}, says="N·m/s"),
     Case(name="command is cut for long", stop="saturated_samples", script=_slips(0.2), limits=_WIDE,
@@ -317,35 +317,35 @@ CASES = (
          says="the encoder hangs", detected=15 * PERIOD),
     Case(name="sensor at its end", stop="clipped_samples", script=_sensor_rails, says="6 samples",
          detected=8 * PERIOD),
-    Case(name="sensor's reading is no number", stop="sensor", script=_set("stuck_voltage", math.nan),
-         drive=_SENSOR_AT_DRIVE, says="no number", detected=6 * PERIOD),
+    Case(name="sensor's reading is not finite", stop="sensor", script=_set("stuck_voltage", math.nan),
+         drive=_SENSOR_AT_DRIVE, says="finite", detected=6 * PERIOD),
     Case(name="sensor is not answered", stop="sensor", faults=_bus("drop", REPLY), detected=25 * PERIOD,
          drive=_SENSOR_AT_DRIVE, says="without an answer", heard=False),
     Case(name="host is late", stop="missed_deadlines", script=_host_works(0.8e-3), says="6 cycles",
          detected=10 * PERIOD),
     # The drive.
     Case(name="over-temperature", stop="drive_fault", script=_fails("over-temperature"),
-         says="the drive says: over-temperature"),
+         says="the drive reports: over-temperature"),
     Case(name="short circuit", stop="drive_fault", script=_fails("short circuit"), says="short circuit"),
     Case(name="encoder loss", stop="drive_fault", script=_fails("encoder loss"), says="feedback lost"),
     Case(name="under-voltage", stop="drive_fault", script=_fails("under-voltage"), says="under-voltage"),
     Case(name="drive's speed limit", stop="drive_fault", says="speed limit exceeded",
          script=_set("settings", ElmoSettings(speed_limit=1000.0))),
     Case(name="emergency is lost", stop="drive_fault", script=_fails("over-temperature"),
-         faults=_bus("drop", EMERGENCY), says="the motor must be on (EC 58); the drive says: over-temp"),
+         faults=_bus("drop", EMERGENCY), says="the motor must be on (EC 58); the drive reports: over-temp"),
     Case(name="drive starts anew", stop="drive_fault", script=lambda b: b.at(BEGIN, b.elmo.restart),
-         says="started anew"),
+         says="restarted"),
     Case(name="drive's heartbeat stays away", stop="heartbeat_lost", says="for",
          script=_set("silent_heartbeat", True), detected=0.06),
     # The host.
     Case(name="our heartbeat is lost", stop="host_heartbeat_lost", faults=_bus("drop", OURS),
-         says="0x8130); the drive says: heartbeat lost", detected=0.06),
+         says="0x8130); the drive reports: heartbeat lost", detected=0.06),
     Case(name="host stands still", stop="host_heartbeat_lost", script=_host_works(0.08, 1),
          says="heartbeat lost", detected=0.09),
-    Case(name="observer raises", stop="user", script=_observer(ValueError("no display")),
-         says="the observer raised ValueError: no display"),
-    Case(name="controller raises", stop="user", script=_controller(_divides_by_zero),
-         says="the controller raised ZeroDivisionError"),
+    Case(name="observer's file is full", stop="error", script=_observer(OSError("no space left")),
+         says="OSError: no space left"),
+    Case(name="controller refuses its input", stop="error", script=_controller(_refuses),
+         says="InputError: torque is"),
     Case(name="Ctrl-C in user code", stop="user", script=_observer(KeyboardInterrupt()), says="keyboard"),
     # The bus.
     Case(name="position is lost", stop="stale_position", faults=_bus("drop", POSITION), says="SYNC"),
@@ -358,7 +358,7 @@ CASES = (
     Case(name="commands are lost, then switching off too", stop="torque_difference",
          faults=_bus("drop", COMMAND), limits={"torque_difference": 5.0}, reachable=False, heard=False,
          detected=0.5, says="is commanded"),
-    Case(name="first two switchings-off are lost", stop="user", script=_observer(ValueError("late")),
+    Case(name="first two switchings-off are lost", stop="error", script=_observer(OSError("late")),
          faults=_bus("drop", COMMAND, stop=BEGIN + 1.9 * PERIOD), says="late"),
     Case(name="error frame, off the bus for 3 ms", stop="bus", says="error frame",
          faults=_bus("bus_off", None, stop=BEGIN + 1.5 * PERIOD)),

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import jointid as jid
 from jointid.hardware.elmo.drive import ElmoDrive
+from jointid.hardware.elmo.emulated_converter import EmulatedConverter
+from jointid.hardware.elmo.emulated_drive import EmulatedElmo
 from jointid.hardware.emulated.bus import EmulatedBus
-from jointid.hardware.emulated.converter import EmulatedConverter
-from jointid.hardware.emulated.elmo import EmulatedElmo
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.session import Session
 from jointid.simulation.stepped import stepped_joint

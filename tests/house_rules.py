@@ -67,32 +67,34 @@ FOLDERS: dict[str, Folder] = {
         may_use={*_DATA, "simulation", "estimate", "study", "problem"},
         packages={"numpy", "matplotlib"},
     ),
-    "report": Folder(may_use={*_FOUND, "plot"}, packages={"numpy", "matplotlib"}),
+    "report": Folder(
+        may_use={*_FOUND, "plot", "identification/warnings"}, packages={"numpy", "matplotlib"}
+    ),
     "hardware/session": Folder(may_use={*_DATA, "simulation"}, packages={"numpy"}),
     "hardware/can": Folder(may_use={"base"}, packages={"can"}),
     "hardware/live": Folder(may_use={"base", "hardware/session"}, packages={"numpy", "matplotlib"}),
-    "hardware/elmo": Folder(
-        may_use={
-            *(*_DATA, "recording/readers", "simulation"),
-            *("hardware/session", "hardware/can"),
-        },
-        packages={"numpy", "can"},
+    "hardware/emulated": Folder(
+        may_use={"base", "joint", "simulation", "hardware/can"}, packages={"numpy", "can"}
     ),
     "hardware/bench": Folder(
-        may_use={*_DATA, "recording/readers", "simulation", "hardware/session", "hardware/can"},
-        packages={"numpy", "can"},
-    ),
-    "hardware/emulated": Folder(
         may_use={
-            *(*_DATA, "simulation"),
-            *("hardware/bench", "hardware/session", "hardware/can", "hardware/elmo"),
+            *(*_DATA, "recording/readers", "simulation"),
+            *("hardware/session", "hardware/can", "hardware/emulated"),
         },
         packages={"numpy", "can"},
     ),
+    "hardware/elmo": Folder(
+        may_use={
+            *(*_DATA, "simulation"),
+            *("hardware/session", "hardware/can", "hardware/bench", "hardware/emulated"),
+        },
+        packages={"numpy", "can"},
+    ),
+    # What a drive's type brings is found by its name: nothing here depends on one of them.
     "hardware": Folder(
         may_use={
             *("hardware/session", "hardware/can", "hardware/live", "hardware/bench"),
-            *("hardware/elmo", "hardware/emulated"),
+            "hardware/emulated",
         },
     ),
     "commissioning": Folder(
@@ -102,7 +104,7 @@ FOLDERS: dict[str, Folder] = {
         may_use={
             *(*_SOUGHT, "recording/readers", "comparison", "simulation", "study", "plot", "report"),
             *("hardware/session", "hardware/can", "hardware/live", "hardware/bench"),
-            *("commissioning", "identification/warnings", ""),
+            *("hardware/emulated", "commissioning", "identification/warnings", ""),
         },
         packages={"numpy", "matplotlib"},
     ),

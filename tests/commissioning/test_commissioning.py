@@ -33,13 +33,13 @@ def test_what_is_identified_is_the_emulators_truth(ring: Commissioning) -> None:
     assert last.warnings == ()
 
 
-def test_what_ripple_costs_is_told(ring: Commissioning) -> None:
+def test_the_effect_of_ripple_is_reported(ring: Commissioning) -> None:
     assert ring.without_ripple is not None
     truth = ring.truth["static"]
     plain = abs(ring.without_ripple.parameters["static"].value / truth - 1.0)
     modelled = abs(ring.estimates[-1].parameters["static"].value / truth - 1.0)
     assert plain > 1.5 * modelled
-    assert "Were the sensor's ripple not in the model" in ring.report()
+    assert "Errors without the sensor's ripple in the model" in ring.report()
 
 
 def test_the_same_seed_gives_the_same_bits(ring: Commissioning) -> None:

@@ -7,9 +7,9 @@ import pytest
 
 import jointid as jid
 from jointid.hardware.bench.bench import Bench
+from jointid.hardware.bench.emulated_joints import true_joint
 from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.elmo.torque_source import AnalogInput, SyncedConverter
-from jointid.hardware.emulated.bench import true_joint
 from jointid.hardware.emulated.bus import EmulatedBus
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "hardware" / "joint.toml"
@@ -37,7 +37,8 @@ def test_the_example_is_the_thesis_bench() -> None:
     assert bench.trajectory == jid.Trajectory.thesis(math.radians(60), cycle=3.0, duration=12.0)
     assert isinstance(bench.drive.torque, SyncedConverter)
     assert bench.limits.torque == pytest.approx(8.0 * 0.198 * 101.0)
-    assert bench.options.resolution == pytest.approx(2.0 * math.pi / 808_000)
+    assert bench.options.resolution is None
+    assert bench.drive.resolution(bench.joint) == 2.0 * math.pi / 808_000
     assert bench.emulation is not None
     assert bench.emulation.truth["sensor_gain"] == 2.4
 
@@ -80,45 +81,71 @@ def driven(path: Path) -> ElmoDrive:
 @pytest.mark.parametrize(
     ("before", "after", "told"),
     [
-        ("period = 0.002", "periode = 0.002", r"\[session\] 'periode' is unknown; did you mean"),
-        ("period = 0.002", "period = 0.0", r"\[session\] period is 0.0; more than 0"),
-        ("period = 0.002", 'period = "fast"', r"\[session\] period is 'fast'; a number"),
-        ("node = 127", "node = 12.5", r"\[session.drive\] node is 12.5; a whole number"),
-        ("node = 127", "node = 128", r"\[session.drive\] node is 128; 1 to 127"),
-        ("heartbeat = 0.05", "heartbeat = 60", r"\[session.drive\] heartbeat is 60"),
+        (
+            "period = 0.002",
+            "periode = 0.002",
+            r"\[session\]: periode: unknown key; did you mean 'period'",
+        ),
+        ("period = 0.002", "period = 0.0", r"\[session\]: period is 0.0: more than 0"),
+        ("period = 0.002", 'period = "fast"', r"\[session\]: period is 'fast': a number"),
+        ("node = 127", "node = 12.5", r"\[session.drive\]: node is 12.5: a whole number"),
+        ("node = 127", "node = 128", r"\[session.drive\]: node is 128: 1 to 127"),
+        ("heartbeat = 0.05", "heartbeat = 60", r"\[session.drive\]: heartbeat is 60"),
         (
             'source = "converter"',
             'source = "convertor"',
-            r"\[session.torque\] source is 'convertor'",
+            r"\[session.torque\]: source is 'convertor'",
         ),
-        ('form = "thesis"', 'form = "cosine"', r"\[session.trajectory\] form is 'cosine'"),
-        ("cycle = 3.0", "cyle = 3.0", r"\[session.trajectory\] .*cyle"),
-        ('law = "adaptive_robust"', 'law = "magic"', r"\[session.controller\] law is 'magic'"),
-        ("friction_velocity =", "friction_speed =", r"\[session.controller\] 'friction_speed'"),
-        ("tracking_error = 0.1 ", "tracking_error = -1.0 ", r"\[session.limits\] tracking_error"),
-        ("tracking_error = 0.1 ", "tracking = 0.1 ", r"\[session.limits\] 'tracking' is unknown"),
-        ("bitrate = 500000", "bitrate = 5", r"\[session.bus\] bitrate is 5"),
-        ("mantissa_bits = 24", "mantissa_bits = 40", r"\[session.drive\] mantissa_bits is 40"),
-        ("idle_loop = 0.0003", "idle_loop = 1.0", r"\[session.emulated\] idle_loop is 1.0"),
-        ("priority = 75", "priority = 750", r"\[session.real_time\] priority is 750"),
-        ("lock_memory = true", "lock_memory = 1", r"lock_memory is 1; true or false"),
-        ("ripple = 2.6 ", "encoder_counts = 8000 ", r"\[session.emulated.sensors\] 'encoder_co"),
-        ("viscous = 20.0\nsensor", 'viscous = "x"\nsensor', r"\[session.emulated.truth\] viscous"),
-        ("viscous = 20.0\nsensor", "viscos = 20.0\nsensor", r"\[session.emulated.truth\] .*viscos"),
+        ('form = "thesis"', 'form = "cosine"', r"\[session.trajectory\]: form is 'cosine'"),
+        ("cycle = 3.0", "cyle = 3.0", r"\[session.trajectory\]: cyle: unknown key; did you mean"),
+        ("amplitude =", "form2 =", r"\[session.trajectory\]: form2: unknown key"),
+        (
+            'form = "thesis"',
+            'form = "sigmoid"\nrise = 1.0',
+            r"\[session.trajectory\]: amplitude: unknown key",
+        ),
+        (
+            'form = "thesis"\namplitude = "60deg"\ncycle = 3.0 ',
+            'form = "sigmoid"\ndistance = 1.0 ',
+            r"\[session.trajectory\]: rise: missing; the form 'sigmoid' needs it",
+        ),
+        ("cycle = 3.0", "cycle = 0.0", r"\[session.trajectory\]: .*cycle is 0.0"),
+        ('law = "adaptive_robust"', 'law = "magic"', r"\[session.controller\]: law is 'magic'"),
+        (
+            "friction_velocity =",
+            "friction_speed =",
+            r"\[session.controller\]: friction_speed: unknown key",
+        ),
+        ("tracking_error = 0.1 ", "tracking_error = -1.0 ", r"\[session.limits\]: tracking_error"),
+        ("tracking_error = 0.1 ", "tracking = 0.1 ", r"\[session.limits\]: tracking: unknown key"),
+        ("bitrate = 500000", "bitrate = 5", r"\[session.bus\]: bitrate is 5"),
+        ("mantissa_bits = 24", "mantissa_bits = 40", r"\[session.drive\]: mantissa_bits is 40"),
+        ("idle_loop = 0.0003", "idle_loop = 1.0", r"\[session.emulated\]: idle_loop is 1.0"),
+        ("priority = 75", "priority = 750", r"\[session.real_time\]: priority is 750"),
+        ("lock_memory = true", "lock_memory = 1", r"lock_memory is 1: true or false"),
+        (
+            "ripple = 2.6 ",
+            "encoder_counts = 8000 ",
+            r"\[session.emulated.sensors\]: encoder_counts: unk",
+        ),
+        ("viscous = 20.0\nsensor", 'viscous = "x"\nsensor', r"\[session.emulated.truth\]: viscous"),
+        (
+            "viscous = 20.0\nsensor",
+            "viscos = 20.0\nsensor",
+            r"\[session.emulated.truth\]: .*viscos",
+        ),
         (
             "[session.emulated.truth]",
             "[session.emulator.truth]",
-            r"\[session\] 'emulator' is unkno",
+            r"\[session\]: emulator: unknown table; did you",
         ),
         ("[session.trajectory]", "[session.limits.x]", r"no table \[session.trajectory\]"),
-        ("gear_ratio = 101", "", r"\[drive\] has no gear_ratio"),
+        ("gear_ratio = 101", "", r"\[drive\]: gear_ratio: missing"),
         ("coulomb = { value = 10.0, min", "coulomb = { min", "coulomb"),
         ("torque_constant = 0.198", "", "torque_constant"),
     ],
 )
-def test_what_is_wrong_is_told_with_its_place(
-    tmp_path: Path, before: str, after: str, told: str
-) -> None:
+def test_an_error_names_its_place(tmp_path: Path, before: str, after: str, told: str) -> None:
     path = written(tmp_path, before, after)
     with pytest.raises(jid.InputError, match=told) as caught:
         driven(path)

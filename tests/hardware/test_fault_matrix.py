@@ -44,7 +44,7 @@ def test_fault_stops_the_session_and_the_motor(case: Case, tmp_path: Path) -> No
     sent = bench.bus.assignments()
     assert [data for _, data in sent[-2:]] == [ZERO, OFF]
     assert {data for when, data in sent if when > stop.moment} <= {ZERO, OFF}
-    assert 0.0 <= found.told <= 3 * PERIOD
+    assert 0.0 <= found.commanded_off <= 3 * PERIOD
     assert not bench.elmo.motor_on
     assert bench.elmo.current == 0.0
     slowest = 4 * PERIOD if case.reachable else WATCHDOG + LOOK
@@ -66,21 +66,21 @@ def test_every_limit_has_a_case_and_a_line_in_the_documentation(repo: Path) -> N
     assert limits <= stops
     assert stops - limits == {
         *("stale_position", "drive_fault", "heartbeat_lost", "host_heartbeat_lost"),
-        *("bus", "sensor", "user"),
+        *("bus", "sensor", "user", "error"),
     }
     lines = (repo / "docs" / "hardware_limits.md").read_text(encoding="utf-8").splitlines()
     told = {line.split("`")[1] for line in lines if line.startswith("| `")}
-    assert told - {"stop.limit"} == stops | {"error", "recording"}
+    assert told - {"stop.limit"} == stops | {"recording"}
 
 
 @pytest.mark.parametrize("kind", sorted(set(DRIVE_FAILURES) - {"host heartbeat lost"}))
-def test_failure_of_the_drive_is_told_in_words(kind: str) -> None:
+def test_a_failure_of_the_drive_is_explained(kind: str) -> None:
     case = Case(
         name=kind, stop="drive_fault", script=lambda b: b.at(BEGIN, lambda: b.elmo.fail(kind))
     )
     stop = outcome(case).stop
     assert stop.limit == "drive_fault"
-    assert "; the drive says: " in stop.message
+    assert "; the drive reports: " in stop.message
     assert "unknown" not in stop.message
 
 
@@ -95,7 +95,7 @@ def test_failure_of_the_drive_is_told_in_words(kind: str) -> None:
     ],
     ids=lambda fault: f"{fault.kind} {fault.identifier}",
 )
-def test_what_a_session_can_bear_does_not_stop_it(fault: BusFault) -> None:
+def test_a_tolerable_fault_does_not_stop_a_session(fault: BusFault) -> None:
     bench = EmulatedSession((fault,))
     recording = bench.session().run()
     assert recording is not None
@@ -131,7 +131,7 @@ def test_watchdog_stays_armed_when_the_motor_was_not_seen_off() -> None:
     assert outcome(case).bench.elmo.objects.consumer_time == WATCHDOG
 
 
-def test_cases_are_the_same_to_the_bit_each_time() -> None:
+def test_cases_are_bit_identical_each_time() -> None:
     case = next(case for case in CASES if case.name == "first two switchings-off are lost")
     once, again = outcome(case), outcome(case)
     assert once.stop == again.stop

@@ -71,7 +71,7 @@ def test_what_is_no_number_is_beyond_every_limit() -> None:
     for torque in (math.nan, -math.inf):
         told = stopped(lambda t=torque: guard().commanded(t, 0))
         assert told.limit == "torque"
-        assert "no number" in str(told)
+        assert "not finite" in str(told)
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
@@ -81,17 +81,17 @@ def test_torque_is_held_but_for_rounding(sign: float) -> None:
     assert (error.limit, error.measured, error.allowed) == ("torque", sign * 100.01, 100.0)
 
 
-def test_what_the_drive_is_told_is_held_too() -> None:
+def test_the_torque_accepted_by_the_drive_is_checked_too() -> None:
     watched = guard()
-    watched.told(100.0, 100.0 * (1.0 + 1e-7))  # a float of 32 bits
+    watched.accepted(100.0, 100.0 * (1.0 + 1e-7))  # a float of 32 bits
     for told in (100.1, -100.1, math.nan, math.inf):
-        assert stopped(lambda t=told: guard().told(100.0, t)).limit == "torque"
+        assert stopped(lambda t=told: guard().accepted(100.0, t)).limit == "torque"
     for asked, told in ((80.0, 75.0), (-80.0, -75.0), (0.0, 0.0)):  # rounded
         for _ in range(30):
-            watched.told(asked, told)
+            watched.accepted(asked, told)
     watched.commanded(0.0, 0)
     for _ in range(21):
-        watched.told(80.0, 40.0)  # the drive's own limit is lower
+        watched.accepted(80.0, 40.0)  # the drive's own limit is lower
     error = stopped(lambda: watched.commanded(0.0, 0))
     assert (error.limit, error.measured) == ("saturated_samples", 21)
 
@@ -133,7 +133,7 @@ def test_clipped_readings_count_in_a_row() -> None:
 def repeated(watched: Guard, velocity: float, torque: float, times: int) -> None:
     """A sample in motion, then the same position again and again at another torque."""
     watched.measured(sample(0.5), velocity, 0.0)
-    watched.told(torque, torque)
+    watched.accepted(torque, torque)
     for _ in range(times):
         watched.measured(sample(0.5), 0.0, 0.0)
 
@@ -150,9 +150,9 @@ def test_position_that_repeats_after_motion_is_an_encoder_that_hangs() -> None:
 def test_position_that_repeats_though_the_torque_has_changed_much() -> None:
     for torque, stops in ((0.0, False), (-50.1, True)):
         watched = guard()
-        watched.told(50.0, 50.0)
+        watched.accepted(50.0, 50.0)
         watched.measured(sample(0.5), 0.0, 0.0)
-        watched.told(torque, torque)
+        watched.accepted(torque, torque)
         for _ in range(10):
             watched.measured(sample(0.5), 0.0, 0.0)
         if not stops:
@@ -180,7 +180,7 @@ def test_measured_torque_beyond_the_limit() -> None:
 
 def test_measured_torque_that_stays_away_from_the_command() -> None:
     watched = guard()
-    watched.told(60.0, 60.0)
+    watched.accepted(60.0, 60.0)
     for _ in range(100):
         watched.measured(sample(torque=35.0), 0.0, 0.0)  # a quarter of 100 N·m off is allowed
     for torque in (60.0, 10.0) * 50:
@@ -200,12 +200,12 @@ def test_drive_that_is_a_cycle_behind_is_no_fault() -> None:
         torque = 90.0 * (-1.0) ** cycle  # chatter
         watched.measured(sample(torque=felt), 0.0, 0.0)
         felt = -torque
-        watched.told(torque, torque)
+        watched.accepted(torque, torque)
 
 
 def test_drive_that_tells_no_current_is_not_held_to_one() -> None:
     watched = guard()
-    watched.told(100.0, 100.0)
+    watched.accepted(100.0, 100.0)
     for _ in range(50):
         watched.measured(sample(), 0.0, 0.0)
 
@@ -214,7 +214,7 @@ def test_drive_that_tells_no_current_is_not_held_to_one() -> None:
     ("classes", "meaning"),
     [
         (0x40, "bus-off"),
-        (0x20, "nobody acknowledges"),
+        (0x20, "no node acknowledges"),
         (0x44, "controller in trouble.*bus-off"),
         (0x2000, "unknown class 0x2000"),
         (0x02, "^$"),
@@ -227,7 +227,7 @@ def test_error_frames_in_words(classes: int, meaning: str) -> None:
 @pytest.mark.parametrize("name", [f.name for f in fields(SessionLimits) if f.name != "position"])
 @pytest.mark.parametrize("value", [0, -1, math.nan])
 def test_limit_that_is_none_is_refused(name: str, value: float) -> None:
-    with pytest.raises(jid.InputError, match=f"{name} is {value}; more than 0 is expected"):
+    with pytest.raises(jid.InputError, match=f"{name} is {value}: more than 0 is expected"):
         SessionLimits(**{name: value})  # type: ignore[arg-type]
 
 
@@ -252,13 +252,13 @@ def test_limits_of_a_joint() -> None:
 @pytest.mark.parametrize(
     ("build", "message"),
     [
-        (lambda: SessionOptions(period=0.0), "period is 0.0; more than 0"),
-        (lambda: SessionOptions(settle=-1.0), "settle is -1.0; at least 0"),
-        (lambda: SessionOptions(answer_timeout=0.0), "answer_timeout is 0.0; more than 0"),
-        (lambda: ElmoOptions(heartbeat=0.001), "heartbeat is 0.001; 0.005 to 10 s"),
+        (lambda: SessionOptions(period=0.0), "period is 0.0: more than 0"),
+        (lambda: SessionOptions(settle=-1.0), "settle is -1.0: at least 0"),
+        (lambda: SessionOptions(answer_timeout=0.0), "answer_timeout is 0.0: more than 0"),
+        (lambda: ElmoOptions(heartbeat=0.001), "heartbeat is 0.001: 0.005 to 10 s"),
         (lambda: ElmoOptions(drive_heartbeat=0.03), "0.001 s to half of heartbeat, 0.025 s"),
-        (lambda: BusFault(kind="lost", start=0.0), "kind is 'lost'; one of drop, delay"),
-        (lambda: drive_failure("fire"), "drive failure is 'fire'; one of encoder loss"),
+        (lambda: BusFault(kind="lost", start=0.0), "kind is 'lost': known are drop, delay"),
+        (lambda: drive_failure("fire"), "kind is 'fire': known are encoder loss"),
     ],
 )
 def test_setting_that_cannot_be_is_refused(build: Any, message: str) -> None:

@@ -121,7 +121,7 @@ def test_a_sessions_line_ends_with_the_run() -> None:
     assert re.fullmatch(r"run +1\.00 s .*", lines[-1])  # 0.998 s
 
 
-def test_several_observers_are_told_and_closed_each() -> None:
+def test_several_observers_are_called_and_closed_each() -> None:
     told: list[str] = []
 
     class Closing:
@@ -161,7 +161,7 @@ def test_a_live_plot_of_a_session_ends_as_a_picture(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("wrong", "told"),
     [
-        ({"span": 0.0}, "span is 0.0; more than 0 s is expected"),
+        ({"span": 0.0}, "span is 0.0: more than 0 s is expected"),
         ({"window": False}, "neither a window nor a picture"),
     ],
 )

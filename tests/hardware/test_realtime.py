@@ -1,4 +1,4 @@
-"""What is asked of the operating system is granted or told, and put back; clocks keep absolute deadlines."""
+"""What is asked of the operating system is granted or reported, and restored; clocks keep absolute deadlines."""
 
 import ctypes
 import gc
@@ -33,7 +33,7 @@ def state() -> tuple[Any, ...]:
 
 
 @linux
-def test_all_is_granted_or_told_and_put_back() -> None:
+def test_all_is_granted_or_reported_and_restored() -> None:
     before = state()
     options = RealTimeOptions(
         priority=1,
@@ -69,7 +69,7 @@ def test_threads_begun_meanwhile_do_not_inherit_the_priority() -> None:
 
 
 @linux
-def test_what_is_refused_is_told_and_the_rest_granted(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_refusal_is_reported_and_the_rest_granted(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> None:
         raise PermissionError(1, "Operation not permitted")
 
@@ -115,11 +115,11 @@ def test_elsewhere_than_on_linux_it_says_so(monkeypatch: pytest.MonkeyPatch) -> 
 @pytest.mark.parametrize(
     ("wrong", "told"),
     [
-        ({"priority": 0}, "priority is 0; 1 to 99 is expected"),
+        ({"priority": 0}, "priority is 0: 1 to 99 is expected"),
         ({"priority": 100}, "priority is 100"),
-        ({"cpus": ()}, r"cpus is \(\); numbers of processors"),
+        ({"cpus": ()}, r"cpus is \(\): numbers of processors"),
         ({"cpus": (0, -1)}, "cpus is"),
-        ({"timer_slack": 0.0}, "timer_slack is 0.0; 1e-9 to 1 s"),
+        ({"timer_slack": 0.0}, "timer_slack is 0.0: 1e-9 to 1 s"),
         ({"timer_slack": float("nan")}, "timer_slack is nan"),
     ],
 )

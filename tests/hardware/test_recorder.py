@@ -20,12 +20,8 @@ from killed_session import DURATION
 from session_bench import JOINT, devices, law, limits, motion, session
 
 import jointid as jid
-from jointid.hardware import (
-    ElmoOptions,
-    EmulatedBus,
-    SessionRefusedError,
-    SessionStoppedError,
-)
+from jointid.hardware import EmulatedBus, SessionRefusedError, SessionStoppedError
+from jointid.hardware.elmo import ElmoOptions
 from jointid.hardware.session.appended_file import AppendedFile
 from jointid.hardware.session.recorder import Recorder
 from jointid.joint.joint_file import joint_document
@@ -118,7 +114,9 @@ def test_a_recording_says_how_it_was_made(tmp_path: Path) -> None:
     assert said["versions"]["jointid"] == jid.__version__
 
 
-def test_a_slow_disk_holds_up_nobody(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_slow_disk_does_not_delay_the_session(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     stuck, released = threading.Event(), threading.Event()
     sync = AppendedFile.sync
 
@@ -232,7 +230,7 @@ def test_a_session_that_never_ran_says_so(tmp_path: Path) -> None:
 
     def refuse(phase: str, *_: object) -> None:
         if phase == "settle":
-            raise RuntimeError("enough")
+            raise OSError("enough")
 
     with EmulatedBus(*devices()) as bus, pytest.raises(SessionStoppedError):
         session(bus, output=path, observer=refuse).run()

@@ -13,12 +13,12 @@ import pytest
 from session_bench import JOINT, PERIOD, devices, law, limits, motion, session
 
 import jointid as jid
-from jointid.hardware import SessionRefusedError, SessionStoppedError
+from jointid.hardware import DriveFaultError, SessionRefusedError, SessionStoppedError
 from jointid.hardware.elmo.drive import ElmoDrive
+from jointid.hardware.elmo.emulated_drive import EmulatedElmo
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.elmo.torque_source import AnalogInput, SensorScaling, SyncedConverter
 from jointid.hardware.emulated.bus import EmulatedBus
-from jointid.hardware.emulated.elmo import EmulatedElmo
 from jointid.hardware.emulated.faults import BusFault
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.session import Session, SessionOptions
@@ -152,7 +152,7 @@ def test_a_second_session_does_not_touch_a_drive_that_another_moves() -> None:
     with pytest.raises(SessionRefusedError):
         Session(drive, law(), motion(), limits(velocity=0.01), options=options).run()
     assert bus.sent == before
-    with pytest.raises(SessionRefusedError, match="something else commands the drive"):
+    with pytest.raises(SessionRefusedError, match="another program commands the drive"):
         Session(drive, law(), motion(), limits(), options=options).run()
     assert elmo.motor_on
     assert elmo.state == "operational"
@@ -234,8 +234,8 @@ def test_options_that_cannot_be_are_refused(make: Callable[[], object], told: st
 def test_the_three_identifiers_are_settings_on_both_sides() -> None:
     from session_bench import joint
 
-    from jointid.hardware.emulated.converter import EmulatedConverter
-    from jointid.hardware.emulated.elmo import ElmoSettings
+    from jointid.hardware.elmo.emulated_converter import EmulatedConverter
+    from jointid.hardware.elmo.emulated_drive import ElmoSettings
 
     elmo = EmulatedElmo(joint(), ElmoSettings(cob_command=0x3F0, cob_reply=0x2F0))
     bus = EmulatedBus(elmo, EmulatedConverter(elmo))
@@ -265,7 +265,7 @@ class StubbornDrive(ElmoDrive):
 
     def disable(self) -> Any:
         super().disable()
-        raise RuntimeError("relay stuck")
+        raise DriveFaultError("drive_fault", "relay stuck")
 
 
 def test_a_motor_that_does_not_go_off_after_a_run_is_no_success() -> None:
@@ -293,11 +293,11 @@ def test_without_a_sensor_there_is_no_column_of_it(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "returned", "told"),
     [
-        ("problems", "not homed", r"problems\(\) returned 'not homed'; a list of sentences"),
-        ("command", None, r"command\(\) returned None; the torque that it was told"),
+        ("problems", "not homed", r"problems\(\) is 'not homed': a list of sentences"),
+        ("command", None, r"command\(\) returned None; the torque that it accepted"),
     ],
 )
-def test_a_drive_that_returns_something_else_is_told(name: str, returned: Any, told: str) -> None:
+def test_a_wrong_return_value_of_a_drive_is_reported(name: str, returned: Any, told: str) -> None:
     drive = ElmoDrive(EmulatedBus(*devices()), JOINT)
     setattr(drive, name, lambda *_: returned)
     options = SessionOptions(period=PERIOD, settle=0.05)

@@ -1,4 +1,4 @@
-"""Session files: how they end, whole, torn anywhere, or on a full disk."""
+"""Session files: how they end: complete, truncated anywhere, or on a full disk."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -9,7 +9,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import jointid as jid
-from jointid.hardware import Bench, ElmoDrive, EmulatedBus, Session, emulated_devices
+from jointid.hardware import Bench, EmulatedBus, Session, emulated_devices
+from jointid.hardware.elmo import ElmoDrive
 from jointid.hardware.session.session import SessionStoppedError
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "hardware" / "joint.toml"
@@ -52,7 +53,7 @@ def test_a_whole_file_gives_the_sessions_recording(session: tuple[jid.Recording,
     max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 @given(share=st.floats(0.0, 1.0, exclude_max=True))
-def test_a_file_torn_anywhere_gives_a_prefix_or_a_clear_refusal(
+def test_a_truncated_file_gives_a_prefix_or_a_clear_error(
     session: tuple[jid.Recording, Path], tmp_path: Path, share: float
 ) -> None:
     recording, path = session
@@ -71,7 +72,7 @@ def test_a_file_torn_anywhere_gives_a_prefix_or_a_clear_refusal(
         assert np.array_equal(getattr(loaded, name), getattr(recording, name)[:rows]), name
 
 
-def test_only_a_sessions_file_may_be_torn(
+def test_only_a_sessions_file_may_be_truncated(
     session: tuple[jid.Recording, Path], tmp_path: Path
 ) -> None:
     recording, _ = session

@@ -154,7 +154,7 @@ def test_failure_that_is_acknowledged_is_cleared() -> None:
 def test_reading_that_is_no_number_is_refused() -> None:
     bench = EmulatedSession(drive=ElmoOptions(torque=AnalogInput(every=1)))
     bench.elmo.stuck_voltage = math.nan
-    refused(bench, "the value of AN is nan")
+    refused(bench, "AN is nan: a finite value is expected")
     bench.elmo.stuck_voltage = 9.99
     refused(bench, "sensor is at the end of its range")
 

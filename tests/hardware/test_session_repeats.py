@@ -11,7 +11,7 @@ from session_bench import HashedBus, devices, hashes_of_a_session, session
 from jointid.hardware.elmo.options import ElmoOptions
 
 
-def test_a_session_repeats_to_the_bit_and_its_seed_matters() -> None:
+def test_a_repeated_session_is_bit_identical_and_its_seed_matters() -> None:
     first = hashes_of_a_session()
     assert hashes_of_a_session() == first
     assert first[2] > 4 * 500  # SYNC, position, command and echo in each cycle of the run at least

@@ -8,10 +8,10 @@ from session_bench import JOINT, PERIOD, devices, joint
 
 from jointid.hardware.can import canopen_frames as canopen
 from jointid.hardware.elmo.drive import ElmoDrive
+from jointid.hardware.elmo.emulated_converter import EmulatedConverter
+from jointid.hardware.elmo.emulated_drive import ElmoSettings, EmulatedElmo
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.emulated.bus import EmulatedBus
-from jointid.hardware.emulated.converter import EmulatedConverter
-from jointid.hardware.emulated.elmo import ElmoSettings, EmulatedElmo
 from jointid.hardware.emulated.faults import BusFault
 from jointid.hardware.session.drive import DriveFaultError
 

@@ -1,199 +1,148 @@
-"""A drive written from the protocol's documentation alone, without CAN, runs a session."""
+"""A drive of a package of its own, found by its entry point: run from the command line, recorded, replayed."""
 
-import math
-from dataclasses import dataclass, field
+import json
+import os
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from session_bench import PERIOD
 
 import jointid as jid
-from jointid.base.errors import InputError
-from jointid.hardware.session.drive import Drive, DriveFaultError, DriveSample
-from jointid.hardware.session.limits import SessionLimits
-from jointid.hardware.session.session import (
-    Session,
-    SessionOptions,
-    SessionRefusedError,
-    SessionStoppedError,
-)
+
+PACKAGE = Path(__file__).parents[1] / "third_party_drive"
+JOINT = """
+schema = 1
+name = "acme bench"
+[drive]
+rotor_inertia = 2.5e-4
+gear_ratio = 100
+torque_hold = "zoh"
+[model]
+friction = "coulomb_viscous"
+gravity = "none"
+[parameters]
+coulomb = { value = 10.0, min = 0.0, max = 50.0 }
+viscous = { value = 10.0, min = 0.0, max = 40.0 }
+[limits]
+position = [-1.4, 1.4]
+velocity = 4.0
+torque = 160.0
+[session.drive]
+type = "acme"
+counts = 800000
+[session.trajectory]
+amplitude = "60deg"
+cycle = 3.0
+duration = 6.0
+[session.controller]
+law = "adaptive_robust"
+friction_velocity = "reference"
+[session.emulated.truth]
+coulomb = 25.0
+viscous = 20.0
+"""
 
 
-class SimulatedTime:
-    """A clock that only waiting moves."""
-
-    def __init__(self) -> None:
-        self.time = 0.0
-
-    def now(self) -> float:
-        return self.time
-
-    def sleep_until(self, deadline: float) -> None:
-        self.time = max(self.time, deadline)
-
-
-@dataclass
-class Flywheel:
-    """A motor that turns a wheel with viscous friction; no gear, no CAN, no sensor."""
-
-    inertia: float = 0.5
-    viscous: float = 1.0
-    strongest: float = 20.0
-    clock: SimulatedTime = field(default_factory=SimulatedTime)
-    command_latency: float = 0.0
-
-    def __post_init__(self) -> None:
-        self.position = self.velocity = self.torque = self.moved = 0.0
-        self.on = self.silent = False
-        self.calls: list[str] = []
-
-    def connect(self, period: float) -> None:
-        self.calls.append(f"connect {period}")
-
-    def problems(self, torque_limit: float) -> list[str]:
-        self.calls.append("problems")
-        if self.strongest > torque_limit:
-            return [
-                f"the motor can {self.strongest:g} N·m, the session allows {torque_limit:g} N·m"
-            ]
-        return []
-
-    def enable(self) -> None:
-        self.calls.append("enable")
-        self.on, self.torque = True, 0.0
-
-    def read(self, timeout: float) -> DriveSample:
-        if self.silent:
-            raise DriveFaultError("stale_position", f"nothing came within {1e3 * timeout:g} ms")
-        self._move()
-        return DriveSample(time=self.clock.now(), position=self.position)
-
-    def command(self, torque: float) -> float:
-        self._move()
-        self.torque = max(-self.strongest, min(self.strongest, torque))
-        return self.torque
-
-    def disable(self) -> None:
-        self._move()
-        self.torque, self.on = 0.0, False
-        self.calls.append("disable")
-
-    def close(self) -> None:
-        self.calls.append("close")
-
-    def bus_load(self, period: float) -> float:
-        del period
-        return 0.0
-
-    def identity(self) -> dict[str, Any]:
-        return {"drive": "flywheel", "inertia": self.inertia}
-
-    def _move(self) -> None:
-        """The exact solution under a torque that holds."""
-        duration, self.moved = self.clock.now() - self.moved, self.clock.now()
-        decay = math.exp(-duration * self.viscous / self.inertia)
-        final = (self.torque if self.on else 0.0) / self.viscous
-        lag = (self.velocity - final) * self.inertia / self.viscous
-        self.position += final * duration + lag * (1.0 - decay)
-        self.velocity = final + (self.velocity - final) * decay
-
-
-LAW = jid.Pd(stiffness=200.0, damping=20.0)
-SWING = jid.Trajectory.thesis(0.3, cycle=2.0, duration=2.0)
-LIMITS = SessionLimits(position=(-1.0, 1.0), velocity=5.0, torque=25.0)
-OPTIONS = SessionOptions(period=PERIOD, resolution=1e-9, settle=0.1)
-
-
-def test_it_is_a_drive_to_the_type_checker() -> None:
-    drive: Drive = Flywheel()
-    assert drive.bus_load(PERIOD) == 0.0
-
-
-def test_a_whole_session() -> None:
-    wheel = Flywheel()
-    recording = Session(wheel, LAW, SWING, LIMITS, options=OPTIONS).run()
-    assert isinstance(recording, jid.Recording)
-    assert recording.time.size == 1000
-    assert recording.reference is not None
-    assert recording.torque is not None
-    assert recording.current is None
-    assert recording.metadata["drive"] == {"drive": "flywheel", "inertia": 0.5}
-    assert np.abs(recording.position - recording.reference).max() < 0.1
-    assert [name for name in wheel.calls if name != "disable"] == [
-        f"connect {PERIOD}",
-        "problems",
-        "enable",
-        "close",
+@pytest.fixture
+def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """The folder that holds what an installation of the package leaves; both are on the path."""
+    project = tomllib.loads((PACKAGE / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    site = tmp_path / "site"
+    about = site / "acme_drive-1.0.dist-info"
+    about.mkdir(parents=True)
+    name, version = project["name"], project["version"]
+    (about / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n")
+    lines = [
+        f"[{group}]\n" + "".join(f"{key} = {value}\n" for key, value in entries.items())
+        for group, entries in project["entry-points"].items()
     ]
-    assert wheel.calls[-2] == "disable"
-    assert (wheel.on, wheel.torque) == (False, 0.0)
-    # What was recorded is the wheel's motion: its balance of torques closes.
-    speed = np.gradient(recording.position, recording.time)
-    balance = 0.5 * np.gradient(speed, recording.time) + 1.0 * speed
-    inside = slice(10, -10)
-    assert np.std((recording.torque - balance)[inside]) < 0.02 * np.std(recording.torque[inside])
+    (about / "entry_points.txt").write_text("\n".join(lines))
+    monkeypatch.syspath_prepend(str(PACKAGE))
+    monkeypatch.syspath_prepend(str(site))
+    yield site
+    sys.modules.pop("acme_drive", None)
 
 
-def test_what_it_says_against_a_start_is_heard() -> None:
-    wheel = Flywheel(strongest=30.0)
-    with pytest.raises(
-        SessionRefusedError, match="the motor can 30 N·m, the session allows 25 N·m"
-    ):
-        Session(wheel, LAW, SWING, LIMITS, options=OPTIONS).run()
-    assert "enable" not in wheel.calls
-    assert wheel.calls[-1] == "close"
-
-
-def test_its_fault_stops_the_session_under_its_name() -> None:
-    wheel = Flywheel()
-
-    def watch(phase: str, when: float, *_: object) -> None:
-        wheel.silent = phase == "run" and when > 1.0
-
-    with pytest.raises(SessionStoppedError) as stopped:
-        Session(wheel, LAW, SWING, LIMITS, options=OPTIONS, observer=watch).run()
-    stop = stopped.value.stop
-    assert (stop.limit, stop.phase) == ("stale_position", "run")
-    assert stop.time == pytest.approx(1.0, abs=5.0 * PERIOD)
-    assert "nothing came within 1.5 ms" in stop.message
-    assert (wheel.on, wheel.torque) == (False, 0.0)
-    assert wheel.calls[-1] == "close"
-
-
-METHODS = ["connect", "problems", "enable", "read", "command", "disable", "close"]
-METHODS += ["bus_load", "identity"]
-
-
-@pytest.mark.parametrize("name", METHODS)
-def test_a_missing_method_is_told_before_anything_is_called(name: str) -> None:
-    members = {key: value for key, value in vars(Flywheel).items() if key != name}
-    wheel = type("Incomplete", (), members)()
-    with pytest.raises(InputError) as refused:
-        Session(wheel, LAW, SWING, LIMITS, options=OPTIONS)
-    assert str(refused.value) == (
-        f"the drive Incomplete lacks {name}(); "
-        "`jointid.hardware.session.drive.Drive` says what a session asks of a drive"
+def jointid_run(site: Path, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """`jointid run` in a process of its own."""
+    path = os.pathsep.join((str(site), str(PACKAGE), *filter(None, sys.path)))
+    return subprocess.run(
+        [sys.executable, "-m", "jointid", "run", "joint.toml", *arguments],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+        timeout=300.0,
     )
-    assert wheel.calls == []
 
 
-def test_all_that_is_missing_is_told_at_once() -> None:
-    with pytest.raises(InputError, match=r"lacks connect\(\), .*, clock, command_latency;"):
-        Session(object(), LAW, SWING, LIMITS)  # type: ignore[arg-type]
+def test_it_runs_is_recorded_and_replayed(installed: Path, tmp_path: Path) -> None:
+    (tmp_path / "joint.toml").write_text(JOINT, encoding="utf-8")
+    done = jointid_run(
+        installed,
+        tmp_path,
+        *("--emulate", "--cycles", "1", "--output", "runs", "--json", "--quiet"),
+    )
+    assert done.returncode == 0, done.stderr
+    outcome = json.loads(done.stdout)
+    assert outcome["estimates"][0]["coulomb"] == pytest.approx(25.0, rel=0.02)
+    assert outcome["estimates"][0]["viscous"] == pytest.approx(20.0, rel=0.02)
+    assert outcome["improvement"] > 2.0
+
+    recording = jid.load(tmp_path / "runs" / "initial.csv")
+    assert recording.metadata["drive_type"] == "acme"
+    assert recording.metadata["drive_options"]["counts"] == 800_000
+    assert recording.metadata["options"]["resolution"] == 2.0 * np.pi / 800_000
+    assert recording.metadata["motor_off"] is True
+    joint = jid.Joint.load(tmp_path / "joint.toml")
+    again = jid.hardware.replay(tmp_path / "runs" / "initial.log", joint)
+    assert recording.torque is not None
+    assert again.torque is not None
+    assert np.allclose(again.position, recording.position, rtol=0.0, atol=1e-12)
+    assert np.allclose(again.time, recording.time, rtol=0.0, atol=3e-9)
+    assert np.allclose(again.torque, recording.torque, rtol=0.0, atol=1e-3)
+    assert np.array_equal(again.reference, recording.reference)  # type: ignore[arg-type]
 
 
-def test_the_drive_in_the_documentation_runs(repo: Path) -> None:
-    places = [repo / "docs" / "hardware.md", repo / "docs" / "hardware_drive.md"]
-    texts = [place.read_text(encoding="utf-8") for place in places if place.exists()]
-    (text,) = [each for each in texts if "## Writing your own drive" in each]
-    section = text.partition("## Writing your own drive")[2]
-    code = section.partition("```python\n")[2].partition("```")[0]
-    names: dict[str, Any] = {}
-    exec(compile(code, "docs", "exec"), names)
-    recording = names["recording"]
-    assert recording.time.size == 1000
-    assert np.abs(recording.position - recording.reference).max() < 0.1
-    for member in (*METHODS, "clock", "command_latency"):
-        assert f"| `{member}" in section
+def test_its_options_are_checked_with_their_place(installed: Path, tmp_path: Path) -> None:
+    path = tmp_path / "joint.toml"
+    for before, after, argument, reason in (
+        ("counts = 800000", "counts = 0", "counts", "at least 1 is expected"),
+        ("counts = 800000", "count = 8", "count", "unknown key; did you mean 'counts'?"),
+        ("counts = 800000\n", 'counts = "many"\n', "counts", "a whole number is expected"),
+    ):
+        path.write_text(JOINT.replace(before, after), encoding="utf-8")
+        with pytest.raises(jid.InputError) as refused:
+            jid.hardware.Bench.load(path)
+        error = refused.value
+        assert (error.argument, error.reason) == (argument, reason)
+        assert error.place == f"{path}: [session.drive]"
+
+
+def test_what_it_does_not_emulate_is_said(installed: Path, tmp_path: Path) -> None:
+    path = tmp_path / "joint.toml"
+    path.write_text(JOINT, encoding="utf-8")
+    bench = jid.hardware.Bench.load(path)
+    with pytest.raises(jid.InputError, match="cannot be emulated on a CAN bus"):
+        jid.hardware.emulated_devices(bench)
+    path.write_text(
+        JOINT.replace(
+            "[session.emulated.truth]",
+            "[session.emulated]\nidle_loop = 0.1\n[session.emulated.truth]",
+        ),
+        encoding="utf-8",
+    )
+    with pytest.raises(jid.InputError, match=r"\[session.emulated\]: idle_loop: unknown key"):
+        jid.hardware.Bench.load(path)
+    port = "port is '/dev/ttyACM0': there is no drive"
+    with pytest.raises(jid.InputError, match=port), jid.hardware.open_drive(bench):
+        pass
+
+
+def test_it_is_short() -> None:
+    code = (PACKAGE / "acme_drive.py").read_text(encoding="utf-8").splitlines()
+    assert len(code) + len((PACKAGE / "pyproject.toml").read_text().splitlines()) < 200

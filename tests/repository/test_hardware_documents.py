@@ -8,6 +8,7 @@ import pytest
 
 from jointid.hardware.bench.bench import Bench, BusOptions, Emulation
 from jointid.hardware.elmo.drive import ElmoDrive
+from jointid.hardware.elmo.emulated_bench import ElmoEmulation
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.elmo.torque_source import AnalogInput, SensorScaling, SyncedConverter
 from jointid.hardware.emulated.bus import EmulatedBus
@@ -18,7 +19,12 @@ from jointid.hardware.session.realtime import RealTimeOptions
 ROOT = Path(__file__).resolve().parents[2]
 TEXT = (ROOT / "docs" / "hardware.md").read_text(encoding="utf-8")
 # Given by another table, or tables themselves.
-ELSEWHERE = {"torque": ElmoOptions, "bitrate": ElmoOptions, "resolution": SessionOptions}
+ELSEWHERE: dict[str, object] = {
+    "torque": ElmoOptions,
+    "bitrate": ElmoOptions,
+    "resolution": SessionOptions,
+}
+ELSEWHERE |= {"drive": Emulation}
 TABLES = {
     "[session]": (SessionOptions,),
     "[session.bus]": (BusOptions,),
@@ -26,7 +32,7 @@ TABLES = {
     "[session.torque]": (SyncedConverter, AnalogInput, SensorScaling),
     "[session.limits]": (SessionLimits,),
     "[session.real_time]": (RealTimeOptions,),
-    "[session.emulated]": (Emulation,),
+    "[session.emulated]": (Emulation, ElmoEmulation),
 }
 
 

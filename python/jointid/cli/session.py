@@ -97,8 +97,8 @@ def emulate(arguments: argparse.Namespace) -> int:
     import time
 
     from jointid.hardware.bench.bench import Bench
-    from jointid.hardware.can.bus import open_whole_bus
-    from jointid.hardware.emulated.bench import emulated_devices
+    from jointid.hardware.bench.opened_drive import emulated_devices
+    from jointid.hardware.can.bus import open_bus
     from jointid.hardware.emulated.thread import EmulatorThread
 
     bench = Bench.load(arguments.joint)
@@ -109,11 +109,11 @@ def emulate(arguments: argparse.Namespace) -> int:
     channel = arguments.channel or bench.bus.channel
     devices = emulated_devices(bench, arguments.seed)
     with (
-        open_whole_bus(interface=interface, channel=channel, bitrate=bench.bus.bitrate) as bus,
+        open_bus(interface=interface, channel=channel, bitrate=bench.bus.bitrate) as bus,
         EmulatorThread(bus, *devices) as emulator,
     ):
-        node = bench.drive.node
-        print(f"emulated drive, node {node}, on {interface} {channel}; Ctrl-C ends it", flush=True)
+        kind = bench.drive_type
+        print(f"emulated drive ({kind}) on {interface} {channel}; Ctrl-C ends it", flush=True)
         end = time.monotonic() + duration
         while emulator.running and time.monotonic() < end:
             time.sleep(min(0.05, max(0.0, end - time.monotonic())))
@@ -123,15 +123,16 @@ def emulate(arguments: argparse.Namespace) -> int:
 def run(arguments: argparse.Namespace) -> int:
     """Run and identify a joint on its bench in turn; returns the exit code."""
     from jointid.base.files import write_whole
-    from jointid.commissioning import bench_drive, commission
+    from jointid.commissioning import commission
     from jointid.hardware.bench.bench import Bench
+    from jointid.hardware.bench.opened_drive import open_drive
     from jointid.hardware.session.session import Session, SessionRefusedError, SessionStoppedError
 
     _check(arguments)
     bench = Bench.load(arguments.joint)
     try:
         if arguments.dry_run:
-            with bench_drive(bench, emulate=arguments.emulate, seed=arguments.seed) as drive:
+            with open_drive(bench, emulate=arguments.emulate, seed=arguments.seed) as drive:
                 Session(
                     drive, bench.controller, bench.trajectory, bench.limits, options=bench.options
                 ).run(dry_run=True)

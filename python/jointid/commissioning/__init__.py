@@ -1,5 +1,5 @@
-"""The ring closed on a bench: run a joint, identify it, run it again with what was identified."""
+"""The loop closed on a bench: run a joint, identify it, run it again with the estimate."""
 
-from jointid.commissioning.ring import BenchRun, Commissioning, bench_drive, commission
+from jointid.commissioning.ring import BenchRun, Commissioning, commission
 
-__all__ = ["BenchRun", "Commissioning", "bench_drive", "commission"]
+__all__ = ["BenchRun", "Commissioning", "commission"]

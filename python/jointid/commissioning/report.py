@@ -1,4 +1,4 @@
-"""The ring in words: how far each run missed its reference, what was identified, what ripple costs."""
+"""Text report of a commissioning: tracking error of each run, estimates, the effect of ripple."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
 
 
-def told(result: Commissioning) -> str:
+def text_report(result: Commissioning) -> str:
     """Tables of tracking errors and parameters."""
     lines = _runs(result)
     lines += ["", *_parameters(result)]
@@ -36,21 +36,21 @@ def _runs(result: Commissioning) -> list[str]:
         ]
         for run in (*result.runs, *last)
     ]
-    told = [*_table(rows), "", "Errors without each run's first sixth, by the encoder."]
+    lines = [*_table(rows), "", "Errors without each run's first sixth, by the encoder."]
     summary = f"The tracking error fell by a factor of {result.improvement:.1f}"
     if result.true_run is not None:
         ratio = result.runs[-1].tracking_error / result.true_run.tracking_error
         summary += f"; it ended at {ratio:.3f} times that with the true parameters"
-    return [*told, summary + "."]
+    return [*lines, summary + "."]
 
 
 def _parameters(result: Commissioning) -> list[str]:
     last = result.estimates[-1]
-    head = ["parameter", "believed at first"]
+    head = ["parameter", "assumed at first"]
     head += [f"cycle {number}" for number in range(1, len(result.estimates) + 1)]
     head.append("± std. error")
     if result.truth:
-        head += ["truth", "off by"]
+        head += ["truth", "error"]
     rows = [head]
     believed = last.joint.parameters
     initial = result.runs[0].controller.asdict()
@@ -84,7 +84,7 @@ def _ripple(result: Commissioning) -> str:
         return ", ".join(f"{name} {share:+.2f} %" for name, share in off.items())
 
     assert result.without_ripple is not None
-    return f"Were the sensor's ripple not in the model, off by: {worst(result.without_ripple)}."
+    return f"Errors without the sensor's ripple in the model: {worst(result.without_ripple)}."
 
 
 def _table(rows: list[list[str]]) -> list[str]:

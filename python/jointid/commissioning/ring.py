@@ -1,9 +1,8 @@
-"""The ring closed on a bench: run with what is believed, identify from it, run with what was identified."""
+"""Commissioning on a bench: run with assumed parameters, identify, run with the estimate."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,10 +12,8 @@ import numpy as np
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.hardware.bench.bench import Bench
-from jointid.hardware.elmo.drive import ElmoDrive
-from jointid.hardware.emulated.bench import emulated_devices, true_joint
-from jointid.hardware.emulated.bus import EmulatedBus
-from jointid.hardware.session.drive import Drive
+from jointid.hardware.bench.emulated_joints import true_joint
+from jointid.hardware.bench.opened_drive import open_drive
 from jointid.hardware.session.session import Session
 from jointid.identification.identification import identify
 from jointid.identification.search.search import Search
@@ -38,7 +35,7 @@ class BenchRun:
         "initial", "cycle 1", …, "true parameters".
     recording : Recording
     controller : AdaptiveRobust, CompensatedPid or LugreObserver
-        With what it believed.
+        With the parameters that it assumed.
     tracking_error, peak_error : float
         Root mean square and largest magnitude of position less reference, without the first sixth
         [rad].
@@ -53,12 +50,12 @@ class BenchRun:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Commissioning:
-    """What the ring gave.
+    """Result of a commissioning.
 
     Attributes
     ----------
     runs : tuple of BenchRun
-        The initial one, then one for each cycle that was agreed to.
+        The initial one, then one for each cycle that `agree` allowed.
     estimates : tuple of Estimate
         One for each cycle, each of all that was recorded until then.
     truth : mapping of str to float
@@ -106,10 +103,10 @@ class Commissioning:
         }
 
     def report(self) -> str:
-        """Tables of tracking errors and parameters, in words."""
-        from jointid.commissioning.report import told
+        """Return tables of tracking errors and parameters."""
+        from jointid.commissioning.report import text_report
 
-        return told(self)
+        return text_report(self)
 
 
 def commission(
@@ -124,14 +121,14 @@ def commission(
     callback: Callable[[str], object] | None = None,
     agree: Callable[[Estimate], bool] | None = None,
 ) -> Commissioning:
-    """Move the joint, identify it from that, and move it again with what was identified.
+    """Move the joint, identify it from that, and move it again with the estimate.
 
     Parameters
     ----------
     bench : Bench
-        Whose joint holds what is believed at first.
+        Its joint holds the parameters assumed at first.
     cycles : int
-        How often to identify and run again. Default 2.
+        Number of cycles: identify and run again. Default 2.
     emulate : bool
         Move an emulated joint on a bus with virtual time; at the end once with the true parameters.
         Default False: the real one.
@@ -144,9 +141,9 @@ def commission(
     observer : callable, optional
         As in `Session`.
     callback : callable, optional
-        Called with a sentence before each step.
+        Called with a text before each step.
     agree : callable, optional
-        Asked before the joint moves with an estimate; False: it does not, and the ring ends there.
+        Asked before the joint moves with an estimate; False: it does not, and the commissioning ends there.
 
     Raises
     ------
@@ -156,20 +153,20 @@ def commission(
         As in `Session.run`; what was recorded until then is in the folder.
     """
     if cycles < 1:
-        raise InputError(f"cycles is {cycles}; at least 1 is expected")
+        raise InputError("at least 1 is expected", argument="cycles", value=cycles)
     search = Search(seed=seed, threads=threads)
     controller = believing(bench.controller, bench.joint)
-    tell = callback if callback is not None else lambda _: None
+    report = callback if callback is not None else lambda _: None
     folder = None if output is None else Path(output)
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
     runs: list[BenchRun] = []
     estimates: list[Estimate] = []
     true_run: BenchRun | None = None
-    with bench_drive(bench, emulate=emulate, seed=seed) as drive:
+    with open_drive(bench, emulate=emulate, seed=seed) as drive:
 
         def run(name: str, law: Controller) -> BenchRun:
-            tell(f"run: {name}")
+            report(f"run: {name}")
             place = None if folder is None else folder / f"{name.replace(' ', '_')}.csv"
             recording = Session(
                 drive,
@@ -186,7 +183,7 @@ def commission(
 
         runs.append(run("initial", controller))
         for cycle in range(1, cycles + 1):
-            tell(f"identify: cycle {cycle}")
+            report(f"identify: cycle {cycle}")
             recordings = [each.recording for each in runs]
             estimate = identify(recordings, bench.joint, search=search)
             estimates.append(estimate)
@@ -209,30 +206,6 @@ def commission(
         true_run=true_run,
         without_ripple=plain,
     )
-
-
-@contextmanager
-def bench_drive(bench: Bench, *, emulate: bool, seed: int = 0) -> Iterator[Drive]:
-    """A bench's drive: the real one over its bus, or an emulated one on virtual time.
-
-    Raises
-    ------
-    InputError
-        The bus cannot be opened, or the bench says nothing of an emulated joint.
-    """
-    if emulate:
-        with EmulatedBus(
-            *emulated_devices(bench, seed), bitrate=float(bench.bus.bitrate)
-        ) as emulated:
-            yield ElmoDrive(emulated, bench.joint, bench.drive)
-        return
-    from jointid.hardware.can.bus import open_bus
-
-    where = bench.bus
-    with open_bus(
-        interface=where.interface, channel=where.channel, bitrate=where.bitrate, drive=bench.drive
-    ) as bus:
-        yield ElmoDrive(bus, bench.joint, bench.drive)
 
 
 def _assessed(name: str, recording: Recording, controller: Controller) -> BenchRun:

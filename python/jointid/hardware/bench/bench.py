@@ -6,10 +6,11 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.bench.drive_types import DEFAULT_TYPE
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.options import SessionOptions
 from jointid.hardware.session.realtime import RealTimeOptions
@@ -38,12 +39,14 @@ class BusOptions:
 
     def __post_init__(self) -> None:
         if not 10_000 <= self.bitrate <= 1_000_000:
-            raise InputError(f"bitrate is {self.bitrate}; 10 000 to 1 000 000 bit/s is expected")
+            raise InputError(
+                "10 000 to 1 000 000 bit/s is expected", argument="bitrate", value=self.bitrate
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Emulation:
-    """What an emulated bench truly is; a session does not know it.
+    """The true values of an emulated bench; a session does not know them.
 
     Attributes
     ----------
@@ -52,34 +55,29 @@ class Emulation:
         itself ripples, if the joint's model has this order; without, it does not.
     sensors : Sensors
         Noise, ripple and the rest of the torque sensor. Encoder and converter are the drive's.
-    idle_loop : float
-        Time between two interpreter commands of the drive [s].
-    mantissa_bits : int
-        Of a current command that count: 24 for a float, 4 for the thesis's link.
     integration_step : float
         Of the joint, at most [s].
     position : float
-        Where the joint stands at first [rad].
+        Angle of the joint at first [rad].
+    drive : object, optional
+        Options of the emulated drive, of its type's own kind. Default: the type's default.
     """
 
     truth: Mapping[str, float]
     sensors: _core.Sensors = field(default_factory=_core.Sensors)
-    idle_loop: float = 0.3e-3
-    mantissa_bits: int = 24
     integration_step: float = 2.5e-4
     position: float = 0.0
+    drive: Any = None
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.idle_loop <= 0.01:
-            raise InputError(f"idle_loop is {self.idle_loop!r}; 0 to 0.01 s is expected")
-        if not 1 <= self.mantissa_bits <= 24:
-            raise InputError(f"mantissa_bits is {self.mantissa_bits!r}; 1 to 24 is expected")
         if not 0.0 < self.integration_step <= 0.01:
             raise InputError(
-                f"integration_step is {self.integration_step!r}; more than 0 and at most 0.01 s is expected"
+                "more than 0 and at most 0.01 s is expected",
+                argument="integration_step",
+                value=self.integration_step,
             )
         if not math.isfinite(self.position):
-            raise InputError(f"position is {self.position!r}; a finite angle is expected")
+            raise InputError("a finite angle is expected", argument="position", value=self.position)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -93,24 +91,28 @@ class Bench:
     controller : AdaptiveRobust, CompensatedPid, LugreObserver, …
         Believing the joint's values.
     trajectory : Trajectory
-    drive : ElmoOptions
+    drive : object
+        Options of the drive, of its type's own kind.
     limits : SessionLimits
     options : SessionOptions
     bus : BusOptions
     real_time : RealTimeOptions
     emulation : Emulation or None
         What an emulated drive moves.
+    drive_type : str
+        Name of the drive's type, see `DriveType`. Default: that of a joint file that names none.
     """
 
     joint: Joint
     controller: Controller
     trajectory: Trajectory
-    drive: ElmoOptions
+    drive: Any
     limits: SessionLimits
     options: SessionOptions
     bus: BusOptions = field(default_factory=BusOptions)
     real_time: RealTimeOptions = field(default_factory=RealTimeOptions)
     emulation: Emulation | None = None
+    drive_type: str = DEFAULT_TYPE
 
     @classmethod
     def load(cls, path: str | Path) -> Bench:

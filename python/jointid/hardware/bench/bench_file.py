@@ -1,19 +1,16 @@
-"""Bench files: a joint file's table `[session]`, read with its place in every complaint."""
+"""Bench files: a joint file's table `[session]`, read with the place of each value in every error."""
 
 from __future__ import annotations
 
-import math
-import re
-from collections.abc import Callable, Mapping
-from dataclasses import fields
+import inspect
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.hardware.bench.bench import Bench, BusOptions, Emulation, joint_with_truth
-from jointid.hardware.elmo.options import ElmoOptions
-from jointid.hardware.elmo.torque_source import AnalogInput, SensorScaling, SyncedConverter
+from jointid.hardware.bench.drive_types import DEFAULT_TYPE, DriveType, drive_type, drive_type_names
+from jointid.hardware.bench.table import Table, types_of
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.options import SessionOptions
 from jointid.hardware.session.realtime import RealTimeOptions
@@ -24,7 +21,11 @@ from jointid.simulation.arguments import Controller
 from jointid.simulation.scenario import believing
 from jointid.simulation.trajectory import Trajectory
 
-_TABLES = ("bus", "drive", "torque", "trajectory", "controller", "limits", "real_time", "emulated")
+_TABLES = ("bus", "drive", "trajectory", "controller", "limits", "real_time", "emulated")
+_REQUIRED = {
+    "trajectory": "which describes the motion",
+    "controller": "which describes the controller",
+}
 _TRAJECTORIES = ("thesis", "sine", "multisine", "sigmoid", "step", "trapezoid")
 _LAWS = {
     "adaptive_robust": _core.AdaptiveRobust,
@@ -33,189 +34,97 @@ _LAWS = {
     "pid": _core.Pid,
     "pd": _core.Pd,
 }
-_SOURCES: dict[str, type | None] = {
-    "converter": SyncedConverter,
-    "analog": AnalogInput,
-    "none": None,
-}
-# Of the emulated sensor, these are the encoder's and the converter's own business.
+# Attributes of the emulated sensor that belong to the drive's encoder and converter.
 _NOT_EMULATED = {"encoder_counts", "velocity", "velocity_counts", "velocity_time"}
 _NOT_EMULATED |= {"converter_bits", "converter_range", "converter_noise", "converter_samples"}
-_KINDS: dict[str, tuple[tuple[type, ...], str]] = {
-    "float": ((int, float), "a number"),
-    "int": ((int,), "a whole number"),
-    "str": ((str,), "a text"),
-    "bool": ((bool,), "true or false"),
-    "tuple[int, ...]": ((list,), "a list of whole numbers"),
-    "tuple[float, float]": ((list,), "a list of two numbers"),
-}
-Made = TypeVar("Made")
+# Keys of [session.emulated] that belong to every type of drive.
+_EMULATED = ("integration_step", "position")
 
 
 def load_bench(path: str | Path) -> Bench:
     """Read a bench file: see `Bench.load`."""
-    place = str(path)
+    source = str(path)
     document = read_document(path)
-    joint = joint_from_document(document, place)
+    joint = joint_from_document(document, source)
     if "session" not in document:
         raise InputError(
-            f"{place}: there is no table [session], which says how the joint is reached and moved; "
-            "docs/hardware.md shows one"
+            "there is no table [session], which describes drive and motion; docs/hardware.md shows one",
+            place=source,
         )
-    session = _Table(document["session"], "session", place)
-    inner = {name: session.table(name) for name in _TABLES}
-    for name, told in (("trajectory", "where the joint goes"), ("controller", "what moves it")):
-        if name not in session.entries:
-            raise InputError(f"{place}: there is no table [session.{name}], which says {told}")
+    session = Table(document["session"], "session", source)
+    name = session.table("drive").choice("type", DEFAULT_TYPE, drive_type_names())
+    adapter = drive_type(name)
+    tables = (*_TABLES, *adapter.tables)
+    for key, value in session.entries.items():
+        if isinstance(value, dict) and key not in tables:
+            session.refuse(key, f"unknown table; {suggestion(key, tables)}")
+    for key, meaning in _REQUIRED.items():
+        if key not in session.entries:
+            raise InputError(f"there is no table [session.{key}], {meaning}", place=source)
     if "gear_ratio" not in document.get("drive", {}):
-        raise InputError(f"{place}: [drive] has no gear_ratio; 1 where there is no gear")
-    resolution = 2.0 * math.pi / abs(joint.gear_ratio)
-    bus = inner["bus"].make(BusOptions)
-    source = _torque(inner["torque"])
-    drive = inner["drive"].make(ElmoOptions, torque=source, bitrate=float(bus.bitrate))
-    options = session.make(SessionOptions, resolution=resolution / drive.counts_per_turn)
+        raise InputError(
+            "missing; 1 where there is no gear", argument="gear_ratio", place=f"{source}: [drive]"
+        )
+    bus = session.table("bus").make(BusOptions)
     return Bench(
         joint=joint,
-        controller=_controller(inner["controller"], joint),
-        trajectory=_trajectory(inner["trajectory"]),
-        drive=drive,
-        limits=inner["limits"].call(
-            lambda **given: SessionLimits.of(joint, **given),
-            _types(SessionLimits),
+        controller=_controller(session.table("controller"), joint),
+        trajectory=_trajectory(session.table("trajectory")),
+        drive=adapter.options(session, bus),
+        limits=session.table("limits").call(
+            lambda **given: SessionLimits.of(joint, **given), types_of(SessionLimits)
         ),
-        options=options,
+        options=session.without(*tables).make(SessionOptions, resolution=None),
         bus=bus,
-        real_time=inner["real_time"].make(RealTimeOptions),
-        emulation=_emulation(inner["emulated"], joint) if "emulated" in session.entries else None,
+        real_time=session.table("real_time").make(RealTimeOptions),
+        emulation=_emulation(session.table("emulated"), joint, adapter)
+        if "emulated" in session.entries
+        else None,
+        drive_type=name,
     )
 
 
-class _Table:
-    """A table of the file; what it makes complains with its place."""
-
-    def __init__(self, entries: object, place: str, source: str) -> None:
-        if not isinstance(entries, Mapping):
-            raise InputError(f"{source}: {place} is {entries!r}; a table [{place}] is expected")
-        self.entries = {str(name): _angle(value) for name, value in entries.items()}
-        self.place, self.source = place, source
-
-    def table(self, name: str) -> _Table:
-        return _Table(self.entries.get(name, {}), f"{self.place}.{name}", self.source)
-
-    def word(self, name: str, default: str, known: Mapping[str, Any] | tuple[str, ...]) -> str:
-        word = self.entries.get(name, default)
-        if not isinstance(word, str) or word not in known:
-            self.refuse(f"{name} is {word!r}; {suggestion(word, [*known])}")
-        return str(word)
-
-    def make(self, kind: Callable[..., Made], **given: Any) -> Made:
-        """A value of options, from the entries that are no tables."""
-        known = {name: type_ for name, type_ in _types(kind).items() if name not in given}
-        return self.call(kind, known, **given)
-
-    def call(self, kind: Callable[..., Made], known: Mapping[str, str], **given: Any) -> Made:
-        """What `kind` returns for the entries; `known` has their types, "" if it checks them."""
-        entries = {n: v for n, v in self.entries.items() if not isinstance(v, Mapping)}
-        tables = [n for n, v in self.entries.items() if isinstance(v, Mapping)]
-        for name in [*entries, *tables]:
-            if name not in known and not (name in tables and self.place == "session"):
-                self.refuse(f"{name!r} is unknown; {suggestion(name, known)}")
-            if name in tables and self.place == "session" and name not in _TABLES:
-                self.refuse(f"{name!r} is unknown; {suggestion(name, _TABLES)}")
-        for name, value in entries.items():
-            self.check(name, value, known[name])
-            if isinstance(value, list):
-                entries[name] = tuple(value)
-        try:
-            return kind(**entries, **given)
-        except (ValueError, TypeError) as error:
-            reason = re.sub(r"^[A-Z]\w+: ", "", str(error))
-            raise InputError(f"{self.source}: [{self.place}] {reason}") from error
-
-    def check(self, name: str, value: object, type_: str) -> None:
-        wanted = _KINDS.get(type_.removesuffix(" | None"))
-        right = wanted is None or isinstance(value, wanted[0])
-        if wanted is not None and (
-            not right or (isinstance(value, bool) and bool not in wanted[0])
-        ):
-            self.refuse(f"{name} is {value!r}; {wanted[1]} is expected")
-
-    def without(self, *names: str) -> _Table:
-        left = {name: value for name, value in self.entries.items() if name not in names}
-        return _Table(left, self.place, self.source)
-
-    def refuse(self, told: str) -> None:
-        raise InputError(f"{self.source}: [{self.place}] {told}")
-
-
-def _types(kind: Any) -> dict[str, str]:
-    return {item.name: str(item.type) for item in fields(kind)}
-
-
-def _angle(value: Any) -> Any:
-    """Angles may be written as "60deg"."""
-    if isinstance(value, str) and value.endswith("deg"):
-        try:
-            return math.radians(float(value.removesuffix("deg")))
-        except ValueError:
-            return value
-    if isinstance(value, list):
-        return [_angle(entry) for entry in value]
-    return value
-
-
-def _torque(table: _Table) -> SyncedConverter | AnalogInput | None:
-    kind = _SOURCES[table.word("source", "converter", _SOURCES)]
-    scale = {item.name for item in fields(SensorScaling)}
-    scaling = _Table(
-        {n: v for n, v in table.entries.items() if n in scale}, table.place, table.source
-    ).make(SensorScaling)
-    rest = table.without("source", *scale)
-    if kind is None:
-        for name in table.without("source").entries:
-            table.refuse(f"{name!r} is given, but the source is 'none'")
-        return None
-    made: SyncedConverter | AnalogInput = rest.make(kind, scaling=scaling)
-    return made
-
-
-def _trajectory(table: _Table) -> Trajectory:
-    form = table.word("form", "thesis", _TRAJECTORIES)
-    entries = table.without("form").entries
-    try:
-        trajectory: Trajectory = getattr(Trajectory, form)(**entries)
-    except (ValueError, TypeError) as error:
-        reason = str(error).replace("Trajectory.", "").replace("keyword argument", "option")
-        raise InputError(f"{table.source}: [{table.place}] {reason}") from error
+def _trajectory(table: Table) -> Trajectory:
+    form = table.choice("form", "thesis", _TRAJECTORIES)
+    make = getattr(Trajectory, form)
+    expected = inspect.signature(make).parameters
+    arguments = table.without("form")
+    arguments.check_names(expected)
+    for name, parameter in expected.items():
+        if parameter.default is parameter.empty and name not in arguments.entries:
+            table.refuse(name, f"missing; the form {form!r} needs it")
+    trajectory: Trajectory = arguments.call(make, dict.fromkeys(expected, ""))
     return trajectory
 
 
-def _controller(table: _Table, joint: Joint) -> Controller:
-    law = _LAWS[table.word("law", "adaptive_robust", _LAWS)]
-    given = table.without("law")
-    names = dict.fromkeys(law().asdict(), "")
-    controller: Controller = given.call(law, names)
-    if "coulomb" not in names:
+def _controller(table: Table, joint: Joint) -> Controller:
+    law = _LAWS[table.choice("law", "adaptive_robust", _LAWS)]
+    gains = table.without("law")
+    controller: Controller = gains.make_core(law)
+    if "coulomb" not in controller.asdict():
         return controller
-    # What the joint file says of the joint, unless this table says otherwise.
+    # Parameters of the joint file, unless this table has others.
     try:
         controller = believing(controller, joint)
     except InputError as error:
-        raise InputError(f"{table.source}: {error}") from error
-    believed: Controller = controller.replace(**given.entries)
+        raise InputError(str(error), place=table.source) from error
+    believed: Controller = controller.replace(**gains.entries)
     return believed
 
 
-def _emulation(table: _Table, joint: Joint) -> Emulation:
+def _emulation(table: Table, joint: Joint, adapter: DriveType) -> Emulation:
     truth, sensors = table.table("truth"), table.table("sensors")
-    known = {name: "" for name in _core.Sensors().asdict() if name not in _NOT_EMULATED}
     for name, value in truth.entries.items():
         if isinstance(value, bool) or not isinstance(value, int | float):
-            truth.refuse(f"{name} is {value!r}; a number is expected")
+            truth.refuse(name, "a number is expected", value)
     try:
         joint_with_truth(joint, truth.entries)
     except InputError as error:
-        raise InputError(f"{table.source}: [{truth.place}] {error}") from error
-    return table.without("truth", "sensors").make(
-        Emulation, truth=truth.entries, sensors=sensors.call(_core.Sensors, known)
+        raise InputError(str(error), place=truth.place) from error
+    common: dict[str, Any] = {n: v for n, v in table.entries.items() if n in _EMULATED}
+    return Table(common, table.name, table.source).make(
+        Emulation,
+        truth=truth.entries,
+        sensors=sensors.make_core(_core.Sensors, _NOT_EMULATED),
+        drive=adapter.emulation(table.without("truth", "sensors", *_EMULATED)),
     )

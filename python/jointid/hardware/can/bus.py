@@ -1,4 +1,4 @@
-"""A CAN bus opened for a session: only the frames that it needs, and errors that say what to do."""
+"""A CAN bus opened for a session: only the frames that it needs, and errors that name the remedy."""
 
 from __future__ import annotations
 
@@ -9,9 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
-from jointid.hardware.can import canopen_frames as canopen
-from jointid.hardware.elmo.options import ElmoOptions
-from jointid.hardware.elmo.torque_source import SyncedConverter
 
 if TYPE_CHECKING:
     import can
@@ -20,35 +17,19 @@ _NETWORKS = Path("/sys/class/net")
 _IS_UP = 0x1  # IFF_UP
 
 
-def needed_identifiers(drive: ElmoOptions) -> tuple[int, ...]:
-    """COB-IDs of the frames that a session receives: replies, position, emergency, boot-up, SDO, sensor."""
-    node = drive.node
-    found = [
-        drive.reply_id,
-        drive.position_id,
-        canopen.emergency_id(node),
-        canopen.heartbeat_id(node),
-        0x580 + node,
-    ]
-    if isinstance(drive.torque, SyncedConverter):
-        found.append(drive.torque.identifier)
-    return tuple(sorted(set(found)))
-
-
 @contextmanager
 def open_bus(
     *,
     interface: str = "socketcan",
     channel: str | None = "can0",
     bitrate: int = 500_000,
-    node: int | None = None,
-    drive: ElmoOptions | None = None,
+    identifiers: Iterable[int] | None = None,
 ) -> Iterator[can.BusABC]:
-    """Open a bus for an `ElmoDrive`; it is shut down at the end.
+    """Open a CAN bus; it is shut down at the end.
 
-    With SocketCAN the kernel keeps away all frames but those of `needed_identifiers`: its queue holds
-    some 280 frames, and what does not fit vanishes without a word. On other interfaces python-can would
-    filter in Python and swallow error frames with the rest, so there the drive does the sorting.
+    With SocketCAN the kernel passes on only the frames with the identifiers that are asked for: its queue
+    holds some 280 frames, and drops the rest without an error. On other interfaces python-can would
+    filter in Python and drop error frames too, so there the drive does the sorting.
 
     Parameters
     ----------
@@ -56,10 +37,8 @@ def open_bus(
         As python-can names them: "socketcan" and "can0", "pcan" and "PCAN_USBBUS1", "virtual", …
     bitrate : int
         [bit/s]. SocketCAN's is set with the interface (`ip link`). Default 500 000.
-    node : int, optional
-        Of the drive; short for `drive=ElmoOptions(node=node)`.
-    drive : ElmoOptions, optional
-        With the COB-IDs. Default `ElmoOptions()`.
+    identifiers : iterable of int, optional
+        COB-IDs of the frames to receive. Default: all frames.
 
     Yields
     ------
@@ -68,38 +47,14 @@ def open_bus(
     Raises
     ------
     InputError
-        The interface is not known or not installed, the channel is not there, the network is down.
+        The interface is not known or not installed, the channel does not exist, the network is down.
+
+    Examples
+    --------
+    >>> with jid.hardware.open_bus(interface="socketcan", channel="can0") as bus:
+    ...     print(bus.recv(1.0))
     """
-    if node is not None:
-        if drive is not None:
-            raise InputError(
-                "open_bus: give node or drive, not both; a drive's options have its node"
-            )
-        drive = ElmoOptions(node=node)
-    options = drive if drive is not None else ElmoOptions()
-    bus = _opened(interface, channel, bitrate, needed_identifiers(options))
-    try:
-        yield bus
-    finally:
-        bus.shutdown()
-
-
-@contextmanager
-def open_whole_bus(
-    *, interface: str = "socketcan", channel: str | None = "can0", bitrate: int = 500_000
-) -> Iterator[can.BusABC]:
-    """Open a bus for those that want all its frames, e.g. emulated devices; arguments as in `open_bus`.
-
-    Yields
-    ------
-    can.BusABC
-
-    Raises
-    ------
-    InputError
-        As in `open_bus`.
-    """
-    bus = _opened(interface, channel, bitrate, None)
+    bus = _opened(interface, channel, bitrate, identifiers)
     try:
         yield bus
     finally:
@@ -111,24 +66,30 @@ def _opened(
 ) -> can.BusABC:
     if interface == "emulated":
         raise InputError(
-            "interface 'emulated' is not a bus of python-can's: an emulated bench is an EmulatedBus of "
-            "jointid.hardware.emulated.bus, or an EmulatorThread on interface 'virtual'"
+            "python-can has no such interface: an emulated bench is an EmulatedBus, or an EmulatorThread "
+            "on the interface 'virtual'",
+            argument="interface",
+            value=interface,
         )
     try:
         import can
     except ModuleNotFoundError as error:
         raise InputError(
-            f"interface {interface!r}: python-can is not installed; pip install python-can"
+            "python-can is not installed; pip install python-can",
+            argument="interface",
+            value=interface,
         ) from error
     if not channel:
         raise InputError(
-            f"interface {interface!r}: the channel is missing; e.g. 'can0' is expected"
+            "missing; a name such as 'can0' is expected", argument="channel", value=channel
         )
     if not 10_000 <= bitrate <= 1_000_000:
-        raise InputError(f"bitrate is {bitrate!r}; 10 000 to 1 000 000 bit/s is expected")
+        raise InputError("10 000 to 1 000 000 bit/s is expected", argument="bitrate", value=bitrate)
     if interface not in can.VALID_INTERFACES:
         raise InputError(
-            f"interface {interface!r} is unknown; one of {', '.join(sorted(can.VALID_INTERFACES))} is expected"
+            f"known are {', '.join(sorted(can.VALID_INTERFACES))}",
+            argument="interface",
+            value=interface,
         )
     settings: dict[str, Any] = {}
     if interface == "socketcan":
@@ -143,33 +104,38 @@ def _opened(
     try:
         return can.Bus(channel, interface=interface, **settings)
     except (can.CanError, OSError, ImportError, ValueError, RuntimeError) as error:
-        raise InputError(_sentence(interface, channel, error)) from error
+        # Each of python-can's interfaces has errors of its own.
+        raise InputError(
+            _reason(error), argument="channel", value=channel, place=f"interface {interface!r}"
+        ) from error
 
 
 def _check_network(channel: str, bitrate: int) -> None:
-    """Linux opens a network that is down without a word, and fails at the first frame."""
+    """Linux opens a network that is down without an error, and fails at the first frame."""
     flags = _NETWORKS / channel / "flags"
     if not _NETWORKS.is_dir():
         return
     if not flags.is_file():
         raise InputError(
-            f"channel {channel!r}: there is no such network; is the adapter plugged in? "
-            "`ip link` lists what there is"
+            "there is no such network; is the adapter plugged in? `ip link` lists the networks",
+            argument="channel",
+            value=channel,
         )
     if not int(flags.read_text(), 16) & _IS_UP:
         raise InputError(
-            f"channel {channel!r}: the network is down; bring it up with "
-            f"`sudo ip link set {channel} up type can bitrate {bitrate}`"
+            "the network is down; bring it up with "
+            f"`sudo ip link set {channel} up type can bitrate {bitrate}`",
+            argument="channel",
+            value=channel,
         )
 
 
-def _sentence(interface: str, channel: str, error: Exception) -> str:
-    begin = f"interface {interface!r}, channel {channel!r}"
+def _reason(error: Exception) -> str:
     code = getattr(error, "errno", None)
     if code == errno.EAFNOSUPPORT:
-        return f"{begin}: this machine's kernel has no CAN (`sudo modprobe can_raw` loads it where it can be had)"
+        return "the kernel has no CAN (`sudo modprobe can_raw` loads it where it is available)"
     if code == errno.ENODEV:
-        return f"{begin}: there is no such channel; `ip link` lists what there is"
+        return "there is no such channel; `ip link` lists the networks"
     if code in (errno.EACCES, errno.EPERM):
-        return f"{begin}: not permitted; is the user in the group that may use the device?"
-    return f"{begin}: it cannot be opened: {' '.join(str(error).split()) or type(error).__name__}"
+        return "not permitted; is the user in the group that may use the device?"
+    return f"it cannot be opened: {' '.join(str(error).split()) or type(error).__name__}"

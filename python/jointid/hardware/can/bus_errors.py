@@ -1,4 +1,4 @@
-"""What a CAN controller means by an error frame (Linux's classes, which python-can hands on)."""
+"""Meaning of a CAN controller's error frames (Linux's classes, which python-can passes on)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ _CLASSES = {
     0x04: "controller in trouble (too many errors, or overflow)",
     0x08: "protocol violated: bit rate or wiring",
     0x10: "transceiver fault: wiring",
-    0x20: "nobody acknowledges: is the drive on, and the bus terminated?",
+    0x20: "no node acknowledges: is the drive on, and the bus terminated?",
     0x40: "bus-off: too many errors, the controller has left the bus",
     0x80: "bus error",
     0x100: "the controller was restarted after a bus-off",
@@ -16,7 +16,7 @@ _CLASSES = {
 
 
 def error_frame_meaning(classes: int) -> str:
-    """An error frame's classes in words; empty when it is no reason to stop.
+    """Return the meaning of an error frame's classes; empty when it is no reason to stop.
 
     Parameters
     ----------
@@ -25,5 +25,5 @@ def error_frame_meaning(classes: int) -> str:
     """
     if classes & 0x1FF == _LOST_ARBITRATION:
         return ""
-    told = [text for bit, text in _CLASSES.items() if classes & bit]
-    return ", ".join(told) or f"of an unknown class 0x{classes:X}"
+    meanings = [text for bit, text in _CLASSES.items() if classes & bit]
+    return ", ".join(meanings) or f"of an unknown class 0x{classes:X}"

@@ -20,7 +20,7 @@ LoggedFrame = tuple[float, int, bytes]  # time [s], identifier, payload
 def logged_frames(path: Path) -> Iterator[LoggedFrame]:
     """Yield the frames with 11-bit identifiers, in the file's order; error frames are left out.
 
-    A last line that is cut off is no frame.
+    A last line that is cut off is no frame. Errors do not name the file: the caller does.
 
     Parameters
     ----------
@@ -33,7 +33,11 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
         The file cannot be read.
     """
     if path.suffix.lower() not in ENDINGS:
-        raise InputError(f"{path}: a frame log ends in {', '.join(ENDINGS)}")
+        raise InputError(
+            f"the name of a frame log ends in {', '.join(ENDINGS)}",
+            argument="log",
+            value=path.name,
+        )
     number = 0
     try:
         for message in _messages(path):
@@ -41,13 +45,11 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
             if not (message.is_error_frame or message.is_remote_frame or message.is_extended_id):
                 yield message.timestamp, message.arbitration_id, bytes(message.data)
     except FileNotFoundError:
-        raise InputError(f"{path}: there is no such file") from None
+        raise InputError("there is no such file") from None
     except OSError as error:
-        raise InputError(f"{path}: the file cannot be read ({error.strerror})") from None
+        raise InputError(f"the file cannot be read ({error.strerror})") from None
     except Exception as error:  # each of python-can's readers has errors of its own
-        raise InputError(
-            f"{path}: what follows frame {number} is no frame ({reason_of(error)})"
-        ) from error
+        raise InputError(f"what follows frame {number} is no frame ({reason_of(error)})") from error
 
 
 def _messages(path: Path) -> Iterator[can.Message]:

@@ -61,18 +61,20 @@ class Command:
     def __post_init__(self) -> None:
         if not isinstance(self.letters, str) or not _LETTERS.fullmatch(self.letters):
             raise InputError(
-                f"Command: letters is {self.letters!r}; two capital letters are expected"
+                "two capital letters are expected", argument="letters", value=self.letters
             )
         if isinstance(self.index, bool) or not isinstance(self.index, int):
-            raise InputError(f"Command: index is {self.index!r}; a whole number is expected")
+            raise InputError("a whole number is expected", argument="index", value=self.index)
         if not 0 <= self.index <= _LARGEST_INDEX:
-            raise InputError(f"Command: index is {self.index}; 0 to {_LARGEST_INDEX} is expected")
+            raise InputError(
+                f"0 to {_LARGEST_INDEX} is expected", argument="index", value=self.index
+            )
         if self.value is not None:
             _check_value(_named(self.letters, self.index), self.value)
 
     @property
     def key(self) -> tuple[str, int]:
-        """By which a reply is told to belong to it."""
+        """By which its reply is recognised."""
         return self.letters, self.index
 
     @property
@@ -183,16 +185,16 @@ def _value(payload: bytes, flags: int) -> int | float:
     value = float(struct.unpack("<f", payload[4:8])[0])
     if not math.isfinite(value):
         raise InputError(
-            f"the value of {payload[:2].decode('latin-1')} is {value}, which is no number"
+            "a finite value is expected", argument=payload[:2].decode("latin-1"), value=value
         )
     return value
 
 
 def _check_value(named: str, value: object) -> None:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise InputError(f"{named}: the value is {value!r}; an int or a float is expected")
+        raise InputError("an int or a float is expected", argument=named, value=value)
     if isinstance(value, float):
         if not math.isfinite(value) or abs(value) > _LARGEST_FLOAT:
-            raise InputError(f"{named}: the value is {value!r}; a finite 32-bit float is expected")
+            raise InputError("a finite 32-bit float is expected", argument=named, value=value)
     elif not -(2**31) <= value < 2**31:
-        raise InputError(f"{named}: the value is {value}; a 32-bit integer is expected")
+        raise InputError("a 32-bit integer is expected", argument=named, value=value)

@@ -1,4 +1,4 @@
-"""What an Elmo drive's cyclic frames say; for a session and for the replay of its frame log."""
+"""Decoder of an Elmo drive's cyclic frames; for a session and for the replay of its frame log."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ class ElmoDecoder:
         self._positions_due = self._readings_due = 0
 
     def begin(self) -> None:
-        """A SYNC goes out: what answers it is new."""
+        """A SYNC is sent: its answers are new."""
         self._positions_due += 1
         self._readings_due += 1
         self.fresh = False
 
     def forget(self) -> None:
-        """What earlier SYNCs asked for will not come any more."""
+        """Expect no answers to earlier SYNCs any more."""
         self._positions_due = self._readings_due = 0
 
     @property
@@ -47,7 +47,7 @@ class ElmoDecoder:
 
     @property
     def lacking(self) -> str:
-        """What has not come of it; empty when all has."""
+        """What is missing of it; empty when nothing is."""
         if self._positions_due:
             return "position"
         return "" if self.complete else "torque sensor's reading"

@@ -16,6 +16,7 @@ from jointid.hardware.elmo.decoder import ElmoDecoder
 from jointid.hardware.elmo.errors import DriveStatus, failure_meaning
 from jointid.hardware.elmo.link import ElmoLink, Tap
 from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.elmo.recorded_options import elmo_options_document
 from jointid.hardware.elmo.timing import command_latency
 from jointid.hardware.elmo.torque_source import AnalogInput, SyncedConverter
 from jointid.hardware.session.clock import Clock
@@ -25,12 +26,14 @@ from jointid.joint.joint import Joint
 _BOOT, _ENABLE = 2.0, 3.0  # [s] to wait for each
 _UNIT_MODE = 0.5  # [s] that changing it may take
 _CYCLES = 1.0 / 3.0  # of the time that the drive waits for a heartbeat: one may be lost
-_STRANGER = 0.02  # [s] for an answer before the drive is reset: only one that is in use gives one
+_IN_USE_ANSWER = (
+    0.02  # [s] for an answer before the drive is reset: only one that is in use gives one
+)
 _SEEN_OFF = 0.2  # [s] that switching off is tried for, at most
 _SOON = 3  # times that switching off is repeated in the next cycle
 _UNREAD = 3  # questions for the sensor without an answer
 _ZERO, _OFF = Command(letters="TC", value=0.0), Command(letters="MO", value=0)
-_IN_USE = "the motor is on already; something else commands the drive, switch it off there"
+_IN_USE = "the motor is on already: another program commands the drive; switch the motor off there"
 
 
 class ElmoDrive:
@@ -62,8 +65,8 @@ class ElmoDrive:
     ) -> None:
         if joint.torque_constant is None:
             raise InputError(
-                "ElmoDrive: the joint has no torque_constant, so no torque can be commanded; give it in "
-                "the joint file under [drive]"
+                "missing, so no torque can be commanded; it stands in the joint file under [drive]",
+                argument="torque_constant",
             )
         self.joint = joint
         self.options = options if options is not None else ElmoOptions()
@@ -100,14 +103,23 @@ class ElmoDrive:
     def tap(self, tap: Tap | None) -> None:
         self._link.tap = tap
 
+    @property
+    def resolution(self) -> float:
+        """Output angle of an encoder count [rad]."""
+        return self.options.resolution(self.joint)
+
     def identity(self) -> dict[str, Any]:
-        """What the drive said of itself."""
+        """What the drive reported about itself."""
         return dict(self._identity)
+
+    def metadata(self) -> dict[str, Any]:
+        """What a replay of the frame log needs: drive type and options."""
+        return {"drive_type": "elmo", "drive_options": elmo_options_document(self.options)}
 
     def connect(self, period: float) -> None:
         """Reset the drive's communication, map its PDOs, arm the watchdogs; motor off, torque mode.
 
-        A drive whose motor is on is left alone: somebody else moves it.
+        A drive whose motor is on is not changed: another program moves it.
         """
         link, node = self._link, self.options.node
         if period > _CYCLES * self.options.heartbeat:
@@ -123,7 +135,7 @@ class ElmoDrive:
         self._unread = -1
         link.drain(0.01)
         self._seen.forget()
-        self._leave_strangers(_STRANGER)
+        self._refuse_if_motor_on(_IN_USE_ANSWER)
         link.booted = False
         link.forget_fault(but="bus")
         link.send(canopen.NMT, canopen.network(canopen.RESET_COMMUNICATION, node))
@@ -134,7 +146,7 @@ class ElmoDrive:
         elmo_setup.map_position(link, self.options)
         elmo_setup.arm_watchdogs(link, self.options)
         link.send(canopen.NMT, canopen.network(canopen.START, node))
-        self._leave_strangers()
+        self._refuse_if_motor_on()
         self._found_off = True
         for command in (_OFF, Command(letters="RM", value=0), Command(letters="UM", value=1)):
             link.ask(command)
@@ -149,36 +161,40 @@ class ElmoDrive:
         link.up = True
 
     def problems(self, torque_limit: float) -> list[str]:
-        """What speaks against enabling the motor."""
-        told = []
+        """Reasons not to enable the motor."""
+        reasons = []
         if not math.isfinite(torque_limit):
-            told.append("the session has no torque limit; give one in [limits] or [session.limits]")
+            reasons.append(
+                "the session has no torque limit; give one in [limits] or [session.limits]"
+            )
         if not self._peak > 0.0:
-            told.append(
+            reasons.append(
                 f"the drive's peak current PL[1] is {self._peak:g} A; more than 0 is expected"
             )
         allowed = torque_limit / abs(self._per_ampere)
         if self._most_current is not None:
             allowed = min(allowed, self._most_current)
         if self._peak > allowed * (1.0 + 1e-6):
-            told.append(
+            reasons.append(
                 f"the drive's peak current PL[1] is {self._peak:g} A, the session allows {allowed:.4g} A; "
                 "set PL[1] down, or the session's torque limit or the joint's current limit up"
             )
         status = self._status()
         if status.problem:
-            told.append(f"the drive reports {status.problem}")
+            reasons.append(f"the drive reports {status.problem}")
         if status.failure and not self.options.acknowledge:
             meaning = failure_meaning(int(self._link.ask(Command(letters="MF")).value))
-            told.append(
-                f"the drive has shut its motor down before ({meaning or 'MF says nothing'}); when that is "
-                "mended, start with acknowledge=True"
+            reasons.append(
+                f"the drive has shut its motor down before ({meaning or 'MF is 0'}); when that is "
+                "fixed, start with acknowledge = true"
             )
         if status.unit_mode != 1:
-            told.append(f"the drive is in unit mode {status.unit_mode}, not in torque mode (UM=1)")
+            reasons.append(
+                f"the drive is in unit mode {status.unit_mode}, not in torque mode (UM=1)"
+            )
         if status.motor_on:
-            told.append(_IN_USE)
-        return told
+            reasons.append(_IN_USE)
+        return reasons
 
     def enable(self) -> None:
         """Motor on, at zero torque, and watched: our heartbeat begins before the motor is on."""
@@ -197,7 +213,7 @@ class ElmoDrive:
         self._beat()
 
     def _beat(self) -> None:
-        """Tell the drive that we are there."""
+        """Send our heartbeat."""
         self._link.send(self._heartbeat_id, b"\x05")
 
     def read(self, timeout: float) -> DriveSample:
@@ -225,12 +241,12 @@ class ElmoDrive:
         )
 
     def command(self, torque: float) -> float:
-        """Send a torque, and the heartbeat that tells the drive that we are there."""
+        """Send a torque, and our heartbeat."""
         current = max(-self._peak, min(self._peak, torque / self._per_ampere))
-        told = self._kept(current)
-        self._link.send(self._command_id, Command(letters="TC", value=told).payload())
+        kept = self._kept(current)
+        self._link.send(self._command_id, Command(letters="TC", value=kept).payload())
         self._beat()
-        return told * self._per_ampere
+        return kept * self._per_ampere
 
     def _kept(self, current: float) -> float:
         """What the drive keeps of a command [A]: never more than was asked for."""
@@ -241,12 +257,12 @@ class ElmoDrive:
         return float(struct.unpack("<f", struct.pack("<f", current))[0])
 
     def disable(self) -> DriveEnd:
-        """TC = 0, then MO = 0, again in each cycle until the drive says that its motor is off.
+        """TC = 0, then MO = 0, again in each cycle until the drive confirms that its motor is off.
 
         A drive that is never reached stops by itself, because our heartbeat stays away.
         """
         if not self._found_off:
-            return DriveEnd()  # its motor is another's
+            return DriveEnd()  # another program moves its motor
         link, register = self._link, None
         end = link.clock.now() + _SEEN_OFF
         tries, pause = 0, self._period
@@ -255,10 +271,10 @@ class ElmoDrive:
             self._try(self._command_id, _OFF.payload())
             register = link.number("SR", pause)
             self._seen_off = register is not None and not DriveStatus.of(register).motor_on
-            if register is None:  # it may have started anew, and is deaf to commands then
+            if register is None:  # it may have restarted, and ignores commands then
                 self._try(canopen.NMT, canopen.network(canopen.START, self.options.node))
             tries += 1
-            if tries > _SOON:  # a drive that is slow, not deaf, is not to be flooded
+            if tries > _SOON:  # a slow drive is not to be flooded
                 pause = min(2.0 * pause, 0.02)
         if not self._seen_off:
             return DriveEnd(motor_off=False)
@@ -267,7 +283,7 @@ class ElmoDrive:
         return DriveEnd(motor_off=True, failure=self._failure)
 
     def close(self) -> None:
-        """Leave the drive pre-operational, and watched by nobody when its motor is off."""
+        """Leave the drive pre-operational, its watchdogs disarmed when its motor is off."""
         link = self._link
         link.up = False
         if not self._found_off:
@@ -283,11 +299,13 @@ class ElmoDrive:
         except DriveFaultError:
             return
         finally:
-            self._found_off = self._seen_off = False  # from now on the drive may be another's
+            self._found_off = self._seen_off = (
+                False  # from now on another program may use the drive
+            )
 
     @property
     def command_latency(self) -> float:
-        """From sending a command until the drive acts on it [s], reckoned."""
+        """From sending a command until the drive acts on it [s], estimated."""
         return command_latency(self.options)
 
     def bus_load(self, period: float) -> float:
@@ -300,8 +318,8 @@ class ElmoDrive:
             total += (bits(4) + bits(8)) / self.options.torque.every
         return total / (self.options.bitrate * period)
 
-    def _leave_strangers(self, timeout: float | None = None) -> None:
-        """Refuse a drive whose motor is on, before anything is changed; without an answer it is not in use."""
+    def _refuse_if_motor_on(self, timeout: float | None = None) -> None:
+        """Raise if the motor is on, before anything is changed; without an answer the drive is not in use."""
         if timeout is None:
             on = self._status().motor_on
         else:
@@ -316,11 +334,11 @@ class ElmoDrive:
     def _try(self, identifier: int, payload: bytes) -> None:
         try:
             self._link.send(identifier, payload)
-        except Exception:  # whatever a bus raises, the next command is tried
-            return  # once more in the next round; in the end the drive's own watchdog remains
+        except Exception:  # after any error of a bus the next command is tried
+            return  # again in the next round; in the end the drive's own watchdog stops it
 
     def _ask_analog_in_turn(self) -> None:
-        """Ask for the torque sensor in every few cycles; the answer may take some, but not for ever."""
+        """Ask for the torque sensor in every few cycles; the answer may take some cycles, but not many."""
         source = self.options.torque
         if not isinstance(source, AnalogInput) or self._cycle % source.every:
             return
@@ -337,29 +355,29 @@ class ElmoDrive:
         self._link.command(Command(letters="AN", index=source.number))
 
     def _look_alive(self) -> None:
-        """After the answer to a SYNC: heartbeats that came before it have been read."""
+        """Check the drive's heartbeat after the answer to a SYNC: earlier heartbeats have been read."""
         silent = self._link.clock.now() - self._link.heard
         if silent > self.options.heartbeat:
             raise DriveFaultError(
                 "heartbeat_lost",
-                f"the drive's heartbeat has stayed away for {1e3 * silent:.0f} ms, more than "
+                f"the drive's heartbeat has been missing for {1e3 * silent:.0f} ms, more than "
                 f"{1e3 * self.options.heartbeat:g} ms",
                 measured=silent,
                 allowed=self.options.heartbeat,
             )
 
     def _answered(self, timeout: float) -> None:
-        seen, told = self._seen, "no answer to the SYNC"
-        self._link.wait(lambda: seen.complete, timeout, told, kind="stale_position")
+        seen, missing = self._seen, "no answer to the SYNC"
+        self._link.wait(lambda: seen.complete, timeout, missing, kind="stale_position")
         if isinstance(self.options.torque, AnalogInput) and seen.readings == self._unheard:
-            told = "no reply to AN"
-            self._link.wait(lambda: seen.readings > self._unheard, timeout, told, kind="sensor")
+            missing = "no reply to AN"
+            self._link.wait(lambda: seen.readings > self._unheard, timeout, missing, kind="sensor")
 
     def _settle(self, timeout: float) -> None:
-        """Let the last SYNC be answered before the next goes out: an answer does not say whose it is."""
+        """Wait for the answer to the last SYNC before the next: an answer does not name its SYNC."""
         if self._seen.complete:
             return
         if self._link.clock.now() - self._asked > self.options.heartbeat:
-            self._seen.forget()  # so late nothing comes any more, and the drive has stopped by itself
+            self._seen.forget()  # no answer comes so late, and the drive has stopped by itself
         else:
             self._answered(timeout)

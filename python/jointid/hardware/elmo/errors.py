@@ -112,14 +112,14 @@ def error_meaning(code: int) -> str:
 
 
 def failure_meaning(failure: int) -> str:
-    """What the MF register says, all of it in words; empty when it is 0."""
-    told = [text for bit, text in _FAILURES.items() if failure & bit]
+    """Return the meaning of all bits of the MF register; empty when it is 0."""
+    meanings = [text for bit, text in _FAILURES.items() if failure & bit]
     if failure & _DRIVE_FAULT:
-        told.append(_DRIVE_FAULTS.get(failure & 0xE000, "drive fault"))
+        meanings.append(_DRIVE_FAULTS.get(failure & 0xE000, "drive fault"))
     known = sum(_FAILURES) | _DRIVE_FAULT | 0xE000
     if failure & ~known:
-        told.append(f"unknown bits 0x{failure & ~known:X}")
-    return ", ".join(told)
+        meanings.append(f"unknown bits 0x{failure & ~known:X}")
+    return ", ".join(meanings)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""The way to one Elmo drive: frames out, frames in, answers told apart, what speaks of a fault kept."""
+"""Frames to and from one Elmo drive: answers sorted, the first sign of a fault kept."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ class ElmoLink:
         return reply
 
     def number(self, letters: str, timeout: float = _ANSWER) -> int | None:
-        """The value of a register, whatever else the drive reports; None when it does not tell."""
+        """The value of a register, even when the drive reports a fault; None without an answer."""
         command = Command(letters=letters)
         end = self.clock.now() + timeout
         try:
@@ -148,10 +148,10 @@ class ElmoLink:
         self,
         done: Callable[[], bool],
         timeout: float,
-        told: str,
+        missing: str,
         kind: str = "drive_fault",
     ) -> None:
-        """Receive until something is so, or a fault speaks against going on.
+        """Receive until a condition holds, or a fault is known.
 
         What had arrived before the time was over counts, also when this program looks late.
 
@@ -166,7 +166,7 @@ class ElmoLink:
             if (not self.receive(max(0.0, left)) and left <= 0.0) or left < -timeout:
                 raise DriveFaultError(
                     kind,
-                    f"{told} within {1e3 * timeout:g} ms",
+                    f"{missing} within {1e3 * timeout:g} ms",
                     measured=self.clock.now() - begin,
                     allowed=timeout,
                 )
@@ -192,12 +192,12 @@ class ElmoLink:
         self.raise_fault()
 
     def forget_fault(self, but: str = "") -> None:
-        """What was wrong is known, or was before our time; one of the kind `but` is kept."""
+        """Drop a known or earlier fault; one of the kind `but` is kept."""
         if self._fault is not None and self._fault.kind != but:
             self._fault = None
 
     def raise_fault(self) -> None:
-        """Raise the first fault that was heard of, once."""
+        """Raise the first known fault, once."""
         if self._fault is not None:
             fault, self._fault = self._fault, None
             raise fault
@@ -228,7 +228,7 @@ class ElmoLink:
         return True
 
     def _arrival(self, message: can.Message) -> float:
-        """When a frame came [s], on our clock: by the bus's own stamp where it tells the same time."""
+        """When a frame came [s], on our clock: by the bus's own stamp where its clock is the same."""
         if self._virtual:
             return message.timestamp
         now = self.clock.now()
@@ -279,7 +279,7 @@ class ElmoLink:
         if state == 0:
             self.booted = True
             if self.up:
-                self._note("drive_fault", "the drive has started anew")
+                self._note("drive_fault", "the drive has restarted")
         elif self.up and canopen.STATES.get(state) != "operational":
             name = canopen.STATES.get(state, f"0x{state:02X}")
             self._note("drive_fault", f"the drive has left the state operational: it is {name}")

@@ -1,10 +1,9 @@
-"""The cycles of a session out of its frames: what was sampled, and what the drive was told."""
+"""The cycles of a session out of its frames: what was sampled, and the current commanded."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from jointid.base.errors import InputError
 from jointid.hardware.can import canopen_frames as canopen
@@ -13,29 +12,8 @@ from jointid.hardware.elmo.codec import Command, DriveError, Reply
 from jointid.hardware.elmo.decoder import ElmoDecoder
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.elmo.timing import SyncWatch
+from jointid.hardware.session.cycle import LoggedCycle
 from jointid.joint.joint import Joint
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LoggedCycle:
-    """One cycle: a SYNC, its answers, a command.
-
-    Attributes
-    ----------
-    taken, acted : float
-        When the sample was taken, and when the command was out [s], by the log's stamps.
-    position, reading, current : float
-        As in a `DriveSample`.
-    told : float
-        The current commanded [A].
-    """
-
-    taken: float
-    acted: float
-    position: float
-    reading: float
-    current: float
-    told: float
 
 
 class CycleReader:
@@ -48,22 +26,24 @@ class CycleReader:
     joint : Joint
     options : ElmoOptions
     stamped : bool
-        The position's time of arrival is exact, and tells when it was sampled; else the SYNC's is taken.
+        The position's time of arrival is exact and gives the time of the sample; else the SYNC's is taken.
     rated_current : float
-        The drive's CL[1] [A], where the frames do not tell; not a number: not known.
+        The drive's CL[1] [A], where the frames do not have it; not a number: not known.
     """
 
     def __init__(
         self, joint: Joint, options: ElmoOptions, *, stamped: bool, rated_current: float
     ) -> None:
         self._options = options
+        constant = math.nan if joint.torque_constant is None else joint.torque_constant
+        self._per_ampere = constant * joint.gear_ratio
         self._seen = ElmoDecoder(joint, options)
         self._seen.rated_current = rated_current
         self._ours = canopen.heartbeat_id(options.master)
         self._sent_by_us = {canopen.NMT, options.command_id, 0x600 + options.node, self._ours}
         self._watch = SyncWatch(options.bitrate, stamped=stamped)
         self._synced = math.nan
-        self._told: float | None = None
+        self._commanded: float | None = None
         self._open = False
         self.cycles: list[LoggedCycle] = []
 
@@ -83,7 +63,7 @@ class CycleReader:
                 answers = identifier == self._options.position_id
                 self._watch.came(when, len(payload), answers=answers)
             if identifier == self._options.command_id:
-                self._commanded(payload)
+                self._take_command(payload)
             elif identifier == self._ours:
                 self._end(when)
             elif identifier == self._options.reply_id:
@@ -93,32 +73,32 @@ class CycleReader:
 
     def _begin(self, when: float) -> None:
         if self._open and self.cycles:  # in a run no SYNC is without a command
-            self._miss("command" if self._told is None else "host's heartbeat")
+            self._miss("command" if self._commanded is None else "host's heartbeat")
         self._seen.begin()
-        self._synced, self._told = when, None
+        self._synced, self._commanded = when, None
         self._open = True
         self._watch.sent(when)
 
-    def _commanded(self, payload: bytes) -> None:
+    def _take_command(self, payload: bytes) -> None:
         try:
             command = Command.of(payload)
         except InputError:
             return  # another program's
         if command.letters == "TC" and command.value is not None:
-            self._told = float(command.value)
+            self._commanded = float(command.value)
 
     def _replied(self, payload: bytes) -> None:
         try:
             reply = Reply.of(payload)
         except (DriveError, InputError):
-            return  # what it meant to the session, the session says
+            return  # the session's own recording has what it meant
         if reply.letters == "AN":
             self._seen.take_voltage(float(reply.value))
         elif reply.key == ("CL", 1):
             self._seen.rated_current = float(reply.value)
 
     def _end(self, when: float) -> None:
-        if not self.cycles and (not self._open or self._told is None):
+        if not self.cycles and (not self._open or self._commanded is None):
             self._open = False  # the motor is being switched on: our heartbeat has begun
             return
         if not self._open:
@@ -126,7 +106,7 @@ class CycleReader:
                 f"the SYNC before the host's heartbeat at {when:.6f} s is missing, in cycle "
                 f"{len(self.cycles) + 1}; frames are missing from the log"
             )
-        if self._told is None:
+        if self._commanded is None:
             self._miss("command")
         if not self._seen.complete:
             self._miss(f"{self._seen.lacking} that answers")
@@ -137,7 +117,7 @@ class CycleReader:
                 position=self._seen.position,
                 reading=self._seen.reading,
                 current=self._seen.current,
-                told=0.0 if self._told is None else self._told,
+                torque=0.0 if self._commanded is None else self._per_ampere * self._commanded,
             )
         )
         self._open = False

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from jointid.base.errors import InputError
+from jointid.hardware.can import canopen_frames as canopen
 from jointid.hardware.elmo.torque_source import AnalogInput, SyncedConverter
 from jointid.joint.joint import Joint
 
@@ -26,15 +27,15 @@ class ElmoOptions:
         COB-IDs of interpreter commands, replies, and the position's PDO. Default: 0x300, 0x280 and
         0x480 plus the node.
     heartbeat : float
-        Without our heartbeat for so long the drive stops by itself; without the drive's, the session [s].
+        Time without our heartbeat after which the drive stops by itself; without the drive's, the session [s].
     drive_heartbeat : float
         Between two heartbeats of the drive [s]; at most half of `heartbeat`.
     acknowledge : bool
-        Start although the drive has shut its motor down before; enabling clears what it says of it.
+        Start although the drive has shut its motor down before; enabling clears its report.
     torque : SyncedConverter, AnalogInput or None
         Where the joint's torque sensor is read.
     bitrate : float
-        Of the bus [bit/s], to reckon its load.
+        Of the bus [bit/s], to estimate its load.
     execution_delay : float
         From a command's arrival until the drive acts on it: it waits for the drive's idle loop [s].
     mantissa_bits : int
@@ -59,36 +60,36 @@ class ElmoOptions:
     def __post_init__(self) -> None:
         if not 10e3 <= self.bitrate <= 1e6:
             raise InputError(
-                f"ElmoOptions: bitrate is {self.bitrate!r}; 10 000 to 1 000 000 bit/s is expected"
+                "10 000 to 1 000 000 bit/s is expected", argument="bitrate", value=self.bitrate
             )
         if not 0.0 <= self.execution_delay <= 0.1:
             raise InputError(
-                f"ElmoOptions: execution_delay is {self.execution_delay!r}; 0 to 0.1 s is expected"
+                "0 to 0.1 s is expected", argument="execution_delay", value=self.execution_delay
             )
         if not math.isfinite(self.position_offset):
             raise InputError(
-                f"ElmoOptions: position_offset is {self.position_offset!r}; a finite angle is expected"
+                "a finite angle is expected", argument="position_offset", value=self.position_offset
             )
         self._check_identifiers()
         if not 1 <= self.mantissa_bits <= 24:
             raise InputError(
-                f"ElmoOptions: mantissa_bits is {self.mantissa_bits!r}; 1 to 24 is expected"
+                "1 to 24 is expected", argument="mantissa_bits", value=self.mantissa_bits
             )
         if not 1 <= self.node <= 127:
-            raise InputError(f"ElmoOptions: node is {self.node}; 1 to 127 is expected")
+            raise InputError("1 to 127 is expected", argument="node", value=self.node)
         if self.counts_per_turn < 1:
             raise InputError(
-                f"ElmoOptions: counts_per_turn is {self.counts_per_turn}; at least 1 is expected"
+                "at least 1 is expected", argument="counts_per_turn", value=self.counts_per_turn
             )
         if not 0.005 <= self.heartbeat <= 10.0:
             raise InputError(
-                f"ElmoOptions: heartbeat is {self.heartbeat}; 0.005 to 10 s is expected"
+                "0.005 to 10 s is expected", argument="heartbeat", value=self.heartbeat
             )
-
         if not 0.001 <= self.drive_heartbeat <= 0.5 * self.heartbeat:
             raise InputError(
-                f"ElmoOptions: drive_heartbeat is {self.drive_heartbeat}; 0.001 s to half of heartbeat, "
-                f"{0.5 * self.heartbeat:g} s, is expected"
+                f"0.001 s to half of heartbeat, {0.5 * self.heartbeat:g} s, is expected",
+                argument="drive_heartbeat",
+                value=self.drive_heartbeat,
             )
 
     def _check_identifiers(self) -> None:
@@ -98,11 +99,11 @@ class ElmoOptions:
             "cob_position": self.position_id,
         }
         if isinstance(self.torque, SyncedConverter):
-            used["the converter's identifier"] = self.torque.identifier
+            used["identifier"] = self.torque.identifier
         for name, identifier in used.items():
             if not 0x81 <= identifier <= 0x7FF:
                 raise InputError(
-                    f"ElmoOptions: {name} is 0x{identifier:X}; 0x081 to 0x7FF is expected"
+                    f"0x{identifier:X} is no identifier; 0x081 to 0x7FF is expected", argument=name
                 )
         for name, identifier in used.items():
             others = [
@@ -110,7 +111,8 @@ class ElmoOptions:
             ]
             if others:
                 raise InputError(
-                    f"ElmoOptions: {name} and {others[0]} are both 0x{identifier:X}; frames cannot be told apart"
+                    f"{name} and {others[0]} are both 0x{identifier:X}; frames need identifiers of their own",
+                    argument=name,
                 )
 
     @property
@@ -132,6 +134,24 @@ class ElmoOptions:
     def master(self) -> int:
         """Our node, whose heartbeat the drive watches: the first that is not the drive's."""
         return 2 if self.node == 1 else 1
+
+    @property
+    def received(self) -> tuple[int, ...]:
+        """COB-IDs of the frames that a session receives: replies, position, emergency, boot-up, SDO, sensor."""
+        found = [
+            self.reply_id,
+            self.position_id,
+            canopen.emergency_id(self.node),
+            canopen.heartbeat_id(self.node),
+            0x580 + self.node,
+        ]
+        if isinstance(self.torque, SyncedConverter):
+            found.append(self.torque.identifier)
+        return tuple(sorted(set(found)))
+
+    def resolution(self, joint: Joint) -> float:
+        """Output angle of an encoder count [rad]."""
+        return 2.0 * math.pi / abs(self.counts_per_turn * joint.gear_ratio)
 
     def angle(self, counts: int, joint: Joint) -> float:
         """Output angle of encoder counts [rad]."""

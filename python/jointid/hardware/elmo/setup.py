@@ -11,15 +11,15 @@ _Write = tuple[int, int, int, int]  # index, subindex, value, size
 
 
 def identity(link: ElmoLink) -> dict[str, str]:
-    """What object 1018h says of the drive."""
-    told = {}
+    """Identity of the drive, from object 1018h."""
+    found = {}
     for name, subindex in (("vendor", 1), ("product", 2), ("revision", 3)):
         try:
             value = link.transfer(SdoRequest(index=0x1018, subindex=subindex))
         except SdoAbortError:
             continue
-        told[name] = f"0x{value:X}"
-    return told
+        found[name] = f"0x{value:X}"
+    return found
 
 
 def map_position(link: ElmoLink, options: ElmoOptions) -> None:
@@ -38,7 +38,7 @@ def map_position(link: ElmoLink, options: ElmoOptions) -> None:
 
 
 def arm_watchdogs(link: ElmoLink, options: ElmoOptions) -> None:
-    """The drive stops by itself when our heartbeat stays away, and tells us that it lives."""
+    """Let the drive stop by itself when our heartbeat is missing, and send its own."""
     _write(
         link,
         (0x1016, 1, link.master << 16 | round(1e3 * options.heartbeat), 4),
@@ -50,12 +50,12 @@ def arm_watchdogs(link: ElmoLink, options: ElmoOptions) -> None:
 
 
 def disarm_watchdogs(link: ElmoLink) -> None:
-    """Nobody sends heartbeats from now on, which is no failure."""
+    """From now on no heartbeat is sent, which is no failure."""
     _write(link, (0x1016, 1, 0, 4), (0x1017, 0, 0, 2))
 
 
 def _object(link: ElmoLink, index: int, subindex: int) -> int:
-    """What an object holds; 0 when the drive does not tell."""
+    """Value of an object; 0 when the drive refuses to give it."""
     try:
         return int(link.transfer(SdoRequest(index=index, subindex=subindex)))
     except SdoAbortError:

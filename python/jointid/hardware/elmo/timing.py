@@ -1,4 +1,4 @@
-"""When an Elmo drive samples and when it acts on a command, reckoned from its frames."""
+"""When an Elmo drive samples and when it acts on a command, estimated from its frames."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ POSITION_LENGTH = 6
 
 
 class SyncWatch:
-    """Reckons when drive and converter sampled: when the SYNC had arrived.
+    """Estimates when drive and converter sampled: when the SYNC had arrived.
 
-    A frame that was on the wire when the SYNC was sent, such as the drive's heartbeat, holds the SYNC up;
-    one that came between the SYNC and its answer holds up the answer only. The frames' times of arrival
-    tell which it was, where they are known to the microsecond.
+    A frame that was on the wire when the SYNC was sent, such as the drive's heartbeat, delays the SYNC;
+    one that came between the SYNC and its answer delays the answer only. The frames' times of arrival
+    show which it was, where they are known to the microsecond.
 
     Parameters
     ----------

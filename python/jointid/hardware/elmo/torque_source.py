@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import struct
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 from jointid.base.errors import InputError
+from jointid.hardware.bench.table import Table
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,7 +40,7 @@ class SensorScaling:
             value = getattr(self, name)
             if value == 0.0 or not math.isfinite(value):
                 raise InputError(
-                    f"SensorScaling: {name} is {value!r}; a number that is not 0 is expected"
+                    "a finite number that is not 0 is expected", argument=name, value=value
                 )
 
     def reading(self, voltage: float, position: float) -> float:
@@ -79,13 +80,15 @@ class SyncedConverter:
     def __post_init__(self) -> None:
         if not 1 <= self.conversions <= 2**16:
             raise InputError(
-                f"SyncedConverter: conversions is {self.conversions!r}; 1 to 65536 is expected"
+                "1 to 65536 is expected", argument="conversions", value=self.conversions
             )
         if not 1 <= self.bits <= 24:
-            raise InputError(f"SyncedConverter: bits is {self.bits!r}; 1 to 24 is expected")
+            raise InputError("1 to 24 is expected", argument="bits", value=self.bits)
         if not self.lowest < self.highest:
             raise InputError(
-                f"SyncedConverter: lowest is {self.lowest!r}, highest {self.highest!r}; less and more is expected"
+                f"less than highest, {self.highest!r} V, is expected",
+                argument="lowest",
+                value=self.lowest,
             )
 
     def voltage(self, payload: bytes) -> float:
@@ -133,15 +136,45 @@ class AnalogInput:
 
     def __post_init__(self) -> None:
         if self.number not in (1, 2):
-            raise InputError(f"AnalogInput: number is {self.number!r}; 1 or 2 is expected")
+            raise InputError("1 or 2 is expected", argument="number", value=self.number)
         if not 1 <= self.every <= 1000:
-            raise InputError(f"AnalogInput: every is {self.every!r}; 1 to 1000 is expected")
+            raise InputError("1 to 1000 is expected", argument="every", value=self.every)
         if not self.lowest < self.highest:
             raise InputError(
-                f"AnalogInput: lowest is {self.lowest!r} V; less than highest, {self.highest!r} V, is expected"
+                f"less than highest, {self.highest!r} V, is expected",
+                argument="lowest",
+                value=self.lowest,
             )
 
     def clipped(self, voltage: float) -> bool:
         """Whether it is at the end of its range."""
         margin = 1e-3 * (self.highest - self.lowest)
         return not self.lowest + margin < voltage < self.highest - margin
+
+
+_SOURCES: dict[str, type | None] = {
+    "converter": SyncedConverter,
+    "analog": AnalogInput,
+    "none": None,
+}
+
+
+def read_torque_source(table: Table) -> SyncedConverter | AnalogInput | None:
+    """Return where the torque sensor is read, from the table `[session.torque]`.
+
+    Raises
+    ------
+    InputError
+        A key is unknown or its value cannot be used.
+    """
+    kind = _SOURCES[table.choice("source", "converter", _SOURCES)]
+    scale = {item.name for item in fields(SensorScaling)}
+    scaling = table.without(*({*table.entries} - scale)).make(SensorScaling)
+    if kind is None:
+        for name in table.without("source").entries:
+            table.refuse(name, "not expected: the source is 'none'")
+        return None
+    rest = table.without("source", *scale)
+    if kind is SyncedConverter:
+        return rest.make(SyncedConverter, scaling=scaling)
+    return rest.make(AnalogInput, scaling=scaling)

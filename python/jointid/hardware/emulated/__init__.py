@@ -1,1 +1,1 @@
-"""A drive, a converter and a bus that are not there: the same frames and refusals, and faults on demand."""
+"""An emulated bus and what emulated drives share: time, devices, faults on demand."""

@@ -16,7 +16,7 @@ class EmulatedBus(can.BusABC):
     """A bus for python-can's users, behind which devices are emulated on virtual time.
 
     `recv` and `sleep_until` run what is due and move the clock; nothing runs by itself, so the same
-    calls give the same frames at the same times, to the bit.
+    calls give bit-identical frames and times.
 
     Parameters
     ----------
@@ -126,8 +126,8 @@ class EmulatedBus(can.BusABC):
         for fault in self._faults:
             if fault.kind == "down" and fault.acts(self._time):
                 raise can.CanOperationError("the network is down", 100)
-            if fault.kind == "bus_off" and fault.acts(self._time) and not fault.told:
-                fault.told = True
+            if fault.kind == "bus_off" and fault.acts(self._time) and not fault.reported:
+                fault.reported = True
                 self._inbox.appendleft(
                     can.Message(is_error_frame=True, arbitration_id=0x40, timestamp=self._time)
                 )

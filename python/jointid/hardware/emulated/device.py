@@ -1,4 +1,4 @@
-"""What an emulated device and the bus it hangs on ask of each other, on virtual time or on the machine's."""
+"""Interface between an emulated device and its bus, on virtual or real time."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class DeviceBus(Protocol):
 
 
 class Device(Protocol):
-    """What hangs on a bus: an emulated drive, a converter."""
+    """A device on a bus: an emulated drive, a converter."""
 
     def attach(self, bus: DeviceBus) -> None:
         """Remember the bus."""

@@ -46,13 +46,11 @@ class BusFault:
     stop: float = float("inf")
     identifier: int | None = None
     delay: float = 0.0
-    told: bool = False
+    reported: bool = False
 
     def __post_init__(self) -> None:
         if self.kind not in BUS_FAULTS:
-            raise InputError(
-                f"BusFault: kind is {self.kind!r}; one of {', '.join(BUS_FAULTS)} is expected"
-            )
+            raise InputError(f"known are {', '.join(BUS_FAULTS)}", argument="kind", value=self.kind)
 
     def acts(self, now: float) -> bool:
         """Whether it is on."""
@@ -65,12 +63,10 @@ def drive_failure(kind: str) -> tuple[int, int]:
     Raises
     ------
     InputError
-        There is none of this name.
+        There is no failure of this name.
     """
     if kind not in DRIVE_FAILURES:
-        raise InputError(
-            f"drive failure is {kind!r}; one of {', '.join(DRIVE_FAILURES)} is expected"
-        )
+        raise InputError(f"known are {', '.join(DRIVE_FAILURES)}", argument="kind", value=kind)
     return DRIVE_FAILURES[kind]
 
 

@@ -1,4 +1,4 @@
-"""Emulated devices on a bus of python-can's, living by the machine's clock in a thread of their own."""
+"""Emulated devices on a bus of python-can's, in real time, in a thread."""
 
 from __future__ import annotations
 
@@ -81,17 +81,17 @@ class EmulatorThread:
         except BaseException as failure:
             if error is None:
                 raise
-            # What the host saw follows from this: both are told.
+            # What the host saw follows from this: both are reported.
             error.add_note(f"the emulator had failed: {type(failure).__name__}: {failure}")
 
     @property
     def failure(self) -> BaseException | None:
-        """What ended the thread before its time."""
+        """What ended the thread early."""
         return self._failure
 
     @property
     def running(self) -> bool:
-        """Whether the devices live."""
+        """Whether the devices run."""
         return self._thread.is_alive()
 
     # For the devices.

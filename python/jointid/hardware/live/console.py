@@ -46,7 +46,7 @@ class ConsoleLine:
         """Take a cycle's values."""
         self._last = (phase, when, sample, reference, torque)
         now = self._now()
-        # A new phase is told at once only where it does not flicker.
+        # A new phase is shown at once only where it does not flicker.
         new_phase = phase != self._phase and not self._terminal
         if now >= self._due or new_phase:
             self._due, self._phase, self._last = now + self._interval, phase, None
@@ -106,7 +106,7 @@ class Observers:
     def __call__(
         self, phase: str, when: float, sample: DriveSample, reference: float, torque: float
     ) -> None:
-        """Tell all of them."""
+        """Call all of them."""
         for observer in self._observers:
             observer(phase, when, sample, reference, torque)
 

@@ -55,7 +55,7 @@ class LivePlot:
         now: Callable[[], float] = time.monotonic,
     ) -> None:
         if not 0.0 < span < math.inf:
-            raise InputError(f"LivePlot: span is {span!r}; more than 0 s is expected")
+            raise InputError("more than 0 s is expected", argument="span", value=span)
         if picture is None and not window:
             raise InputError("LivePlot: neither a window nor a picture; nothing would be seen")
         self._now = now

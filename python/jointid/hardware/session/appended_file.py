@@ -1,4 +1,4 @@
-"""A new file that only grows, and the thread that brings such files from the system's memory to the disk."""
+"""A new file that is only appended to, and the thread that writes such files from memory to the disk."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND | getattr(os, "O_BINAR
 
 
 class AppendedFile:
-    """A file that did not exist; what is appended survives the end of this program, however it ends.
+    """A new file; what is appended survives the end of this program, however it ends.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class AppendedFile:
 
 
 def sync_folder(folder: Path) -> None:
-    """Bring to the disk that new files are in a folder, where the system can do that."""
+    """Write a folder's new entries to the disk, where the system can do that."""
     with suppress(OSError):
         descriptor = os.open(folder, os.O_RDONLY)
         try:
@@ -63,7 +63,7 @@ def sync_folder(folder: Path) -> None:
 
 
 class Syncing:
-    """Brings files to the disk again and again, in a thread: a slow disk holds up nobody else.
+    """Writes files to the disk repeatedly, in a thread: a slow disk does not delay the session.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class Syncing:
         self._thread.start()
 
     def close(self) -> None:
-        """End the thread; it may be at the disk yet."""
+        """End the thread, which may still be writing."""
         self._ending.set()
         self._thread.join()
 

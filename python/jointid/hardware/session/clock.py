@@ -43,7 +43,7 @@ class MonotonicClock:
         sleep: Callable[[float], object] = time.sleep,
     ) -> None:
         if not 0.0 <= spin < math.inf:
-            raise InputError(f"MonotonicClock: spin is {spin!r}; at least 0 s is expected")
+            raise InputError("at least 0 s is expected", argument="spin", value=spin)
         self._spin, self._now, self._sleep = spin, now, sleep
 
     def now(self) -> float:

@@ -1,7 +1,8 @@
-"""The cycle of a session: measure, look at the limits, command; again and again along a trajectory."""
+"""The control loop of a session: in each cycle measure, check the limits, command."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -25,7 +26,7 @@ Observer = Callable[[str, float, DriveSample, float, float], object]
 class Course:
     """A trajectory at each cycle.
 
-    It is laid out before the motor is on: of a long one that takes longer than a drive waits for our
+    It is computed before the motor is on: for a long one that takes longer than a drive waits for our
     heartbeat.
 
     Attributes
@@ -40,13 +41,13 @@ class Course:
 
     @classmethod
     def of(cls, trajectory: Trajectory, period: float) -> Course:
-        """Lay a trajectory out for cycles of a period [s]."""
+        """Sample a trajectory for cycles of a period [s]."""
         count = round(trajectory.duration / period)
         return cls(*(each.tolist() for each in trajectory.sample(np.arange(count) * period)))
 
 
 class Follower:
-    """Moves a joint along trajectories and keeps what it saw on the last one.
+    """Moves a joint along trajectories and keeps the samples of the last one.
 
     Parameters
     ----------
@@ -75,6 +76,7 @@ class Follower:
         self._drive, self._law, self._guard, self._options = drive, law, guard, options
         self._interruptions = interruptions
         self._observer, self._feedback = observer, feedback
+        assert options.resolution is not None, "the session has seen to it"
         self._estimate = VelocityEstimator(
             options.resolution, options.velocity_counts, options.velocity_time
         )
@@ -82,10 +84,10 @@ class Follower:
         self.rows: list[tuple[float, ...]] = []
         self.late: list[float] = []
         self.cycles = self.cycles_before = 0  # in which a torque was commanded; before the run
-        self._held = 0.0  # of the last command [N·m]: enabling tells the drive zero
+        self._held = 0.0  # of the last command [N·m]: enabling commands zero
 
     def enter(self, phase: str) -> None:
-        """Begin a phase: stops are told by its name and the time since."""
+        """Begin a phase: a stop names it and the time since."""
         self.phase, self.began = phase, self._drive.clock.now()
 
     def follow(
@@ -110,6 +112,8 @@ class Follower:
         Raises
         ------
         LimitError, DriveFaultError
+        Exception
+            Of the controller or the observer.
         """
         options, clock, guard = self._options, self._drive.clock, self._guard
         period = options.period
@@ -129,7 +133,8 @@ class Follower:
             if self._interruptions.reason is not None:
                 raise LimitError("user", self._interruptions.reason)
             sample = self._drive.read(timeout)
-            speed = self._estimate(sample.time, sample.position)
+            estimated = self._estimate(sample.time, sample.position)
+            speed = estimated if math.isnan(sample.velocity) else sample.velocity
             late = sample.time - begin - k * period
             first = late if first is None else first
             # To the nanosecond: rounding errors would turn the sign of a velocity of 0.
@@ -141,66 +146,54 @@ class Follower:
             guard.measured(sample, speed, error)
             torque = self._asked(elapsed, sample, speed, (target, pace, acceleration[k]))
             guard.commanded(torque, self._law.saturations)
-            told = self._told(torque)
+            accepted = self._accepted(torque)
             acted = clock.now() - sample.time + self._drive.command_latency
             self.cycles += 1
-            guard.told(torque, told)
+            guard.accepted(torque, accepted)
             if running:
-                held = held_torque(self._held, told, acted, period)
+                held = held_torque(self._held, accepted, acted, period)
                 row = (elapsed, sample.position, held, sample.reading, target, sample.current)
                 self.rows.append(row)
                 if recorder is not None:
                     recorder.sample(row)
                     if recorder.failure is not None:
                         raise unwritten(recorder.failure)
-            self._held = told
+            self._held = accepted
             if self._observer is not None:
-                self._shown(elapsed, sample, target, told)
+                self._observer(self.phase, elapsed, sample, target, accepted)
             missed = clock.now() - (begin + (k + 1) * period)
             self.late.append(missed)
             guard.timed(missed)
 
-    def _told(self, torque: float) -> float:
-        """Command the drive; what it was told [N·m]."""
-        told = self._drive.command(torque)
-        if not isinstance(told, int | float):
+    def _accepted(self, torque: float) -> float:
+        """Command the drive; the torque that it accepted [N·m]."""
+        accepted = self._drive.command(torque)
+        if not isinstance(accepted, int | float):
             raise DriveFaultError(
                 "drive_fault",
-                f"the drive's command() returned {told!r}; the torque that it was told is expected",
+                f"the drive's command() returned {accepted!r}; the torque that it accepted is expected",
             )
-        return told
+        return accepted
 
     def _asked(
         self, time: float, sample: DriveSample, speed: float, wanted: tuple[float, float, float]
     ) -> float:
-        """What the controller asks for [N·m]."""
-        try:
-            return self._law.step(
-                time=time,
-                position=sample.position,
-                velocity=speed,
-                sensor=sample.reading,
-                reference=wanted[0],
-                reference_velocity=wanted[1],
-                reference_acceleration=wanted[2],
-            )
-        except Exception as error:
-            raise LimitError("user", f"the controller raised {_told(error)}") from error
-
-    def _shown(self, time: float, sample: DriveSample, target: float, told: float) -> None:
-        """Call the observer."""
-        assert self._observer is not None
-        try:
-            self._observer(self.phase, time, sample, target, told)
-        except Exception as error:
-            raise LimitError("user", f"the observer raised {_told(error)}") from error
+        """Torque that the controller asks for [N·m]."""
+        return self._law.step(
+            time=time,
+            position=sample.position,
+            velocity=speed,
+            sensor=sample.reading,
+            reference=wanted[0],
+            reference_velocity=wanted[1],
+            reference_acceleration=wanted[2],
+        )
 
 
-def _told(error: Exception) -> str:
-    return f"{type(error).__name__}: {error}"
-
-
-def unwritten(failure: Exception) -> LimitError:
-    """A stop, because the recording cannot be written."""
-    reason = getattr(failure, "strerror", None) or str(failure)
-    return LimitError("recording", f"the recording cannot be written: {reason}")
+def unwritten(failure: Exception) -> Exception:
+    """Return a stop because the recording cannot be written; a bug in the writer as it is."""
+    if not isinstance(failure, OSError):
+        return failure
+    return LimitError(
+        "recording", f"the recording cannot be written: {failure.strerror or failure}"
+    )

@@ -1,7 +1,8 @@
-"""What a cycle's instants say: numbers in a session, arrays in the replay of its frame log."""
+"""Torque and reference of a control cycle: numbers in a session, arrays in the replay of its frame log."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
@@ -10,12 +11,38 @@ import numpy.typing as npt
 Value = TypeVar("Value", float, npt.NDArray[np.float64])
 
 
-def held_torque(before: Value, told: Value, acted: Value, period: float) -> Value:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoggedCycle:
+    """One control cycle out of a frame log: a sample, then a command.
+
+    Attributes
+    ----------
+    taken, acted : float
+        When the sample was taken, and when the command was sent [s], by the log's stamps.
+    position : float
+        At the output [rad].
+    torque : float
+        Accepted by the drive, at the output [N·m].
+    reading : float
+        Of the torque sensor; 0: there is none.
+    current : float
+        Active, in the motor [A]; not a number: not known.
+    """
+
+    taken: float
+    acted: float
+    position: float
+    torque: float
+    reading: float = 0.0
+    current: float = float("nan")
+
+
+def held_torque(before: Value, accepted: Value, acted: Value, period: float) -> Value:
     """The mean over a cycle of the torque that the drive holds [N·m].
 
     Parameters
     ----------
-    before, told : float or ndarray
+    before, accepted : float or ndarray
         The last cycle's command and this one's [N·m].
     acted : float or ndarray
         From the sample until the drive acts on the command [s]; until then, the last one holds.
@@ -24,9 +51,9 @@ def held_torque(before: Value, told: Value, acted: Value, period: float) -> Valu
     """
     if isinstance(acted, float):
         share = min(1.0, acted / period)
-        return share * before + (1.0 - share) * told
+        return share * before + (1.0 - share) * accepted
     shares = np.minimum(1.0, acted / period)
-    return shares * before + (1.0 - shares) * told
+    return shares * before + (1.0 - shares) * accepted
 
 
 def target_at(reference: Value, velocity: Value, acceleration: Value, shift: Value) -> Value:

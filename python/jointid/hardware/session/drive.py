@@ -1,6 +1,6 @@
-"""What a session asks of a drive. Anything with these methods will do; nothing is inherited.
+"""What a session needs of a drive: an object with these methods; nothing is inherited.
 
-`docs/hardware.md` shows a whole drive of sixty lines and in which order a session calls it.
+`docs/hardware.md` shows a complete drive of sixty lines and in which order a session calls it.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ FAULT_KINDS = (
 class DriveFaultError(RuntimeError):
     """The drive, or the way to it, has failed; the session stops.
 
-    The only exception that a drive should raise: its kind becomes the name of the stop. Any other stops
-    the session, too, as "error".
+    The only exception that a drive should raise: its kind becomes the name of the stop. An OSError or
+    InputError stops the session as "error"; any other is a bug, and is raised again after the session.
 
     Parameters
     ----------
     kind : str
         "stale_position": no state within the time allowed; "drive_fault": the drive has shut down or
-        will not obey; "heartbeat_lost": it is not there any more; "host_heartbeat_lost": it says that we are
-        not; "bus": the way to it is broken; "sensor": what is read of it is no number.
+        refuses a command; "heartbeat_lost": it does not answer any more; "host_heartbeat_lost": it reports that
+        the host does not; "bus": the bus has failed; "sensor": a reading is missing or not finite.
     message : str
         One sentence: what happened, with the numbers.
     measured, allowed : float, optional
@@ -48,23 +48,21 @@ class DriveFaultError(RuntimeError):
         allowed: float | None = None,
     ) -> None:
         if kind not in FAULT_KINDS:
-            raise InputError(
-                f"DriveFaultError: kind is {kind!r}; one of {', '.join(FAULT_KINDS)} is expected"
-            )
+            raise InputError(f"known are {', '.join(FAULT_KINDS)}", argument="kind", value=kind)
         super().__init__(message)
         self.kind, self.measured, self.allowed = kind, measured, allowed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DriveSample:
-    """What a drive says in one cycle.
+    """State of a drive in one cycle.
 
     Attributes
     ----------
     time : float
-        When the position was taken [s], on the drive's `clock`. The velocity is estimated from it.
+        When the position was taken [s], on the drive's `clock`.
     position : float
-        At the output [rad]. A value that is no number stops the session.
+        At the output [rad]. A value that is not finite stops the session.
     reading : float
         Raw, of the torque sensor, in the unit that the joint's `sensor_gain` refers to; the last one when
         `fresh` is False. Default 0: there is no sensor.
@@ -73,9 +71,12 @@ class DriveSample:
     clipped : bool
         The sensor's converter is at the end of its range. Default False.
     current : float
-        Active, in the motor [A]. Default: not a number, the drive does not tell.
+        Active, in the motor [A]. Default: not a number, not known.
     torque : float
         Of that current, at the output [N·m]. Default: not a number.
+    velocity : float
+        Measured by the drive, at the output [rad/s]. Default: not a number; the session then estimates it
+        from times and positions.
     """
 
     time: float
@@ -85,16 +86,17 @@ class DriveSample:
     clipped: bool = False
     current: float = float("nan")
     torque: float = float("nan")
+    velocity: float = float("nan")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DriveEnd:
-    """What a drive says after it was told to switch its motor off.
+    """State of a drive after the command to switch its motor off.
 
     Attributes
     ----------
     motor_off : bool or None
-        Whether it said so when asked; None: it cannot be asked.
+        Whether it confirmed so when asked; None: it cannot be asked.
     failure : str
         Why it had shut the motor down by itself; empty when it had not.
     """
@@ -112,13 +114,15 @@ class Drive(Protocol):
     2. `enable`, then `read`.
     3. in each cycle of `period`, first on the way to the start of the trajectory, then along it: `read`,
        then `command`, waiting for the next cycle with `clock.sleep_until`.
-    4. whatever happened, also when the check failed: `disable`, possibly several times, then `close`.
+    4. always, also when the check failed: `disable`, possibly several times, then `close`.
 
     All of them may raise DriveFaultError. Torque and position are positive in the same direction.
     A drive may have an attribute `tap`, None at first: if so, the session sets it to a callable
     (time [s], identifier, payload, whether sent) for the time of the run, to be called with each frame,
-    for the frame log. It may have attributes `joint`, a `Joint`, and `options`, a dataclass: what they say
-    is in the recording's metadata then.
+    for the frame log. It may have an attribute `resolution`, the output angle of an encoder count [rad],
+    which `SessionOptions` must give otherwise; an attribute `joint`, a `Joint`; and a method `metadata`,
+    which returns ``{"drive_type": name, "drive_options": …}``, of JSON's types. Both are kept in the
+    recording, so that a replay of the frame log finds them.
     """
 
     @property
@@ -141,13 +145,13 @@ class Drive(Protocol):
         """
 
     def problems(self, torque_limit: float) -> list[str]:
-        """What speaks against enabling the motor, in sentences; an empty list when all is well.
+        """Return reasons not to enable the motor, in sentences; an empty list when there are none.
 
         Parameters
         ----------
         torque_limit : float
             The session's, at the output [N·m]; infinite when there is none. A drive whose own limit is
-            higher should say so here.
+            higher should report it here.
         """
 
     def enable(self) -> None:
@@ -170,9 +174,9 @@ class Drive(Protocol):
         """
 
     def command(self, torque: float) -> float:
-        """Send a torque, to be held until the next one; not to be waited for.
+        """Send a torque, which holds until the next one, without waiting.
 
-        This is also the drive's sign that the host lives: without it for some periods the drive should
+        This also shows the drive that the host is alive: without it for some periods the drive should
         stop by itself, as nothing else stops a motor whose host hangs.
 
         Parameters
@@ -183,11 +187,11 @@ class Drive(Protocol):
         Returns
         -------
         float
-            What the drive was told [N·m], after its own limit and rounding; the recording holds this.
+            Torque accepted by the drive [N·m], after its own limit and rounding; the recording holds this.
         """
 
     def disable(self) -> DriveEnd | None:
-        """Zero torque, then motor off, at once and whatever fails on the way; then see that it is off.
+        """Zero torque, then motor off, at once and even if a step fails; then check that it is off.
 
         Must do no harm to a motor that is off, or to a drive that was never connected. Called again when
         the motor was not seen off. Returns in bounded time, and raises nothing for a bus that fails.
@@ -212,7 +216,7 @@ class Drive(Protocol):
         """Share of the bus that a cycle of `period` [s] takes, 0 to 1; 0 where there is no bus."""
 
     def identity(self) -> dict[str, Any]:
-        """What the drive is, for the recording: names and values that JSON knows."""
+        """What the drive is, for the recording: names and values of JSON's types."""
 
 
 _METHODS = (
@@ -236,6 +240,6 @@ def check_drive(drive: object) -> None:
     missing += [name for name in _PROPERTIES if not (hasattr(kind, name) or hasattr(drive, name))]
     if missing:
         raise InputError(
-            f"the drive {kind.__name__} lacks {', '.join(missing)}; `jointid.hardware.session.drive.Drive` says what "
-            "a session asks of a drive"
+            f"the drive {kind.__name__} lacks {', '.join(missing)}; `jointid.hardware.Drive` describes what a "
+            "session needs of a drive"
         )

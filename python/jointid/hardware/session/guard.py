@@ -1,4 +1,4 @@
-"""Holds what a session measures and commands against its limits, cycle by cycle."""
+"""Checks what a session measures and commands against its limits, cycle by cycle."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from jointid.hardware.session.stop import LimitError
 
 # Samples that the difference is the mean of: a drive is one or two cycles behind its command.
 _COMPARED = 10
-# A drive may round a command, by an eighth when it keeps four bits of it; what is less was cut.
+# A drive may round a command, by an eighth when it keeps four bits of it; a smaller value was limited.
 _WHOLE = 0.875 - 1e-9
 _ROUNDING = 1e-6  # of a 32-bit float
 # Counts in a cycle: from such a speed no friction brings a joint to a stand within the next.
@@ -19,7 +19,7 @@ _MOVING = 20
 
 
 class Guard:
-    """Holds what a session measures and commands against its limits.
+    """Checks what a session measures and commands against its limits.
 
     Parameters
     ----------
@@ -35,17 +35,17 @@ class Guard:
         self._largest_measured = limits.largest_measured
         self._largest_difference = limits.largest_difference
         self._moving = _MOVING * resolution / period
-        self._last = 0.0  # commanded by the controller; enabling tells the drive zero
-        self._cut = 0  # commands that the drive was told less of
-        self._told = 0.0  # what the drive was told
+        self._last = 0.0  # commanded by the controller; enabling commands zero
+        self._cut = 0  # commands that the drive accepted only in part
+        self._accepted = 0.0  # torque accepted by the drive
         self._differences: deque[float] = deque((0.0,) * _COMPARED, maxlen=_COMPARED)
         self._difference = 0.0  # their sum
         self._missed = self._clipped = self._repeated = 0
         self._place = math.nan
-        self._speed_there = self._told_there = 0.0
+        self._speed_there = self._accepted_there = 0.0
 
     def measured(self, sample: DriveSample, velocity: float, error: float | None) -> None:
-        """Look at what was measured.
+        """Check what was measured.
 
         Parameters
         ----------
@@ -78,7 +78,7 @@ class Guard:
             self._felt(sample.torque)
 
     def commanded(self, torque: float, saturations: int) -> None:
-        """Look at what the controller asks for [N·m], before the drive is told.
+        """Check the torque that the controller asks for [N·m], before it is commanded.
 
         Raises
         ------
@@ -86,7 +86,7 @@ class Guard:
         """
         limits = self._limits
         if not math.isfinite(torque):
-            raise LimitError("torque", f"the controller asks for {torque}, which is no number")
+            raise LimitError("torque", f"the controller asks for {torque}, which is not finite")
         # A law clamps to the limit itself; rounding is no excess.
         if abs(torque) > limits.torque * (1.0 + 1e-9):
             _hold("torque", torque, limits.torque, "N·m")
@@ -102,21 +102,21 @@ class Guard:
                 allowed=limits.saturated_samples,
             )
 
-    def told(self, asked: float, told: float) -> None:
-        """Look at what the drive was told of what was asked for [N·m]: it has limits of its own.
+    def accepted(self, asked: float, accepted: float) -> None:
+        """Check the torque accepted by the drive against the torque asked for [N·m]: it has limits of its own.
 
         Raises
         ------
         LimitError
         """
-        if not abs(told) <= self._limits.torque * (1.0 + _ROUNDING):
-            _hold("torque", told, self._limits.torque, "N·m")
-        if abs(told) < _WHOLE * abs(asked):
+        if not abs(accepted) <= self._limits.torque * (1.0 + _ROUNDING):
+            _hold("torque", accepted, self._limits.torque, "N·m")
+        if abs(accepted) < _WHOLE * abs(asked):
             self._cut += 1
-        self._told = told
+        self._accepted = accepted
 
     def timed(self, late: float) -> None:
-        """Look at how late a cycle ended against the next one's begin [s]; negative: in time.
+        """Check how late a cycle ended against the next one's begin [s]; negative: in time.
 
         Raises
         ------
@@ -135,7 +135,7 @@ class Guard:
         """The torque sensor."""
         if not math.isfinite(sample.reading):
             raise LimitError(
-                "sensor", f"the torque sensor reads {sample.reading}, which is no number"
+                "sensor", f"the torque sensor reads {sample.reading}, which is not finite"
             )
         self._clipped = self._clipped + 1 if sample.clipped else 0
         if self._clipped > self._limits.clipped_samples:
@@ -147,15 +147,15 @@ class Guard:
             )
 
     def _repeats(self, position: float, velocity: float) -> None:
-        """An encoder that hangs: the very same count, though speed or torque say otherwise."""
+        """An encoder that hangs: the same count in each cycle, though speed or torque contradict it."""
         if position != self._place:
             self._place, self._repeated = position, 0
-            self._speed_there, self._told_there = velocity, self._told
+            self._speed_there, self._accepted_there = velocity, self._accepted
             return
         self._repeated += 1
         if self._repeated <= self._limits.repeated_positions:
             return
-        change = abs(self._told - self._told_there)
+        change = abs(self._accepted - self._accepted_there)
         if abs(self._speed_there) > self._moving:
             reason = f"it was {abs(self._speed_there):.3f} rad/s fast before"
         elif change > self._limits.torque:
@@ -174,14 +174,14 @@ class Guard:
         """The torque of the active current."""
         if abs(torque) > self._largest_measured:
             _hold("measured_torque", torque, self._largest_measured, "N·m")
-        difference = torque - self._told
+        difference = torque - self._accepted
         self._difference += difference - self._differences[0]
         self._differences.append(difference)
         mean = abs(self._difference) / _COMPARED
         if mean > self._largest_difference:
             raise LimitError(
                 "torque_difference",
-                f"the drive gives {torque:.1f} N·m where {self._told:.1f} N·m is commanded; in the mean over "
+                f"the drive gives {torque:.1f} N·m where {self._accepted:.1f} N·m is commanded; in the mean over "
                 f"{_COMPARED} samples it is {mean:.1f} N·m off, more than {self._largest_difference:g} N·m",
                 measured=mean,
                 allowed=self._largest_difference,
@@ -189,7 +189,7 @@ class Guard:
 
 
 def _hold(limit: str, value: float, allowed: float, unit: str) -> None:
-    """Also a value that is no number is beyond its limit."""
+    """Also a value that is not finite exceeds its limit."""
     if not abs(value) <= allowed:
         raise LimitError(
             limit,

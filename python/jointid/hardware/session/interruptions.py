@@ -1,4 +1,4 @@
-"""The user's wish to stop, by Ctrl-C, SIGTERM or a closed terminal, taken between two cycles."""
+"""A request to stop, by Ctrl-C, SIGTERM or a closed terminal, obeyed between two cycles."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _PATIENCE = 3  # Ctrl-C so often: a drive that does not come back is left by an 
 
 
 class Interruptions:
-    """Catches SIGINT, SIGTERM, SIGHUP and SIGQUIT as a wish to stop while it is entered, on the main thread.
+    """Catches SIGINT, SIGTERM, SIGHUP and SIGQUIT as a request to stop while it is entered, on the main thread.
 
     On other threads Python delivers no signals, and nothing is caught.
     """
@@ -41,7 +41,7 @@ class Interruptions:
         trace: TracebackType | None,
     ) -> None:
         for number, before in self._before.items():
-            # None: it was installed by something that is not Python, and cannot be put back.
+            # None: it was installed by something that is not Python, and cannot be restored.
             signal.signal(number, signal.SIG_DFL if before is None else before)
 
     def _caught(self, number: int, frame: FrameType | None) -> None:

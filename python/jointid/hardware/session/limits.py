@@ -1,4 +1,4 @@
-"""What a session must not exceed."""
+"""Limits of a session."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class SessionLimits:
     tracking_error : float
         [rad]
     measured_torque : float, optional
-        Of the active current, where the drive tells it [N·m]. Default: 1.2 times `torque`.
+        Of the active current, where the drive reports it [N·m]. Default: 1.2 times `torque`.
     torque_difference : float, optional
         Between commanded and measured torque, in the mean over ten samples [N·m]. Default: a quarter
         of `torque`.
@@ -60,14 +60,14 @@ class SessionLimits:
         low, high = self.position
         if not (math.isfinite(low) and math.isfinite(high) and low < high):
             raise InputError(
-                f"SessionLimits: position is {self.position!r}; a lowest and a highest angle are expected"
+                "a lowest and a highest angle are expected",
+                argument="position",
+                value=self.position,
             )
         for field in fields(self):
             value = getattr(self, field.name)
             if field.name != "position" and value is not None and not value > 0:
-                raise InputError(
-                    f"SessionLimits: {field.name} is {value!r}; more than 0 is expected"
-                )
+                raise InputError("more than 0 is expected", argument=field.name, value=value)
 
     @property
     def largest_measured(self) -> float:
@@ -83,7 +83,7 @@ class SessionLimits:
 
     @classmethod
     def of(cls, joint: Joint, **changes: float | tuple[float, float] | None) -> SessionLimits:
-        """What a joint's own limits give, the smaller of torque and current, and some changes."""
+        """Return a joint's own limits, the smaller of torque and current, with some changes."""
         known = joint.limits
         values: dict[str, object] = {}
         if known.position is not None:

@@ -1,4 +1,4 @@
-"""What the operating system can do for a loop that must be in time; asked for, and put back afterwards."""
+"""Real-time settings of the operating system: asked for, and restored afterwards."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ _HIGHEST_PRIORITY = 99
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RealTimeOptions:
-    """What to ask of the operating system for the time of a session; by default nothing.
+    """Real-time settings to ask of the operating system during a session; by default none.
 
     Attributes
     ----------
     priority : int, optional
         Of SCHED_FIFO, 1 to 99; 70 to 80 is usual. Needs CAP_SYS_NICE or `ulimit -r`.
     lock_memory : bool
-        Keep all memory out of the swap. Needs CAP_IPC_LOCK or `ulimit -l unlimited`.
+        Keep all memory out of swap. Needs CAP_IPC_LOCK or `ulimit -l unlimited`.
     cpus : tuple of int, optional
         Processors that the loop may run on.
     timer_slack : float, optional
-        By which sleeps may be drawn out [s]; Linux takes 50e-6 unless asked.
+        By which sleeps may be prolonged [s]; Linux takes 50e-6 unless asked.
     freeze_garbage : bool
-        No search for garbage while the session runs.
+        No garbage collection while the session runs.
     """
 
     priority: int | None = None
@@ -46,21 +46,21 @@ class RealTimeOptions:
     def __post_init__(self) -> None:
         if self.priority is not None and not 1 <= self.priority <= _HIGHEST_PRIORITY:
             raise InputError(
-                f"RealTimeOptions: priority is {self.priority!r}; 1 to {_HIGHEST_PRIORITY} is expected"
+                f"1 to {_HIGHEST_PRIORITY} is expected", argument="priority", value=self.priority
             )
         if self.cpus is not None and (not self.cpus or min(self.cpus) < 0):
             raise InputError(
-                f"RealTimeOptions: cpus is {self.cpus!r}; numbers of processors from 0 on are expected"
+                "numbers of processors, 0 or more, are expected", argument="cpus", value=self.cpus
             )
         slack = self.timer_slack
         if slack is not None and not (math.isfinite(slack) and 1e-9 <= slack <= 1.0):
-            raise InputError(f"RealTimeOptions: timer_slack is {slack!r}; 1e-9 to 1 s is expected")
+            raise InputError("1e-9 to 1 s is expected", argument="timer_slack", value=slack)
 
 
 class RealTime:
-    """Asks for what the options say and puts everything back; a context manager for one thread.
+    """Asks for the options' settings and restores everything; a context manager for one thread.
 
-    What is not granted is no error: the session runs, and `notes` says in words what is missing. Threads
+    What is not granted is no error: the session runs, and `notes` lists what is missing. Threads
     begun meanwhile do not inherit the priority; they do inherit `cpus`, so begin a writer before.
 
     Parameters
@@ -106,7 +106,7 @@ class RealTime:
             try:
                 self._undo.pop()()
             except OSError as error:
-                self.notes.append(f"not put back: {error}")
+                self.notes.append(f"not restored: {error}")
 
     def _raise_priority(self) -> None:
         assert self.options.priority is not None
@@ -117,13 +117,13 @@ class RealTime:
             os.sched_param(self.options.priority),
         )
 
-        def put_back() -> None:
+        def restore() -> None:
             try:
                 os.sched_setscheduler(0, policy, parameter)
             except PermissionError:  # who may have the flag set may not have it cleared
                 os.sched_setscheduler(0, policy | os.SCHED_RESET_ON_FORK, parameter)
 
-        self._undo.append(put_back)
+        self._undo.append(restore)
 
     def _lock_memory(self) -> None:
         import resource  # not on every platform

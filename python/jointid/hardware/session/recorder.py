@@ -1,4 +1,4 @@
-"""Samples and raw frames on disk as they arrive, written by a thread of their own."""
+"""Samples and raw frames on disk as they arrive, written in a thread."""
 
 from __future__ import annotations
 
@@ -30,20 +30,24 @@ Frame = tuple[float, int, bytes, bool]
 
 
 def check_output(path: Path) -> None:
-    """See that a session's files can be made.
+    """Check that a session's files can be created.
 
     Raises
     ------
     InputError
-        They exist, or the folder does not, or it is no .csv.
+        They exist, or the folder does not, or the name does not end in .csv.
     """
     if path.suffix != ".csv":
-        raise InputError(f"output {path}: a session writes .csv")
+        raise InputError("a session writes .csv", argument="output", value=str(path))
     if not path.parent.is_dir():
-        raise InputError(f"output {path}: the folder {path.parent} does not exist")
+        raise InputError("its folder does not exist", argument="output", value=str(path))
     for each in (path, path.with_suffix(".log")):
         if each.exists():
-            raise InputError(f"output {each} exists; a session overwrites nothing")
+            raise InputError(
+                "the file exists, and a session overwrites nothing",
+                argument="output",
+                value=str(each),
+            )
 
 
 class Recorder:
@@ -56,7 +60,7 @@ class Recorder:
     path : Path
         Of the recording, .csv; the frames go to the same name with .log.
     metadata : mapping
-        What the recording says of itself; JSON.
+        Metadata of the recording; JSON.
     name : str
 
     Raises
@@ -92,7 +96,7 @@ class Recorder:
         self._thread.start()
 
     def begin(self, notes: Mapping[str, Any]) -> None:
-        """Say above the first row what is known when the run begins; JSON."""
+        """Write above the first row what is known when the run begins; JSON."""
         self._queue.put(notes)
 
     def sample(self, row: Sequence[float]) -> None:
@@ -110,12 +114,14 @@ class Recorder:
         ----------
         ending : mapping, optional
             How the session ended; JSON. It is the last line of the same file, a comment: nothing that was
-            written is touched, and there is no second file to lose. Without it the file counts as torn.
+            written is changed, and there is no second file to lose. Without it the file counts as truncated.
 
         Raises
         ------
         OSError
             It could not be written.
+        Exception
+            A bug in the writing thread.
         """
         if self._thread.is_alive():
             self._ending = ending
@@ -140,7 +146,7 @@ class Recorder:
             self._syncing.close()
             for file in files:
                 file.sync()
-        except OSError as error:
+        except Exception as error:  # an OSError, or a bug: the session's loop raises it
             self._failure = error
         finally:
             self._syncing.close()

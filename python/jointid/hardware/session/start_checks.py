@@ -1,4 +1,4 @@
-"""What speaks against the start of a session, before the motor is on."""
+"""Reasons not to start a session, before the motor is on."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def problems_on_paper(
     limits: SessionLimits,
     period: float,
 ) -> Iterator[str]:
-    """What is wrong before the bus is touched: its load, the trajectory."""
+    """Problems that are known before the bus is used: its load, the trajectory."""
     load = drive.bus_load(period)
     if not load <= FULLEST_BUS:
         yield (
@@ -54,7 +54,7 @@ def problems_on_paper(
 
 
 def problems_at_rest(sample: DriveSample, limits: SessionLimits) -> Iterator[str]:
-    """What is wrong with what a drive says that is up, its motor off."""
+    """Problems with the state of a drive that is up, its motor off."""
     low, high = limits.position
     if not low <= sample.position <= high:
         yield (
@@ -63,4 +63,4 @@ def problems_at_rest(sample: DriveSample, limits: SessionLimits) -> Iterator[str
     if sample.clipped:
         yield "the torque sensor is at the end of its range"
     elif not math.isfinite(sample.reading):
-        yield f"the torque sensor reads {sample.reading}, which is no number"
+        yield f"the torque sensor reads {sample.reading}, which is not finite"

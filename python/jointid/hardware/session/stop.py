@@ -1,23 +1,25 @@
-"""How a session ends before its time: which limit, when, by how much; and as what exception."""
+"""How a session ends early: which limit, when, by how much; and as what exception."""
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from jointid.base.errors import InputError
+from jointid.hardware.session.drive import DriveFaultError
 from jointid.recording.recording import Recording
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stop:
-    """Why a session ended before its time.
+    """Why a session ended early.
 
     Attributes
     ----------
     limit : str
         Its name: a field of `SessionLimits`, or "stale_position", "drive_fault", "heartbeat_lost" (the
-        drive's), "host_heartbeat_lost" (ours, so the drive says), "bus", "recording" (it cannot be written),
-        "sensor" (a reading that is no number), "user", "error".
+        drive's), "host_heartbeat_lost" (ours, as the drive reports), "bus", "recording" (it cannot be written),
+        "sensor" (a reading that is not finite), "user", "error" (another exception).
     phase : str
         "check", "enable", "move", "settle" or "run".
     time : float
@@ -27,9 +29,9 @@ class Stop:
     message : str
         What happened, by how much.
     measured, allowed : float or None
-        The number that was beyond the limit, and the limit, in the limit's unit; None where there is no number.
+        The number that was beyond the limit, and the limit, in the limit's unit; None where there is none.
     motor_off : bool or None
-        Whether the drive was asked afterwards and said so; None: this drive cannot tell.
+        Whether the drive was asked afterwards and confirmed it; None: this drive cannot be asked.
     """
 
     limit: str
@@ -50,7 +52,7 @@ class Stop:
 
 
 class LimitError(RuntimeError):
-    """A limit was passed.
+    """A limit was exceeded.
 
     Parameters
     ----------
@@ -72,7 +74,7 @@ class LimitError(RuntimeError):
 
 
 class SessionRefusedError(RuntimeError):
-    """The session was not begun: the motor has not been on."""
+    """The session was not started: the motor has not been on."""
 
 
 class SessionStoppedError(RuntimeError):
@@ -88,3 +90,12 @@ class SessionStoppedError(RuntimeError):
     def __init__(self, stop: Stop, recording: Recording | None) -> None:
         super().__init__(str(stop))
         self.stop, self.recording = stop, recording
+
+
+def is_bug(error: BaseException) -> bool:
+    """Return whether an exception means a bug in a program: none of a limit, a fault, bad input, the user.
+
+    An OSError is none: a device or a disk has failed.
+    """
+    expected = (LimitError, DriveFaultError, InputError, OSError, KeyboardInterrupt)
+    return not isinstance(error, expected)

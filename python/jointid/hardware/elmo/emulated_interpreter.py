@@ -11,7 +11,7 @@ from jointid.base.errors import InputError
 from jointid.hardware.elmo.codec import Command, Reply, refusal
 
 if TYPE_CHECKING:
-    from jointid.hardware.emulated.elmo import EmulatedElmo
+    from jointid.hardware.elmo.emulated_drive import EmulatedElmo
 
 _KNOWN = {"MO", "UM", "RM", "TC", "PX", "VX", "IQ", "ID", "PL", "CL", "SR", "MF", "EC", "ST"}
 _KNOWN |= {"HL", "AN", "MS"}
@@ -149,7 +149,7 @@ class Interpreter:
 
 
 def _payload(command: Command, value: int | float) -> bytes:
-    """A reply's bytes, also of a value that is no number."""
+    """A reply's bytes, also of a value that is not finite."""
     if isinstance(value, float) and not math.isfinite(value):
         head = Reply(letters=command.letters, index=command.index, value=0.0).payload()[:4]
         return head + struct.pack("<f", value)

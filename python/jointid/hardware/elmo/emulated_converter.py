@@ -1,4 +1,4 @@
-"""An analog-to-digital node that is not there: it converts the torque sensor's voltage at each SYNC."""
+"""An emulated analog-to-digital node: it converts the torque sensor's voltage at each SYNC."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from jointid.hardware.can.canopen_frames import SYNC
 from jointid.hardware.elmo.torque_source import SensorScaling
 
 if TYPE_CHECKING:
+    from jointid.hardware.elmo.emulated_drive import EmulatedElmo
     from jointid.hardware.emulated.device import DeviceBus
-    from jointid.hardware.emulated.elmo import EmulatedElmo
 
 
 class EmulatedConverter:

@@ -2,35 +2,45 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from jointid.base.errors import InputError
-from jointid.hardware.bench.bench import Bench, joint_with_truth
+from jointid.hardware.bench.bench import Bench
+from jointid.hardware.bench.emulated_joints import emulated_joint, true_joint
+from jointid.hardware.elmo.emulated_converter import EmulatedConverter
+from jointid.hardware.elmo.emulated_drive import ElmoSettings, EmulatedElmo
 from jointid.hardware.elmo.torque_source import AnalogInput, SensorScaling, SyncedConverter
-from jointid.hardware.emulated.converter import EmulatedConverter
-from jointid.hardware.emulated.elmo import ElmoSettings, EmulatedElmo
-from jointid.joint.joint import Joint
 from jointid.simulation.plant import torque_limit
-from jointid.simulation.stepped import stepped_joint
 
 
-def true_joint(bench: Bench) -> Joint:
-    """The emulated joint, with its true parameters.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ElmoEmulation:
+    """What an emulated drive does to a command.
 
-    Raises
-    ------
-    InputError
-        The bench says nothing about an emulated joint.
+    Attributes
+    ----------
+    idle_loop : float
+        Time between two interpreter commands of the drive [s].
+    mantissa_bits : int
+        Of a current command that count: 24 for a float, 4 for the thesis's link.
     """
-    if bench.emulation is None:
-        raise InputError(
-            "there is no [session.emulated] in the joint file, which says what an emulated joint truly is"
-        )
-    return joint_with_truth(bench.joint, bench.emulation.truth)
+
+    idle_loop: float = 0.3e-3
+    mantissa_bits: int = 24
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.idle_loop <= 0.01:
+            raise InputError("0 to 0.01 s is expected", argument="idle_loop", value=self.idle_loop)
+        if not 1 <= self.mantissa_bits <= 24:
+            raise InputError(
+                "1 to 24 is expected", argument="mantissa_bits", value=self.mantissa_bits
+            )
 
 
-def emulated_devices(
+def elmo_devices(
     bench: Bench, seed: int = 0
 ) -> tuple[EmulatedElmo, EmulatedConverter] | tuple[EmulatedElmo]:
-    """The devices of a bench, to be put on an `EmulatedBus` or in an `EmulatorThread`.
+    """Return the emulated drive of a bench, and the torque sensor's converter if it has one.
 
     Parameters
     ----------
@@ -41,22 +51,16 @@ def emulated_devices(
     Raises
     ------
     InputError
-        The bench says nothing about an emulated joint, or not enough.
+        The bench does not describe an emulated joint, or not completely.
     """
-    joint, emulation = true_joint(bench), bench.emulation
-    assert emulation is not None
-    stepped = stepped_joint(
-        joint,
-        sensors=emulation.sensors,
-        period=bench.options.period,
-        integration_step=emulation.integration_step,
-        position=emulation.position,
-        seed=seed,
-    )
+    joint, stepped = true_joint(bench), emulated_joint(bench, seed)
+    emulation = bench.emulation.drive if bench.emulation is not None else None
+    if emulation is None:
+        emulation = ElmoEmulation()
     if joint.torque_constant is None:
         raise InputError(
-            "the joint has no torque_constant, so no torque can be commanded; give it in the joint file under "
-            "[drive]"
+            "missing, so no torque can be commanded; it stands in the joint file under [drive]",
+            argument="torque_constant",
         )
     limit = torque_limit(joint)
     largest = 1e3 if limit is None else limit / (joint.torque_constant * abs(joint.gear_ratio))

@@ -1,4 +1,4 @@
-"""An Elmo SimplIQ drive that is not there: the same frames, limits and refusals, moving a simulated joint."""
+"""An emulated Elmo SimplIQ drive: the same frames, limits and refusals, moving a simulated joint."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import can
 
 from jointid.hardware.can import canopen_frames as canopen
+from jointid.hardware.elmo.emulated_interpreter import Interpreter
+from jointid.hardware.elmo.emulated_objects import ObjectDictionary
 from jointid.hardware.elmo.torque_source import SensorScaling
 from jointid.hardware.emulated.faults import drive_failure
-from jointid.hardware.emulated.interpreter import Interpreter
-from jointid.hardware.emulated.objects import ObjectDictionary
 
 if TYPE_CHECKING:
     from jointid._core import SteppedJoint
@@ -25,7 +25,7 @@ _PERIOD_OF_GUARDS = 0.5e-3  # [s] between looks at speed and heartbeat
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ElmoSettings:
-    """What an emulated drive is, and how it has been set.
+    """Properties and settings of an emulated drive.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ class EmulatedElmo:
         self.current = 0.0
         self.current_limits = [self.settings.peak_current, self.settings.continuous_current]
         self.failure = 0
-        self.problem = 0  # of the power stage, as SR tells it
+        self.problem = 0  # of the power stage, as in SR
         # Faults on demand; set them at a time with the bus's `at`.
         self.stuck_encoder: int | None = None
         self.count_offset = 0  # since PX was set
@@ -105,7 +105,7 @@ class EmulatedElmo:
         self.stage_gain = 1.0
         self.stuck_voltage: float | None = None
         self.silent_heartbeat = False
-        # What it went through, for those who look afterwards.
+        # What has happened, for tests.
         self.torque_commands: list[tuple[float, float]] = []
         self.switchings: list[tuple[float, bool]] = []
         self._bus: DeviceBus | None = None
@@ -117,7 +117,7 @@ class EmulatedElmo:
 
     @property
     def bus(self) -> DeviceBus:
-        """The bus that it hangs on."""
+        """The bus to which it is connected."""
         assert self._bus is not None, "attach the drive to a bus"
         return self._bus
 
@@ -159,7 +159,7 @@ class EmulatedElmo:
             self._time = now
 
     def counts(self) -> int:
-        """Encoder counts of the motor, which an encoder that hangs repeats."""
+        """Encoder counts of the motor; an encoder that hangs repeats them."""
         if self.stuck_encoder is not None:
             return self.stuck_encoder
         angle = self.joint.position - self.settings.position_offset

@@ -12,12 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from jointid.base.errors import InputError
+from jointid.hardware.bench.drive_types import DEFAULT_TYPE, drive_type
 from jointid.hardware.can.frame_log import logged_frames
-from jointid.hardware.elmo.logged_cycles import CycleReader, LoggedCycle
-from jointid.hardware.elmo.options import ElmoOptions
-from jointid.hardware.elmo.timing import command_latency
-from jointid.hardware.session.cycle import held_torque, target_at
-from jointid.hardware.session.metadata import elmo_options_of
+from jointid.hardware.session.cycle import LoggedCycle, held_torque, target_at
 from jointid.joint.joint import Joint
 from jointid.recording.readers.loading import load
 from jointid.recording.recording import Recording
@@ -30,15 +27,16 @@ _LEAST = 8  # samples of a recording
 def replay(
     log: str | os.PathLike[str],
     joint: Joint,
-    options: ElmoOptions | None = None,
+    options: Any = None,
     *,
+    drive: str | None = None,
     recording: str | os.PathLike[str] | Recording | None = None,
     period: float | None = None,
     cycles_before: int | None = None,
     stamped: bool | None = None,
     trajectory: Trajectory | None = None,
 ) -> Recording:
-    """Return what the frames of a session say, by the same decoder that the session used.
+    """Return what the frames of a session hold, by the same decoder that the session used.
 
     With the session's own options it is the session's recording to within the log's rounding (1 ns).
     Other options may be tried: the scaling of a sensor, or a position offset that was wrong.
@@ -49,11 +47,14 @@ def replay(
         The session's ``.log``, or one of another program's: candump's, ``.asc`` or ``.blf``; from
         before the first motion until the end.
     joint : Joint
-        With torque constant.
-    options : ElmoOptions, optional
-        How the drive was wired. Default: what the recording says; without one `ElmoOptions()`.
+        With torque constant, if the drive is commanded by current.
+    options : object, optional
+        Options of the drive, of its type's own kind. Default: those that the recording names.
+    drive : str, optional
+        Name of the drive's type. Default: the one that the recording names; if it names none, the
+        type of joint files that name none.
     recording : path-like or Recording, optional
-        The session's, whole or torn: it says period, reference, which cycles are the run, and
+        The session's, complete or truncated: it holds period, reference, which cycles are the run, and
         how samples are stamped. Default: the ``.csv`` beside the log; none if there is none.
     period : float, optional
         Of the session [s]. Default: the recording's.
@@ -69,52 +70,46 @@ def replay(
     Returns
     -------
     Recording
-        time, position, sensor, torque; reference and current where they are known.
+        time, position, torque; sensor, reference and current where they are known.
 
     Raises
     ------
     InputError
-        The log cannot be read; frames are missing; the period is not known.
+        The log cannot be read; frames are missing; the period is not known; the drive's type is not installed.
+
+    Examples
+    --------
+    >>> bench = jid.hardware.Bench.load("joint.toml")
+    >>> again = jid.hardware.replay("runs/initial.log", bench.joint)
     """
     file = Path(log)
-    if joint.torque_constant is None:
-        raise InputError(
-            f"{file}: the joint has no torque_constant, so its commands are no torques"
-        )
     session = _session(file, recording)
-    said: dict[str, Any] = {} if session is None else dict(session.metadata)
-    wired = elmo_options_of(said, str(file)) if options is None else options
-    drive = said["drive"] if isinstance(said.get("drive"), Mapping) else {}
-    period = said.get("control_period") if period is None else period
-    if not isinstance(period, int | float) or not 0.0 < period < math.inf:
-        raise InputError(
-            f"{file}: the session's period is {period}; give period=, or the session's .csv with recording="
-        )
-    before = said.get("cycles_before", 0) if cycles_before is None else cycles_before
-    if not isinstance(before, int) or before < 0:
-        raise InputError(f"{file}: cycles_before is {before!r}; 0 or a positive number is expected")
-    reader = CycleReader(
-        joint,
-        wired,
-        stamped=drive.get("stamped_frames", True) if stamped is None else stamped,
-        rated_current=drive.get("continuous_current", math.nan),
-    )
+    metadata: dict[str, Any] = {} if session is None else dict(session.metadata)
     try:
-        reader.read(logged_frames(file))
+        name = drive if drive is not None else metadata.get("drive_type", DEFAULT_TYPE)
+        adapter = drive_type(name)
+        drive_options = adapter.recorded_options(metadata) if options is None else options
+        period = _period(metadata.get("control_period") if period is None else period)
+        before = metadata.get("cycles_before", 0) if cycles_before is None else cycles_before
+        if not isinstance(before, int) or before < 0:
+            raise InputError("0 or more is expected", argument="cycles_before", value=before)
+        recorded = metadata.get("drive")
+        identity = dict(recorded) if isinstance(recorded, Mapping) else {}
+        if stamped is not None:
+            identity["stamped_frames"] = stamped
+        every = adapter.decode(logged_frames(file), joint, drive_options, identity)
+        cycles = every[before:]
+        _check_count(len(cycles), before, session)
     except InputError as error:
-        sentence = str(error)
-        named = sentence if str(file) in sentence else f"{file}: {sentence}"
-        raise InputError(named) from error
-    cycles = reader.cycles[before:]
-    _check_count(file, len(cycles), before, session)
-    if session is not None and (trajectory is None or "truncated" not in said):
+        raise error.at(str(file)) from error
+    if session is not None and (trajectory is None or "truncated" not in metadata):
         cycles = cycles[: len(session.time)]
-    told = joint.torque_constant * joint.gear_ratio * _column(reader.cycles, "told")
-    told = np.concatenate(([0.0], told))[before : before + len(cycles) + 1]
+    torque = np.concatenate(([0.0], _column(every, "torque")))[before : before + len(cycles) + 1]
     taken, current = _column(cycles, "taken"), _column(cycles, "current")
     due = period * np.arange(len(cycles))
     shift = np.round(taken - taken[0] - due, 9)
-    acted = _column(cycles, "acted") - taken + command_latency(wired)
+    acted = _column(cycles, "acted") - taken + adapter.command_latency(drive_options)
+    sensor = _column(cycles, "reading")
     reference = None if session is None else session.reference
     if trajectory is not None:
         wanted = trajectory.sample(due)
@@ -122,13 +117,13 @@ def replay(
     return Recording(
         time=due + shift,
         position=_column(cycles, "position"),
-        torque=held_torque(told[:-1], told[1:], acted, period),
-        sensor=None if wired.torque is None else _column(cycles, "reading"),
+        torque=held_torque(torque[:-1], torque[1:], acted, period),
+        sensor=sensor if sensor.any() else None,  # 0 throughout: there is none
         reference=reference,
         current=None if np.isnan(current).any() else current,
         torque_hold="zoh",
         name=file.stem,
-        metadata={**said, "replayed": file.name},
+        metadata={**metadata, "replayed": file.name},
     )
 
 
@@ -142,16 +137,26 @@ def _session(file: Path, recording: str | os.PathLike[str] | Recording | None) -
     return load(beside if recording is None else recording)
 
 
-def _check_count(file: Path, found: int, before: int, session: Recording | None) -> None:
+def _period(period: Any) -> float:
+    if not isinstance(period, int | float) or not 0.0 < period < math.inf:
+        raise InputError(
+            "the session's period is not known; pass it, or the session's recording",
+            argument="period",
+            value=period,
+        )
+    return period
+
+
+def _check_count(found: int, before: int, session: Recording | None) -> None:
     """See that the cycles of the run are all there."""
     if session is not None and found < len(session.time):
         raise InputError(
-            f"{file}: {found} cycles of the run, the recording has {len(session.time)}; frames are missing "
+            f"{found} cycles of the run, the recording has {len(session.time)}; frames are missing "
             "from the log"
         )
     if found < _LEAST:
         raise InputError(
-            f"{file}: {max(0, found)} cycles behind the first {before}; at least {_LEAST} are expected"
+            f"{max(0, found)} cycles after the first {before}; at least {_LEAST} are expected"
         )
 
 

@@ -47,7 +47,7 @@ class ObjectDictionary:
 
     @property
     def consumer_time(self) -> float:
-        """How long that heartbeat may stay away [s]; 0: for ever."""
+        """Time for which that heartbeat may be missing [s]; 0: without limit."""
         return (self.get(0x1016, 1) & 0xFFFF) * 1e-3
 
     @property

@@ -1,0 +1,65 @@
+"""A bench's drive, opened: the real one over its bus, or an emulated one on virtual time."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+from typing import TYPE_CHECKING
+
+from jointid.hardware.bench.bench import Bench
+from jointid.hardware.bench.drive_types import drive_type
+
+if TYPE_CHECKING:
+    from jointid.hardware.emulated.device import Device
+    from jointid.hardware.session.drive import Drive
+
+
+def open_drive(
+    bench: Bench, *, emulate: bool = False, seed: int = 0
+) -> AbstractContextManager[Drive]:
+    """Open a bench's drive, for a `Session`.
+
+    Parameters
+    ----------
+    bench : Bench
+    emulate : bool
+        An emulated drive that moves a simulated joint, on virtual time. Default False: the real drive.
+    seed : int
+        Of the emulated noise. Default 0.
+
+    Returns
+    -------
+    context manager of Drive
+        The bus is closed at its end.
+
+    Raises
+    ------
+    InputError
+        The bus cannot be opened, or the bench does not describe an emulated joint.
+
+    Examples
+    --------
+    >>> bench = jid.hardware.Bench.load("joint.toml")
+    >>> with jid.hardware.open_drive(bench, emulate=True) as drive:
+    ...     recording = jid.hardware.Session(
+    ...         drive, bench.controller, bench.trajectory, bench.limits, options=bench.options
+    ...     ).run()
+    """
+    adapter = drive_type(bench.drive_type)
+    return adapter.emulate(bench, seed) if emulate else adapter.open(bench)
+
+
+def emulated_devices(bench: Bench, seed: int = 0) -> tuple[Device, ...]:
+    """Return the emulated devices of a bench, to be put on an `EmulatedBus` or in an `EmulatorThread`.
+
+    Parameters
+    ----------
+    bench : Bench
+    seed : int
+        Of the emulated noise. Default 0.
+
+    Raises
+    ------
+    InputError
+        The bench does not describe an emulated joint, or its drive type has no emulation on a CAN bus.
+    """
+    return drive_type(bench.drive_type).devices(bench, seed)

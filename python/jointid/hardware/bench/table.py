@@ -1,0 +1,177 @@
+"""A table of a joint file, read key by key: each error names file, table and key."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import MISSING, fields
+from typing import Any, NoReturn, TypeVar
+
+from jointid.base.errors import NOT_GIVEN, InputError
+from jointid.joint.checks import suggestion
+
+_KINDS: dict[str, tuple[tuple[type, ...], str]] = {
+    "float": ((int, float), "a number"),
+    "int": ((int,), "a whole number"),
+    "str": ((str,), "a text"),
+    "bool": ((bool,), "true or false"),
+    "tuple[int, ...]": ((list,), "a list of whole numbers"),
+    "tuple[float, float]": ((list,), "a list of two numbers"),
+}
+Made = TypeVar("Made")
+
+
+class Table:
+    """A table with its place.
+
+    Parameters
+    ----------
+    entries : mapping
+        Keys and values; a text such as "60deg" becomes an angle [rad].
+    name : str
+        As in the file, e.g. "session.drive".
+    source : str
+        The file.
+
+    Attributes
+    ----------
+    entries : dict
+    name, source : str
+
+    Raises
+    ------
+    InputError
+        `entries` is no table.
+    """
+
+    def __init__(self, entries: object, name: str, source: str) -> None:
+        if not isinstance(entries, Mapping):
+            raise InputError(
+                f"a table [{name}] is expected", argument=name, value=entries, place=source
+            )
+        self.entries = {str(key): _angle(value) for key, value in entries.items()}
+        self.name, self.source = name, source
+
+    @property
+    def place(self) -> str:
+        """File and table."""
+        return f"{self.source}: [{self.name}]"
+
+    def table(self, name: str) -> Table:
+        """Return an inner table; an empty one when there is none."""
+        return Table(self.entries.get(name, {}), f"{self.name}.{name}", self.source)
+
+    def without(self, *names: str) -> Table:
+        """Return the table without some keys."""
+        left = {name: value for name, value in self.entries.items() if name not in names}
+        return Table(left, self.name, self.source)
+
+    def choice(self, name: str, default: str, known: Collection[str]) -> str:
+        """Return the value of a key that must be one of the known names."""
+        value = self.entries.get(name, default)
+        if not isinstance(value, str) or value not in known:
+            self.refuse(name, suggestion(value, [*known]), value)
+        return value
+
+    def make(self, kind: Callable[..., Made], **fixed: Any) -> Made:
+        """Return a dataclass whose fields are the keys of this table.
+
+        Parameters
+        ----------
+        kind : dataclass
+        **fixed
+            Fields that are not keys of the table.
+
+        Raises
+        ------
+        InputError
+            An unknown key, a value of a wrong type, or one that the dataclass refuses.
+        """
+        known = {name: type_ for name, type_ in types_of(kind).items() if name not in fixed}
+        for item in fields(kind):  # type: ignore[arg-type]
+            required = item.default is MISSING and item.default_factory is MISSING
+            if required and item.name not in {*self.entries, *fixed}:
+                self.refuse(item.name, "missing; it has no default")
+        return self.call(kind, known, **fixed)
+
+    def make_core(self, kind: Callable[..., Made], unknown: Collection[str] = ()) -> Made:
+        """Return one of the core's values, e.g. a controller, from keys that are its attributes.
+
+        Parameters
+        ----------
+        kind : callable
+            Has a default for each attribute, and a method `asdict`.
+        unknown : collection of str
+            Attributes that are no keys of this table.
+        """
+        defaults: Mapping[str, object] = kind().asdict()  # type: ignore[attr-defined]
+        known = {n: type(v).__name__ for n, v in defaults.items() if n not in unknown}
+        try:
+            return self.call(kind, known)
+        except InputError:
+            raise
+        except ValueError as error:  # the core's own refusal of a number
+            raise InputError(str(error), place=self.place) from error
+
+    def call(self, kind: Callable[..., Made], known: Mapping[str, str], **fixed: Any) -> Made:
+        """Return what `kind` makes of the entries.
+
+        Parameters
+        ----------
+        kind : callable
+        known : mapping of str to str
+            Keys and their types; "" for a value that `kind` checks itself.
+        **fixed
+            Further arguments.
+        """
+        self.check_names(known)
+        entries = dict(self.entries)
+        for name, value in entries.items():
+            self._check(name, value, known[name])
+            if isinstance(value, list):
+                entries[name] = tuple(value)
+        try:
+            return kind(**entries, **fixed)
+        except InputError as error:
+            raise error.at(self.place) from error
+
+    def check_names(self, known: Collection[str]) -> None:
+        """Refuse keys that are not among the known ones."""
+        for name in self.entries:
+            if name not in known:
+                self.refuse(
+                    name, f"unknown key; {suggestion(name, known) if known else 'none is expected'}"
+                )
+
+    def refuse(self, name: str, reason: str, value: object = NOT_GIVEN) -> NoReturn:
+        """Raise an InputError about a key of this table, or about its value."""
+        raise InputError(reason, argument=name, value=value, place=self.place)
+
+    def _check(self, name: str, value: object, type_: str) -> None:
+        expected = _KINDS.get(type_.removesuffix(" | None"))
+        if expected is None or (value is None and type_.endswith(" | None")):
+            return
+        kinds, text = expected
+        if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
+            self.refuse(name, f"{text} is expected", value)
+
+
+def types_of(kind: Any) -> dict[str, str]:
+    """Return the fields of a dataclass and their types as text."""
+    # A type is a text already where annotations are postponed.
+    return {
+        item.name: item.type.__name__ if isinstance(item.type, type) else str(item.type)
+        for item in fields(kind)
+    }
+
+
+def _angle(value: Any) -> Any:
+    """Angles may be written as "60deg"."""
+    if isinstance(value, str) and value.endswith("deg"):
+        try:
+            return math.radians(float(value.removesuffix("deg")))
+        except ValueError:
+            return value
+    if isinstance(value, list):
+        return [_angle(entry) for entry in value]
+    return value

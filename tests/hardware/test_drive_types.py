@@ -1,0 +1,138 @@
+"""Drive types: found by name, nothing else names a make of drive, and hardware is independent of analysis."""
+
+import ast
+from collections.abc import Iterator
+from importlib.metadata import EntryPoint, EntryPoints
+from pathlib import Path
+from typing import Any
+
+import pytest
+from house_rules import _imported
+
+import jointid as jid
+from jointid.hardware.bench import drive_types
+from jointid.hardware.bench.drive_types import DriveType, drive_type, drive_type_names
+
+PACKAGE = Path(jid.__file__).parent
+EXAMPLE = Path(__file__).parents[2] / "examples" / "hardware" / "joint.toml"
+# The make, its emulation, and the registry: nothing else knows of it.
+AT_HOME = ("hardware/elmo/", "hardware/emulated/", "hardware/bench/drive_types.py")
+
+
+def test_only_its_own_folder_names_a_make_of_drive() -> None:
+    found = [
+        place
+        for path in sorted(PACKAGE.rglob("*.py*"))
+        if path.suffix in {".py", ".pyi"}
+        and not (place := path.relative_to(PACKAGE).as_posix()).startswith(AT_HOME)
+        and "elmo" in path.read_text(encoding="utf-8").lower() + place.lower()
+    ]
+    assert found == []
+
+
+def imports(module: Path) -> Iterator[Path]:
+    """Modules of ours that a module imports, inside functions too."""
+    name = ".".join(module.relative_to(PACKAGE).with_suffix("").parts)
+    for _, target, _ in _imported(ast.parse(module.read_text(encoding="utf-8")), name, PACKAGE):
+        first, *parts = target.split(".")
+        inner = PACKAGE.joinpath(*parts)
+        if first == "jointid" and parts:
+            yield inner / "__init__.py" if inner.is_dir() else inner.with_suffix(".py")
+
+
+def test_hardware_reaches_no_analysis() -> None:
+    reached = set((PACKAGE / "hardware").rglob("*.py"))
+    waiting = list(reached)
+    while waiting:
+        for path in imports(waiting.pop()):
+            if path.is_file() and path not in reached:
+                reached.add(path)
+                waiting.append(path)
+    folders = {path.relative_to(PACKAGE).parts[0] for path in reached}
+    assert {"hardware", "joint", "recording", "simulation"} <= folders
+    assert not folders & {"identification", "problem", "estimate", "comparison", "commissioning"}
+
+
+def test_a_joint_file_that_names_no_type_means_the_first_one(tmp_path: Path) -> None:
+    text = EXAMPLE.read_text(encoding="utf-8")
+    assert 'type = "elmo"' in text
+    older = tmp_path / "joint.toml"
+    lines = [line for line in text.splitlines() if not line.startswith('type = "elmo"')]
+    older.write_text("\n".join(lines), encoding="utf-8")
+    bench, named = jid.hardware.Bench.load(older), jid.hardware.Bench.load(EXAMPLE)
+    assert (bench.drive_type, bench.drive) == (named.drive_type, named.drive)
+    assert bench.drive_type == drive_types.DEFAULT_TYPE == "elmo"
+
+
+def installed(monkeypatch: pytest.MonkeyPatch, *entries: tuple[str, str]) -> None:
+    """Let packages register these entry points."""
+
+    def found(**wanted: Any) -> EntryPoints:
+        all_of_them = EntryPoints(
+            EntryPoint(name, value, drive_types.ENTRY_POINTS) for name, value in entries
+        )
+        return all_of_them.select(**wanted)
+
+    monkeypatch.setattr(drive_types, "entry_points", found)
+
+
+class Wheel(DriveType):
+    """A drive type of this module."""
+
+
+def test_an_installed_type_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    installed(monkeypatch, ("wheel", f"{__name__}:Wheel"))
+    assert drive_type_names() == ("elmo", "wheel")
+    assert isinstance(drive_type("wheel"), Wheel)
+
+
+@pytest.mark.parametrize(
+    ("entries", "name", "told"),
+    [
+        ((), "elmos", "drive type is 'elmos': did you mean 'elmo'?"),
+        ((("wheel", "no.such.module:X"),), "wheel", "no.such.module:X cannot be imported"),
+        ((("wheel", "math:pi"),), "wheel", "its entry point is no DriveType but a float"),
+        ((("wheel", "a:X"), ("wheel", "b:X")), "wheel", "by several packages: a:X, b:X"),
+    ],
+)
+def test_a_type_that_cannot_be_had_is_refused(
+    monkeypatch: pytest.MonkeyPatch, entries: tuple[tuple[str, str], ...], name: str, told: str
+) -> None:
+    installed(monkeypatch, *entries)
+    with pytest.raises(jid.InputError) as refused:
+        drive_type(name)
+    assert told in str(refused.value)
+    assert refused.value.value == name
+
+
+def test_a_type_without_a_decoder_is_refused_by_replay(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    installed(monkeypatch, ("wheel", f"{__name__}:Wheel"))
+    (tmp_path / "run.log").write_text("")
+    with pytest.raises(jid.InputError, match=r"run\.log: drive is 'Wheel': this type of drive dec"):
+        jid.hardware.replay(tmp_path / "run.log", jid.Joint(name="any"), drive="wheel", period=0.1)
+
+
+def test_a_type_that_is_built_in_cannot_be_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
+    installed(monkeypatch, ("elmo", f"{__name__}:Wheel"))
+    assert not isinstance(drive_type("elmo"), Wheel)
+
+
+def test_an_unknown_type_in_a_joint_file_has_its_place(tmp_path: Path) -> None:
+    text = EXAMPLE.read_text(encoding="utf-8")
+    path = tmp_path / "joint.toml"
+    path.write_text(text.replace('type = "elmo"', 'type = "elmu"'), encoding="utf-8")
+    with pytest.raises(jid.InputError) as refused:
+        jid.hardware.Bench.load(path)
+    error = refused.value
+    assert (error.argument, error.value) == ("type", "elmu")
+    assert error.place == f"{path}: [session.drive]"
+    assert "did you mean 'elmo'?" in error.reason
+
+
+def test_the_documentation_has_each_member_of_a_type() -> None:
+    text = (EXAMPLE.parents[2] / "docs" / "hardware.md").read_text(encoding="utf-8")
+    section = text.partition("### Registering a drive type")[2]
+    for member in (name for name in vars(DriveType) if not name.startswith("_")):
+        assert f"| `{member}" in section, member
