@@ -109,7 +109,7 @@ def test_the_recording_is_that_of_the_library(
         (["--controller", "pdd"], "did you mean 'pd'"),
         (["--controller", "pd"], "needs --gain stiffness"),
         (["--controller", "pd", "--gain", "stiffness=1", "--believe", "x"], "compensates nothing"),
-        (["--gain", "bandwith=3"], "no field 'bandwith'"),
+        (["--gain", "bandwith=3"], "bandwith: no such field"),
         (["--gain", "bandwidth=3", "--gain", "bandwidth=4"], "given twice"),
         (["--sensor", "torque_noise=-1"], "torque_noise"),
         (["--control-period", "0"], "more than 0"),

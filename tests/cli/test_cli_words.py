@@ -39,14 +39,14 @@ def folder(tmp_path: Path) -> Path:
         (f"identify {WELL} --unit temperature=K", "--unit names 'temperature'"),
         (f"identify {WELL} --model stribeck:asymmetric", "with --set sensor_offset=VALUE, or"),
         (f"identify {WELL} --column sensor=none --residual sensor", "use --residual torque"),
-        (f"identify {WELL} --population 1", "population must be 4"),
+        (f"identify {WELL} --population 1", "population is 1: must be 4"),
         (f"sweep {WELL} --grid windows=50 --resume", "give it as --output"),
         (f"sweep {WELL} --grid windows=50 --output STUDY", "--output"),
         (f"sweep {WELL} --grid ga=foo", "ga must be one of default, thesis"),
         (f"sweep {WELL} --tracking", "--tracking simulates; give --simulate JOINT"),
         ("simulate JOINT --trajectory sine", "sine needs amplitude and frequency"),
         ("simulate JOINT --trajectory sine:foo=3", "sine has no option 'foo'"),
-        ("simulate JOINT --trajectory thesis:amplitude=1", "[parameters.coulomb] in the joint"),
+        ("simulate JOINT --trajectory thesis:amplitude=1", "parameters.coulomb: has no value"),
     ],
 )
 def test_refusals_name_options(

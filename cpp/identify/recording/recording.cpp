@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/input_error.hpp"
+
 namespace jointid::identify {
 
 namespace {
@@ -250,7 +252,7 @@ void Recording::validate() const {
 void RecordingView::validate() const {
   const Eigen::Index n = samples();
   if (n < 8)
-    throw std::invalid_argument("a recording needs at least 8 samples, got " + std::to_string(n));
+    throw base::InputError("a recording needs at least 8 samples, got " + std::to_string(n));
   check_signal(time, "time", n);
   check_signal(position, "position", n);
   check_signal(velocity, "velocity", n);
@@ -294,7 +296,7 @@ UsableIntervals usable_intervals(const RecordingView& r, bool mask_standstill,
                                  const base::Cancel* cancel) {
   const MotionScale scale = motion_scale(r);
   if (!scale.moves()) {
-    throw std::invalid_argument("the joint never moves: there is no friction to identify");
+    throw base::InputError("the joint never moves: there is no friction to identify");
   }
   return usable_intervals(r, scale, mask_standstill, cancel);
 }

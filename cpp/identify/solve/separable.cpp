@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "identify/balance/terms.hpp"
 #include "search/polish.hpp"
 
 namespace jointid::identify {
@@ -267,7 +268,9 @@ std::vector<Scale> scales_of(const PenaltyFunction& penalty, const search::Domai
                              const Eliminated& reduced) {
   std::vector<Scale> scales;
   for (const auto i : reduced.free()) {
-    const bool root = penalty.names()[static_cast<std::size_t>(i)] == "stribeck";
+    // A shape like speed^-2 is searched in its square root, which is like a speed.
+    const auto& shape = find_shape(penalty.names()[static_cast<std::size_t>(i)]);
+    const bool root = shape.speed_power == -2.0;
     scales.emplace_back(domain.lower[i], domain.upper[i], root);
   }
   return scales;

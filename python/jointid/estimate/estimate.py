@@ -84,17 +84,20 @@ class Estimate:
         values = ", ".join(f"{p.name}={p.value:.6g}" for p in self.parameters.values())
         return f"Estimate({values}; {len(self.warnings)} warnings)"
 
-    def friction(self, velocity: ArrayLike) -> FrictionCurve:
+    def friction(self, velocity: ArrayLike, *, load: float = 0.0) -> FrictionCurve:
         """Friction at given velocities, with a pointwise 95 % band.
 
         Parameters
         ----------
         velocity : array_like, shape (n,)
             [rad/s or m/s]
+        load : float
+            Torque that the drive transmits [N·m or N], for the term `load_friction`; its sign does not
+            matter. Default 0: friction without load, which is also what `windows.friction` shows.
         """
         from jointid.estimate.friction_map import friction_curve
 
-        return friction_curve(self, np.atleast_1d(np.asarray(velocity, dtype=np.float64)))
+        return friction_curve(self, np.atleast_1d(np.asarray(velocity, dtype=np.float64)), load)
 
     def predict(self, recording: Recording) -> Prediction:
         """Hold the estimate against a recording: window integrals measured and predicted.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid import _core
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.plot.appearance import MEASURED, given_or_new, line_style
@@ -107,15 +108,9 @@ def _title(study: Study, value: str) -> str:
     if value == "penalty":
         sensor = "sensor_gain" in study.parameters
         return "penalty [(sensor units·s)²]" if sensor else "penalty [(N·m·s)²]"
-    units = {
-        "evaluations": "[–]",
-        "generations": "[–]",
-        "inertia": "[kg·m²]",
-        "coulomb": "[N·m]",
-        "static": "[N·m]",
-        "stribeck": "[s²/rad²]",
-        "viscous": "[N·m·s/rad]",
-        "torque_offset": "[N·m]",
+    rows = (*_core.shapes(), *_core.terms())
+    units = {"evaluations": "[–]", "generations": "[–]"} | {
+        row.name: f"[{row.unit}]" for row in rows
     }
     base = value.removesuffix("_stderr")
     unit = "[rad]" if value.startswith("tracking_") else units.get(base, "")

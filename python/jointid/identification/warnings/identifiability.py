@@ -19,23 +19,6 @@ _INSEPARABLE = 0.98
 # Width between the regressions with the noise in the sensor and with the noise in the torque, over the gain.
 _WIDE = 0.0075
 
-_ADVICE = {
-    "sensor_gain": "move the link through a wider range of gravity torque",
-    "sensor_offset": "move the link through a wider range of gravity torque",
-    "static": "let the joint pass slowly through speeds near zero, in both directions",
-    "stribeck": "let the joint pass slowly through speeds near zero, in both directions",
-    "coulomb": "move in both directions, at several speeds",
-    "viscous": "move faster, at several speeds",
-    "inertia": "accelerate harder, or give the inertia in the joint file",
-    "torque_offset": "move as much in one direction as in the other",
-    "stribeck_velocity": "let the joint pass slowly through speeds near zero, in both directions",
-    "stribeck_exponent": "let the joint pass slowly through speeds near zero, in both directions",
-    "load_friction": "move with different loads",
-    "gravity_cos": "move through a wider range of angles",
-    "gravity_sin": "move through a wider range of angles",
-}
-
-
 _STATIC = ("static", "static_positive", "static_negative")
 _COULOMB = ("coulomb", "coulomb_positive", "coulomb_negative")
 _SHAPES = ("stribeck", "stribeck_velocity", "stribeck_exponent")
@@ -110,7 +93,7 @@ def undetermined(facts: Facts) -> Iterator[Warned]:
             message += (
                 f"; {first} and {second} can hardly be told apart (correlation {correlation:.3f})"
             )
-    advice = dict.fromkeys(_ADVICE[kind] for kind in map(_kind, reasons) if kind in _ADVICE)
+    advice = dict.fromkeys(filter(None, map(_advice, reasons)))
     yield Warned(
         code="undetermined",
         parameters=tuple(name for name in facts.parameters if name in reasons),
@@ -118,9 +101,13 @@ def undetermined(facts: Facts) -> Iterator[Warned]:
     )
 
 
-def _kind(name: str) -> str:
-    """The quantity behind a parameter's name, whatever its direction or recording."""
-    return name.split("[")[0].removesuffix("_positive").removesuffix("_negative")
+def _advice(name: str) -> str:
+    """Which motion determines a parameter, whatever its order or recording."""
+    base = name.split("[")[0]
+    for term in _core.terms():
+        if base == term.name or (term.family and base.startswith(f"{term.name}_")):
+            return term.advice
+    return next((shape.advice for shape in _core.shapes() if shape.name == base), "")
 
 
 def _scale(p: ParameterEstimate, facts: Facts) -> float:
