@@ -7,7 +7,7 @@
 
 #include "base/input_error.hpp"
 #include "base/lanes.hpp"
-#include "simulate/motion.hpp"
+#include "simulate/integration_step.hpp"
 
 namespace jointid::simulate {
 
