@@ -1,11 +1,12 @@
 #pragma once
-// Choices with names: an enumeration whose values are told, and asked for, by a word.
+// Choices with names: an enumeration whose values are written as words.
 
 #include <array>
 #include <cstddef>
-#include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include "base/input_error.hpp"
 
 namespace jointid::base {
 
@@ -19,7 +20,7 @@ std::string_view word(Choice choice) {
   return Words<Choice>::all.at(static_cast<std::size_t>(choice));
 }
 
-/// Throws std::invalid_argument naming the known words.
+/// Throws InputError naming the known words.
 template <class Choice>
 Choice chosen(std::string_view asked) {
   std::string known;
@@ -27,11 +28,7 @@ Choice chosen(std::string_view asked) {
     if (Words<Choice>::all[i] == asked) return static_cast<Choice>(i);
     known.append(known.empty() ? "" : ", ").append(Words<Choice>::all[i]);
   }
-  throw std::invalid_argument(std::string(Words<Choice>::field)
-                                  .append(" '")
-                                  .append(asked)
-                                  .append("' is not known; known are ")
-                                  .append(known));
+  throw InputError("known are " + known, std::string(Words<Choice>::field), std::string(asked));
 }
 
 }  // namespace jointid::base

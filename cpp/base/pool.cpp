@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <stdexcept>
-#include <string>
 #include <utility>
+
+#include "base/input_error.hpp"
 
 namespace jointid::base {
 
@@ -12,7 +12,7 @@ namespace {
 
 unsigned checked(int threads) {
   if (threads < 0 || threads > 1024) {
-    throw std::invalid_argument("threads must be 0 (all) to 1024, got " + std::to_string(threads));
+    throw InputError("must be 0 (all) to 1024", "threads", as_value(threads));
   }
   return threads > 0 ? static_cast<unsigned>(threads)
                      : std::max(1U, std::thread::hardware_concurrency());

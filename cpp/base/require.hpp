@@ -1,10 +1,10 @@
 #pragma once
-// One sentence for a number that cannot be used: whose, which, the limit, and what it is.
+// Refuses a number that cannot be used: whose it is, which, what it is, and the limit.
 
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
 #include <string>
+
+#include "base/input_error.hpp"
 
 namespace jointid::base {
 
@@ -12,12 +12,12 @@ class Requirement {
  public:
   constexpr explicit Requirement(const char* owner) : owner_(owner) {}
 
-  void that(bool holds, const char* name, double value, const char* limit) const {
+  /// Throws InputError unless the condition holds.
+  template <class Number>
+  void that(bool holds, const char* name, Number value, const char* limit) const {
     if (holds) return;
-    std::ostringstream text;
-    text.precision(15);
-    text << owner_ << "." << name << " must be " << limit << ", got " << value;
-    throw std::invalid_argument(text.str());
+    throw InputError(std::string("must be ") + limit, std::string(owner_) + "." + name,
+                     as_value(value));
   }
   void finite(const char* name, double value) const {
     that(std::isfinite(value), name, value, "finite");

@@ -19,6 +19,10 @@ namespace jointid::bind {
 
 namespace py = pybind11;
 
+/// Raises the package's InputError; a value of null is not shown.
+[[noreturn]] void refuse(const std::string& reason, const std::string& argument,
+                         const py::handle& value = {});
+
 template <class T, class M>
 struct Field {
   const char* name;
@@ -27,6 +31,15 @@ struct Field {
 };
 template <class T, class M>
 Field(const char*, M T::*, const char*) -> Field<T, M>;
+
+/// What a field of this type takes, for a message.
+template <class V>
+constexpr const char* kind_of() {
+  if constexpr (std::is_same_v<V, bool>) return "True or False is expected";
+  if constexpr (std::is_integral_v<V>) return "a whole number is expected";
+  if constexpr (std::is_floating_point_v<V>) return "a number is expected";
+  return "it is of the wrong type";
+}
 
 /// A plain struct as a frozen Python value: keyword-only constructor that validates, replace,
 /// asdict, repr, ==, hash, pickle.
@@ -41,22 +54,14 @@ py::class_<T> value(py::module_& m, const char* name, std::string text, Field<T,
         if (py::isinstance<py::bool_>(given) != std::is_same_v<V, bool>) throw py::cast_error();
         target.*field.member = given.cast<V>();
       } catch (const py::cast_error&) {
-        throw py::type_error(std::string(name)
-                                 .append(".")
-                                 .append(key)
-                                 .append(" cannot be ")
-                                 .append(std::string(py::repr(given))));
+        refuse(kind_of<V>(), std::string(name) + "." + key, given);
       }
       return true;
     };
     if (!(one(fields) || ...)) {
       std::string known;
       (known.append(known.empty() ? "" : ", ").append(fields.name), ...);
-      throw py::type_error(std::string(name)
-                               .append(" has no field '")
-                               .append(key)
-                               .append("'; it has ")
-                               .append(known));
+      refuse("no such field; fields are " + known, std::string(name) + "." + key);
     }
   };
   const auto with = [=](T target, const py::dict& changes) {
@@ -116,6 +121,7 @@ class SignalPoll {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+void bind_input_error();
 void bind_terms(py::module_& m);
 void bind_recording(py::module_& m);
 void bind_penalty(py::module_& m);
@@ -123,6 +129,7 @@ void bind_genetic(py::module_& m);
 void bind_search(py::module_& m);
 void bind_online(py::module_& m);
 void bind_diagnose(py::module_& m);
+void bind_regression(py::module_& m);
 void bind_simulate(py::module_& m);
 
 }  // namespace jointid::bind

@@ -3,11 +3,13 @@
 PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
   m.doc() = "The compiled core of jointid; use it through the package jointid.";
   m.attr("__version__") = JOINTID_VERSION;
+  jointid::bind::bind_input_error();
   jointid::bind::bind_terms(m);
   jointid::bind::bind_recording(m);
   jointid::bind::bind_penalty(m);
   jointid::bind::bind_search(m);
   jointid::bind::bind_online(m);
   jointid::bind::bind_diagnose(m);
+  jointid::bind::bind_regression(m);
   jointid::bind::bind_simulate(m);
 }

@@ -123,39 +123,15 @@ void bind_penalty(py::module_& m) {
           "torque_steps",
           [](const Penalty& p, const Recordings& recordings, bool mask_standstill) {
             const py::gil_scoped_release nogil;
-            Eigen::VectorXd steps(p.window_count());
-            const auto& windows = p.windows();
-            const auto& run = p.recording_of();
-            for (std::size_t from = 0; from < windows.size();) {
-              std::size_t to = from;
-              while (to < windows.size() && run[to] == run[from]) ++to;
-              auto& recording = *recordings.at(static_cast<std::size_t>(run[from]));
-              const auto masked = recording.masked(mask_standstill, nullptr);
-              identify::sum_torque_steps(recording.view(), masked->usable(),
-                                         std::span(windows).subspan(from, to - from),
-                                         steps.segment(static_cast<Eigen::Index>(from),
-                                                       static_cast<Eigen::Index>(to - from)));
-              from = to;
-            }
-            return steps;
+            return p.torque_steps(all_masked(recordings, mask_standstill, nullptr));
           },
           py::arg("recordings"), py::arg("mask_standstill"),
           "How far the torque rises over each window's usable intervals.")
       .def_property_readonly("terms", &Penalty::terms, "The term of each coefficient.")
       .def_property_readonly("cumulative", &Penalty::cumulative)
       .def_property_readonly("window_count", &Penalty::window_count)
-      .def_property_readonly(
-          "windows",
-          [](const Penalty& p) {
-            Eigen::Matrix<std::int64_t, Eigen::Dynamic, 2> bounds(p.window_count(), 2);
-            for (std::size_t w = 0; w < p.windows().size(); ++w) {
-              const auto row = static_cast<Eigen::Index>(w);
-              bounds(row, 0) = p.windows()[w].begin;
-              bounds(row, 1) = p.windows()[w].end;
-            }
-            return bounds;
-          },
-          "First and last sample of each window, shape (window_count, 2).")
+      .def_property_readonly("windows", &Penalty::window_bounds,
+                             "First and last sample of each window, shape (window_count, 2).")
       .def_property_readonly("recording_of", &Penalty::recording_of,
                              "Which recording each window belongs to.")
       .def_property_readonly("usable_duration", &Penalty::usable_duration,

@@ -160,7 +160,7 @@ void bind_simulate(py::module_& m) {
       },
       py::arg("scenario"), py::arg("trajectory"), py::arg("setups"), py::kw_only(),
       py::arg("signals"), py::arg("threads") = 0,
-      "One Outcome a setup; RuntimeError when a loop is not stable.");
+      "One Outcome a setup; InputError when a loop is not stable.");
 }
 
 }  // namespace jointid::bind

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "base/quantile.hpp"
-#include "diagnose/motion.hpp"
+#include "diagnose/consistency.hpp"
 
 namespace jointid::diagnose {
 

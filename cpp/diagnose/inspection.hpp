@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/pool.hpp"
-#include "diagnose/motion.hpp"
+#include "diagnose/consistency.hpp"
 #include "diagnose/spikes.hpp"
 
 namespace jointid::diagnose {

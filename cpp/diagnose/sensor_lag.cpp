@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/elementary.hpp"
-#include "diagnose/motion.hpp"
+#include "diagnose/consistency.hpp"
 
 namespace jointid::diagnose {
 

@@ -2,7 +2,8 @@
 // Static friction maps as sums of linear coefficients times basis functions of the speed:
 // f(v) = sgn v * sum c_i h_i(|v|). (2-1) Coulomb + viscous, (2-3) Stribeck with exponent and (4-1)
 // Coulomb + static excess with Gaussian decay + viscous are such sums; only the decay has shape
-// parameters. A new map is a new basis here and a new row in identify/balance/terms.cpp.
+// parameters. A basis owns value, slope and unit; a new one is a case in each function here, and a
+// row in identify/balance/terms.cpp.
 
 #include "base/elementary.hpp"
 
@@ -17,6 +18,23 @@ enum class SpeedBasis {
 
 /// The direction of motion in which a term acts.
 enum class Direction { both, positive, negative };
+
+/// Units of a coefficient: torque over the basis's unit.
+struct BasisUnit {
+  const char* revolute;
+  const char* prismatic;
+};
+inline BasisUnit basis_unit(SpeedBasis basis) {
+  switch (basis) {
+    case SpeedBasis::speed:
+      return {"N·m·s/rad", "N·s/m"};
+    case SpeedBasis::one:
+    case SpeedBasis::stribeck:
+    case SpeedBasis::stribeck_general:
+      break;
+  }
+  return {"N·m", "N"};
+}
 
 /// h(|v|) for one speed; `shapes` holds as many values as the basis has.
 inline double basis_value(SpeedBasis basis, double speed, const double* shapes) {

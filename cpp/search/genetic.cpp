@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/input_error.hpp"
 #include "search/breeder.hpp"
 
 namespace jointid::search {
@@ -181,9 +182,9 @@ class Run {
     }
     std::ostringstream text;
     text.precision(10);
-    text << "resume: the state's best has penalty " << state_.penalty << " there and " << again[0]
+    text << "the state's best has penalty " << state_.penalty << " there and " << again[0]
          << " here; it belongs to another recording, model or windows";
-    throw std::invalid_argument(text.str());
+    throw base::InputError(text.str(), "resume");
   }
 
   const Objective& objective_;

@@ -1,8 +1,8 @@
 #include "search/genetic_options.hpp"
 
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
+
+#include "base/require.hpp"
 
 namespace jointid::search {
 
@@ -10,12 +10,9 @@ namespace {
 
 constexpr int kMostIndividuals = 1'000'000;
 
-void require(bool holds, const char* name, double value, const char* limit) {
-  if (holds) return;
-  std::ostringstream text;
-  text.precision(15);
-  text << "GaOptions." << name << " must be " << limit << ", got " << value;
-  throw std::invalid_argument(text.str());
+template <class Number>
+void require(bool holds, const char* name, Number value, const char* limit) {
+  base::Requirement("GaOptions").that(holds, name, value, limit);
 }
 
 void probability(const char* name, double p) {

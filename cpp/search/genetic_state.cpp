@@ -5,8 +5,9 @@
 #include <cstring>
 #include <limits>
 #include <sstream>
-#include <stdexcept>
 #include <type_traits>
+
+#include "base/input_error.hpp"
 
 namespace jointid::search {
 
@@ -17,7 +18,7 @@ static_assert(std::endian::native == std::endian::little, "checkpoints are littl
 constexpr std::string_view kMagic = "jointid genetic search, format 1\n";
 
 [[noreturn]] void refuse(const std::string& why) {
-  throw std::invalid_argument("checkpoint of a genetic search: " + why);
+  throw base::InputError(why, "checkpoint of a genetic search");
 }
 
 std::uint64_t checksum(std::string_view bytes) {  // FNV-1a
@@ -197,26 +198,24 @@ void require_same_run(const GaState& state, const GaOptions& options, const Doma
     using Field = std::remove_cvref_t<decltype(field)>;
     if constexpr (std::is_enum_v<Field>) {
       const auto given = static_cast<Field>(static_cast<int>(other));
-      throw std::invalid_argument(difference(name, base::word(field), base::word(given)));
+      throw base::InputError(difference(name, base::word(field), base::word(given)));
     } else {
-      throw std::invalid_argument(difference(name, told(field), other));
+      throw base::InputError(difference(name, told(field), other));
     }
   });
-  if (state.seed != seed) throw std::invalid_argument(difference("seed", state.seed, seed));
-  if (state.trial != trial) throw std::invalid_argument(difference("trial", state.trial, trial));
+  if (state.seed != seed) throw base::InputError(difference("seed", state.seed, seed));
+  if (state.trial != trial) throw base::InputError(difference("trial", state.trial, trial));
   if (state.domain.size() != domain.size()) {
-    throw std::invalid_argument(
+    throw base::InputError(
         difference("a number of parameters of", state.domain.size(), domain.size()));
   }
   for (Eigen::Index i = 0; i < domain.size(); ++i) {
     const std::string which = "bound of parameter " + std::to_string(i);
     if (state.domain.lower[i] != domain.lower[i]) {
-      throw std::invalid_argument(
-          difference("lower " + which, state.domain.lower[i], domain.lower[i]));
+      throw base::InputError(difference("lower " + which, state.domain.lower[i], domain.lower[i]));
     }
     if (state.domain.upper[i] != domain.upper[i]) {
-      throw std::invalid_argument(
-          difference("upper " + which, state.domain.upper[i], domain.upper[i]));
+      throw base::InputError(difference("upper " + which, state.domain.upper[i], domain.upper[i]));
     }
   }
 }

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <stdexcept>
 #include <string>
 
+#include "base/input_error.hpp"
 #include "base/lanes.hpp"
-#include "simulate/motion.hpp"
+#include "simulate/integration_step.hpp"
 
 namespace jointid::simulate {
 
@@ -66,8 +66,8 @@ class Loop {
   double command(double time, const Reference& wanted, double position, double velocity,
                  const Dynamics<double>& acting, bool sample, bool settled) {
     if (!(std::fabs(position) < kOutOfBounds && std::fabs(velocity) < kOutOfBounds)) {
-      throw std::runtime_error("the motion leaves all bounds " + std::to_string(time) +
-                               " s after its start: the loop is not stable");
+      throw base::InputError("the motion leaves all bounds " + std::to_string(time) +
+                             " s after its start: the loop is not stable");
     }
     const Observation shown = sensors_.observe({time, position, velocity, acting.link_torque});
     const double torque = control_.step(

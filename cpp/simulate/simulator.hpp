@@ -55,7 +55,7 @@ struct Outcome {
   std::int64_t saturations = 0;
 };
 
-/// One Outcome a setup, in order. Throws std::runtime_error when a motion leaves all bounds.
+/// One Outcome a setup, in order. Throws base::InputError when a motion leaves all bounds.
 std::vector<Outcome> simulate(const Scenario& scenario, const Trajectory& trajectory,
                               const std::vector<Setup>& setups, bool signals, base::Pool& pool);
 

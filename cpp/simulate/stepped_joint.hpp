@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "model/joint.hpp"
-#include "simulate/motion.hpp"
+#include "simulate/integration_step.hpp"
 #include "simulate/sensors.hpp"
 
 namespace jointid::simulate {

@@ -43,11 +43,12 @@ Trajectory Trajectory::multisine(Eigen::VectorXd amplitude, Eigen::VectorXd freq
                                  Eigen::VectorXd phase, double offset, double duration) {
   if (amplitude.size() == 0 || amplitude.size() != frequency.size() ||
       amplitude.size() != phase.size()) {
-    throw std::invalid_argument(
-        "Trajectory: amplitude, frequency and phase must have the same number of values, at least "
+    throw base::InputError(
+        "amplitude, frequency and phase must have the same number of values, at least "
         "one, got " +
-        std::to_string(amplitude.size()) + ", " + std::to_string(frequency.size()) + " and " +
-        std::to_string(phase.size()));
+            std::to_string(amplitude.size()) + ", " + std::to_string(frequency.size()) + " and " +
+            std::to_string(phase.size()),
+        "Trajectory");
   }
   for (Eigen::Index i = 0; i < amplitude.size(); ++i) {
     require.finite("amplitude", amplitude[i]);
@@ -93,9 +94,10 @@ Trajectory Trajectory::trapezoid(double distance, double velocity, double accele
 Trajectory Trajectory::samples(const Eigen::VectorXd& time, const Eigen::VectorXd& position) {
   const Eigen::Index n = time.size();
   if (n < 2 || position.size() != n) {
-    throw std::invalid_argument(
-        "Trajectory: time and position must have the same number of samples, at least two, got " +
-        std::to_string(n) + " and " + std::to_string(position.size()));
+    throw base::InputError(
+        "time and position must have the same number of samples, at least two, got " +
+            std::to_string(n) + " and " + std::to_string(position.size()),
+        "Trajectory");
   }
   for (Eigen::Index i = 0; i < n; ++i) {
     require.finite("time", time[i]);

@@ -183,9 +183,8 @@ CHECK_CASE("genetic: options are refused by name, value and limit") {
                           std::string_view limit) {
     GaOptions options;
     spoil(options);
-    CHECK_REFUSED(options.validate(), "GaOptions." + std::string(name) + " must be ");
-    CHECK_REFUSED(options.validate(), "got " + std::string(value));
-    CHECK_REFUSED(options.validate(), limit);
+    CHECK_REFUSED(options.validate(), "GaOptions." + std::string(name) + " is " +
+                                          std::string(value) + ": must be " + std::string(limit));
     CHECK_REFUSED(search_for(sphere, cube(2, -1.0, 1.0), options, 1), name);
   };
   refused([](GaOptions& o) { o.population = 3; }, "population", "3", "4 to 1000000");

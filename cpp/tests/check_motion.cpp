@@ -1,7 +1,7 @@
 // One integration step: a stuck joint stays, friction takes energy only, the order holds through
 // reversals, bristles are stable at any stiffness.
 
-#include "simulate/motion.hpp"
+#include "simulate/integration_step.hpp"
 
 #include <bit>
 #include <cstdint>

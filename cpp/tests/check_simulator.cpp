@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/input_error.hpp"
 #include "check.hpp"
 #include "simulated.hpp"
 
@@ -124,7 +125,7 @@ CHECK_CASE("simulator: an unstable loop is told, not returned") {
   setup.joint.torque_limit = 1e200;
   setup.controller = simulate::Pd{1e9, 0.0};
   base::Pool pool(1);
-  const std::string message = message_of<std::runtime_error>(
+  const std::string message = message_of<base::InputError>(
       [&] {
         static_cast<void>(simulate::simulate(short_scenario(), thesis_trajectory(60.0, 0.5, 0.4),
                                              {setup}, false, pool));

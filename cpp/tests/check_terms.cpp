@@ -1,5 +1,9 @@
 // Terms: bases and their derivatives, keys and names.
 
+#include <set>
+#include <string>
+#include <vector>
+
 #include "check.hpp"
 #include "identify/balance/terms.hpp"
 
@@ -29,12 +33,106 @@ CHECK_CASE("terms: the general decay's derivatives are its differences") {
               model::basis_value(SpeedBasis::stribeck, 0.07, &shape), 1e-15);
 }
 
+// The rows below are read from the table, so that a new row is checked without a line here.
+
+CHECK_CASE("terms: every row says what it is, which motion determines it and what adds it") {
+  std::set<std::string> keys;
+  for (const auto& term : identify::term_table()) {
+    CHECK_WITH(keys.insert(term.key).second, term.key + " is there twice");
+    CHECK_WITH(!term.meaning.empty() && !term.advice.empty(), term.key);
+    CHECK_WITH(!term.unit.empty() && !term.unit_prismatic.empty(), term.key);
+    CHECK_WITH(!term.option.empty() || term.key == "inertia", term.key);
+    for (const auto& shape : term.shapes) CHECK(identify::find_shape(shape).name == shape);
+  }
+  for (const auto& shape : identify::shape_table()) {
+    CHECK_WITH(!shape.meaning.empty() && !shape.advice.empty(), shape.name);
+    CHECK_WITH(shape.speed_power != 0.0 || shape.lower < shape.upper, shape.name + " has no room");
+  }
+  CHECK_REFUSED(identify::find_shape("width"), "unknown shape 'width'");
+}
+
+CHECK_CASE("terms: capabilities are refused by default") {
+  const identify::Term bare{};
+  CHECK(!bare.simulated);
+  CHECK(bare.control == identify::Control::refused);
+}
+
+CHECK_CASE("terms: the terms of every model exist for both directions apart") {
+  for (const auto& model : identify::model_table()) {
+    CHECK(identify::model_terms(model.name, false) == model.terms);
+    const auto apart = identify::model_terms(model.name, true);
+    CHECK(apart.size() == 2 * model.terms.size());
+    for (std::size_t i = 0; i < apart.size(); ++i) {
+      const auto base = identify::find_term(model.terms[i / 2]);
+      const auto row = identify::find_term(apart[i]);
+      CHECK_WITH(base.option == "name", base.key);
+      CHECK(row.direction ==
+            (i % 2 == 0 ? model::Direction::positive : model::Direction::negative));
+      CHECK(row.shapes == base.shapes && row.unit == base.unit && row.advice == base.advice);
+      CHECK(row.simulated == base.simulated && row.control == base.control);
+    }
+  }
+  CHECK_REFUSED(identify::model_terms("dahl", false), "dahl");
+}
+
+CHECK_CASE("terms: friction of each direction is that of both, and odd in the velocity") {
+  const Eigen::VectorXd speed = Eigen::VectorXd::LinSpaced(40, 0.01, 2.0);
+  for (const auto& term : identify::term_table()) {
+    if (!identify::is_friction(term) || term.direction != model::Direction::both) continue;
+    const Eigen::VectorXd shapes =
+        Eigen::VectorXd::Constant(static_cast<Eigen::Index>(term.shapes.size()), 0.7);
+    const auto at = [&](const identify::Term& row, const Eigen::VectorXd& velocity) {
+      return identify::friction_basis(row, velocity, shapes, 3.0);
+    };
+    const Eigen::VectorXd forward = at(term, speed);
+    CHECK_WITH(forward.minCoeff() > 0.0, term.key);
+    CHECK_WITH(at(term, -speed) == -forward, term.key);
+    CHECK_WITH(at(term, Eigen::VectorXd::Zero(1))[0] == 0.0, term.key);
+    if (identify::needs_load(term)) continue;
+    const auto positive = identify::find_term(term.key + "_positive");
+    const auto negative = identify::find_term(term.key + "_negative");
+    CHECK_WITH(at(positive, speed) == forward && at(positive, -speed).isZero(0.0), term.key);
+    CHECK_WITH(at(negative, -speed) == -forward && at(negative, speed).isZero(0.0), term.key);
+  }
+}
+
+CHECK_CASE("terms: load friction grows with the load, whatever its sign") {
+  const auto term = identify::find_term("load_friction");
+  const Eigen::Vector3d velocity(-2.0, 0.0, 0.5);
+  const Eigen::VectorXd none;
+  CHECK(identify::is_friction(term) && identify::needs_load(term));
+  CHECK(identify::friction_basis(term, velocity, none).isZero(0.0));
+  for (const double load : {-40.0, 40.0}) {
+    CHECK(identify::friction_basis(term, velocity, none, load) ==
+          Eigen::Vector3d(-40.0, 0.0, 40.0));
+  }
+  CHECK_REFUSED(identify::friction_basis(identify::find_term("inertia"), velocity, none),
+                "'inertia' is not a friction term");
+}
+
+CHECK_CASE("terms: the slope of every basis is the difference of its values") {
+  for (const auto& term : identify::term_table()) {
+    for (std::size_t which = 0; which < term.shapes.size(); ++which) {
+      std::vector<double> above(term.shapes.size(), 0.9);
+      std::vector<double> below(term.shapes.size(), 0.9);
+      above[which] += 1e-6;
+      below[which] -= 1e-6;
+      const std::vector<double> middle(term.shapes.size(), 0.9);
+      const double difference = (model::basis_value(term.basis, 0.6, above.data()) -
+                                 model::basis_value(term.basis, 0.6, below.data())) /
+                                2e-6;
+      CHECK_CLOSE(model::basis_slope(term.basis, 0.6, middle.data(), static_cast<int>(which)),
+                  difference, 1e-8);
+    }
+  }
+}
+
 CHECK_CASE("terms: keys and names") {
   CHECK(identify::find_term("static_general").name == "static");
   CHECK(identify::find_term("ripple_cos_2").order == 2.0);
   for (const char* bad :
        {"ripple_cos", "ripple_cos_", "ripple_cos_x", "ripple_cos_-2", "coulom", ""}) {
-    CHECK_REFUSED(identify::find_term(bad), "unknown term");
+    CHECK_REFUSED(identify::find_term(bad), "known are inertia, ");
   }
   for (const char* good :
        {"inertia", "stribeck", "stribeck_exponent", "ripple_sin_2.5", "torque_offset[12]"}) {

@@ -203,9 +203,12 @@ CHECK_CASE("windows: the duration follows the noise of the velocity") {
 }
 
 CHECK_CASE("windows: what cannot be is refused in words") {
-  CHECK_REFUSED((identify::WindowOptions{-1, 0.0}.validate()), "count must be positive, got -1");
-  CHECK_REFUSED((identify::WindowOptions{0, -0.5}.validate()), "duration must be positive");
-  CHECK_REFUSED((identify::WindowOptions{0, std::nan("")}.validate()), "duration must be positive");
+  CHECK_REFUSED((identify::WindowOptions{-1, 0.0}.validate()),
+                "windows.count is -1: must be positive");
+  CHECK_REFUSED((identify::WindowOptions{0, -0.5}.validate()),
+                "windows.duration is -0.5: must be positive");
+  CHECK_REFUSED((identify::WindowOptions{0, std::nan("")}.validate()),
+                "windows.duration is nan: must be positive");
   CHECK_REFUSED((identify::WindowOptions{10, 0.5}.validate()), "not both");
   auto still = swinging(100);
   still.velocity.setZero();

@@ -15,6 +15,7 @@ __all__: list[str] = [
     "Agreement",
     "CompensatedPid",
     "CompressedPenalty",
+    "Control",
     "ControlRun",
     "GaOptions",
     "GaResult",
@@ -61,11 +62,13 @@ __all__: list[str] = [
     "minimise_separable",
     "minimise_trials",
     "model_names",
+    "model_terms",
     "models",
     "parameter_names",
     "polish",
     "refine_separable",
     "robust_variance",
+    "shape",
     "shapes",
     "simulate_runs",
     "term",
@@ -75,10 +78,31 @@ __all__: list[str] = [
     "window_duration",
 ]
 
+class Control(enum.Enum):
+    """
+    What a model-based controller does about a term.
+    """
+
+    compensated = ...
+    feedback = ...
+    refused = ...
+
 class Term:
     """
     One term of the torque balance: a coefficient times a basis.
     """
+    @property
+    def advice(self) -> str:
+        """
+        Which motion determines it.
+        """
+    @property
+    def control(self) -> Control: ...
+    @property
+    def decay(self) -> str:
+        """
+        How its friction fades with speed: the simulated joint's field of that name.
+        """
     @property
     def family(self) -> bool:
         """
@@ -87,7 +111,7 @@ class Term:
     @property
     def friction(self) -> bool:
         """
-        True if the term belongs to the friction map.
+        Whether it opposes motion, and so belongs to the friction map.
         """
     @property
     def key(self) -> str:
@@ -102,11 +126,26 @@ class Term:
         The parameter's name.
         """
     @property
+    def needs_load(self) -> bool:
+        """
+        Whether it is friction that depends on the drive's torque, too.
+        """
+    @property
     def non_negative(self) -> bool: ...
+    @property
+    def option(self) -> str:
+        """
+        What adds it: "name" is a friction model, else an option of the model; empty: always there.
+        """
     @property
     def shapes(self) -> list[str]:
         """
-        Names of the shape parameters that bend the basis.
+        Names of the basis's shape parameters.
+        """
+    @property
+    def simulated(self) -> bool:
+        """
+        Whether the simulated joint has it.
         """
     @property
     def unit(self) -> str: ...
@@ -115,16 +154,36 @@ class Term:
 
 class Shape:
     """
-    A shape parameter: it bends the basis of a term.
+    A shape parameter: the basis of a term is not linear in it.
     """
+    @property
+    def advice(self) -> str:
+        """
+        Which motion determines it.
+        """
+    @property
+    def lower(self) -> float:
+        """
+        Default bound where speed_power is 0.
+        """
     @property
     def meaning(self) -> str: ...
     @property
     def name(self) -> str: ...
     @property
+    def speed_power(self) -> float:
+        """
+        Default bounds are shares of the peak speed to this power; 0: lower, upper.
+        """
+    @property
     def unit(self) -> str: ...
     @property
     def unit_prismatic(self) -> str: ...
+    @property
+    def upper(self) -> float:
+        """
+        Default bound where speed_power is 0.
+        """
 
 class Model:
     """
@@ -2607,9 +2666,10 @@ def friction_basis(
     key: str,
     velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     shapes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    load: typing.SupportsFloat | typing.SupportsIndex = 0.0,
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
     """
-    The friction term's basis at each velocity [rad/s or m/s]: what its coefficient multiplies.
+    The friction term's basis at each velocity [rad/s or m/s] while the drive transmits a load [N·m or N]: what its coefficient multiplies.
     """
 
 def inspect(
@@ -2689,6 +2749,11 @@ def minimise_trials(
     """
 
 def model_names() -> tuple[typing.Any, ...]: ...
+def model_terms(name: str, *, asymmetric: bool = False) -> list[str]:
+    """
+    Keys of a friction model's terms; asymmetric: two for each, one a direction of motion.
+    """
+
 def models() -> list[Model]:
     """
     All friction models.
@@ -2696,7 +2761,7 @@ def models() -> list[Model]:
 
 def parameter_names() -> tuple[typing.Any, ...]:
     """
-    All parameters but the harmonics, a shape parameter behind the term it bends.
+    All parameters but the harmonics, a shape parameter after its first term.
     """
 
 def polish(
@@ -2732,6 +2797,11 @@ def robust_variance(
     Prewhitened Newey-West variance of weighted sums of the scores.
     """
 
+def shape(name: str) -> Shape:
+    """
+    The shape parameter of that name.
+    """
+
 def shapes() -> list[Shape]:
     """
     All shape parameters.
@@ -2746,7 +2816,7 @@ def simulate_runs(
     threads: typing.SupportsInt | typing.SupportsIndex = 0,
 ) -> list[Outcome]:
     """
-    One Outcome a setup; RuntimeError when a loop is not stable.
+    One Outcome a setup; InputError when a loop is not stable.
     """
 
 def term(key: str) -> Term:

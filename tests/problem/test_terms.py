@@ -183,6 +183,19 @@ def test_load_friction_is_found_where_it_is() -> None:
     estimate = jid.identify(loaded, model=jid.Model(load_friction=True), search="separable")
     assert estimate.parameters["load_friction"].value == pytest.approx(0.1, rel=0.06)
     assert estimate.parameters["coulomb"].value == pytest.approx(2.0, rel=0.03)
+    # The friction map is that of the velocity and the load; without load it is what the windows show.
+    value = {name: p.value for name, p in estimate.parameters.items()}
+    bare, under_load = estimate.friction([-1.0, 1.0]), estimate.friction([-1.0, 1.0], load=-20.0)
+    expected = np.array([-1.0, 1.0]) * (value["coulomb"] + value["viscous"])
+    np.testing.assert_allclose(bare.torque, expected)
+    np.testing.assert_allclose(
+        under_load.torque - bare.torque,
+        [-20.0 * value["load_friction"], 20.0 * value["load_friction"]],
+    )
+    assert np.all(under_load.upper - under_load.lower > bare.upper - bare.lower)
+    moving = np.abs(estimate.windows.velocity) > 0.3
+    predicted = estimate.friction(estimate.windows.velocity[moving]).torque
+    np.testing.assert_allclose(estimate.windows.friction[moving], predicted, atol=0.1)
 
 
 def test_offset_of_each_recording() -> None:

@@ -60,7 +60,7 @@ def test_a_configuration_is_a_frozen_value(controller: Any) -> None:
         setattr(controller, name, 3.0)
     with pytest.raises(ValueError, match=f"{name}"):
         controller.replace(**{name: math.nan})
-    with pytest.raises(TypeError, match="has no field 'gravity'"):
+    with pytest.raises(jid.InputError, match=r"\.gravity: no such field; fields are "):
         kind(gravity=1.0)
 
 
@@ -140,7 +140,7 @@ def test_what_is_no_number_is_refused_and_leaves_no_trace(controller: Any, name:
     moment = {"time": 0.0, "position": 0.1, "velocity": 0.2, "sensor": 3.0, "reference": 0.11}
     work, other = (controller.start(1e-3, torque_limit=50.0) for _ in range(2))
     for wrong in (math.nan, math.inf, -math.inf):
-        with pytest.raises(ValueError, match=rf"step\.{name} must be finite"):
+        with pytest.raises(ValueError, match=rf"step\.{name} is (nan|-?inf): must be finite"):
             work.step(**{**moment, name: wrong})
     assert work.saturations == 0
     assert work.step(**moment) == other.step(**moment)
@@ -213,12 +213,12 @@ def test_control_estimates_are_the_parameters() -> None:
         "sensor_gain": 0.0,
         "sensor_offset": 0.0,
     }
-    with pytest.raises(jid.InputError, match="'stribeck_general'"):
+    with pytest.raises(jid.InputError, match=r"'stribeck_general': .*'static_general_positive'"):
         jid.control_estimates(bare.replace(model=bare.model.replace(name="stribeck_general")))
 
 
 def test_unknown_words_are_refused() -> None:
     with pytest.raises(ValueError, match="measured, reference"):
         jid.AdaptiveRobust(friction_velocity="desired")
-    with pytest.raises(ValueError, match=r"controller\.period must be finite and above 0"):
+    with pytest.raises(ValueError, match=r"controller\.period is .*: must be finite and above 0"):
         jid.Pd().start(0.0)

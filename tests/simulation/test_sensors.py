@@ -138,7 +138,9 @@ def test_sensors_are_a_frozen_value() -> None:
     assert sensors.replace(velocity="exact").velocity == "exact"
     with pytest.raises(ValueError, match="exact, difference, counts"):
         jid.Sensors(velocity="guess")
-    with pytest.raises(ValueError, match=r"Sensors\.torque_noise must be finite and at least 0"):
+    with pytest.raises(
+        ValueError, match=r"Sensors\.torque_noise is .*: must be finite and at least 0"
+    ):
         jid.Sensors(torque_noise=-1.0)
-    with pytest.raises(ValueError, match=r"Sensors\.filter_order must be 0, 1 or 2, got 3"):
+    with pytest.raises(ValueError, match=r"Sensors\.filter_order is 3: must be 0, 1 or 2"):
         jid.Sensors(filter_order=3)

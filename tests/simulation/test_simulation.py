@@ -403,15 +403,15 @@ def test_the_torque_limit_cuts_and_counts(joint: jid.Joint) -> None:
 @pytest.mark.parametrize(
     ("change", "complaint"),
     [
-        ({"control_period": 0.0}, "control_period is 0.0; more than 0"),
-        ({"integration_step": 3e-4}, "integration_step must be a whole part"),
-        ({"sample_period": 2.5e-3}, "sample_period is 0.0025; a whole number of control periods"),
-        ({"duration": math.nan}, "duration is nan; a finite number"),
-        ({"payload": "heavy"}, "payload is 'heavy'; a number"),
-        ({"seed": -1}, "seed is -1; a whole number"),
-        ({"seed": 1.5}, "seeds: 1.5 is none of int"),
-        ({"sensors": 3}, "sensors"),
-        ({"bristle": 1e5}, "a jointid.Bristle is expected"),
+        ({"control_period": 0.0}, "control_period is 0.0: more than 0"),
+        ({"integration_step": 3e-4}, "integration_step is 0.0003: must be a whole part"),
+        ({"sample_period": 2.5e-3}, "sample_period is 0.0025: a whole number of control periods"),
+        ({"duration": math.nan}, "duration is nan: a finite number"),
+        ({"payload": "heavy"}, "payload is 'heavy': a number"),
+        ({"seed": -1}, "seed is -1: a whole number"),
+        ({"seed": 1.5}, "seeds is 1.5: one of int"),
+        ({"sensors": 3}, "sensors is 3: Sensors are expected"),
+        ({"bristle": 1e5}, "bristle is 100000.0: a Bristle is expected"),
     ],
 )
 def test_bad_options_are_refused(joint: jid.Joint, change: dict[str, Any], complaint: str) -> None:
@@ -421,16 +421,16 @@ def test_bad_options_are_refused(joint: jid.Joint, change: dict[str, Any], compl
 
 
 def test_what_is_missing_is_named(joint: jid.Joint) -> None:
-    with pytest.raises(jid.InputError, match="'coulomb' has no value"):
+    with pytest.raises(jid.InputError, match="coulomb: has no value"):
         jid.simulate(thesis_joint(), wrong_controller(), well_excited(0.1))
-    with pytest.raises(jid.InputError, match="controllers: 3 is none of"):
+    with pytest.raises(jid.InputError, match="controllers is 3: one of"):
         jid.simulate(joint, 3, well_excited(0.1))  # type: ignore[arg-type]
     loose = joint.replace(limits=jid.Limits())
     with pytest.raises(jid.InputError, match="not stable"):
         jid.simulate(
             loose, jid.Pd(stiffness=1e12), jid.Trajectory.step(1.0, duration=1.0), position=0.0
         )
-    with pytest.raises(jid.InputError, match="controllers has 2 entries where others have 3"):
+    with pytest.raises(jid.InputError, match="controllers: has 2 entries where others have 3"):
         jid.simulate_batch([joint] * 3, [wrong_controller()] * 2, well_excited(0.1))
 
 

@@ -103,27 +103,33 @@ def test_a_recording_gives_its_reference_else_its_position() -> None:
 @pytest.mark.parametrize(
     ("make", "complaint"),
     [
-        (lambda: Trajectory.sine(1.0, 0.0, duration=1.0), "frequency is 0.0; more than 0"),
-        (lambda: Trajectory.sine("big", 1.0, duration=1.0), "amplitude is 'big'; a number"),  # type: ignore[arg-type]
-        (lambda: Trajectory.sine(1.0, 1.0, duration=math.inf), "duration must be finite"),
+        (
+            lambda: Trajectory.sine(1.0, 0.0, duration=1.0),
+            "frequency is 0.0: a finite number above 0",
+        ),
+        (lambda: Trajectory.sine("big", 1.0, duration=1.0), "amplitude is 'big': a number"),  # type: ignore[arg-type]
+        (lambda: Trajectory.sine(1.0, 1.0, duration=math.inf), "duration is inf: must be finite"),
         (
             lambda: Trajectory.sigmoid(1.0, rise=-1.0, duration=1.0),
-            "rise must be finite and above 0",
+            "rise is -1.0: must be finite and above 0",
         ),
         (
             lambda: Trajectory.multisine(1.0, lowest=2.0, highest=1.0, duration=1.0),
-            "lowest is 2.0, above highest 1.0",
+            "lowest is 2.0: above highest, 1.0",
         ),
         (
             lambda: Trajectory.multisine(1.0, lowest=1.0, highest=2.0, count=0, duration=1.0),
-            "count is 0; a whole number",
+            "count is 0: a whole number",
         ),
         (
             lambda: Trajectory.from_samples([0.0, 0.0], [1.0, 2.0]),
-            "time must be strictly increasing",
+            "time is 0.0: must be strictly increasing",
         ),
         (lambda: Trajectory.from_samples([0.0, 1.0], [1.0]), "the same number of samples"),
-        (lambda: Trajectory.from_samples([0.0, 1.0], [1.0, math.nan]), "position must be finite"),
+        (
+            lambda: Trajectory.from_samples([0.0, 1.0], [1.0, math.nan]),
+            "position is nan: must be finite",
+        ),
         (lambda: Trajectory.from_samples([[0.0]], [1.0]), "one dimension"),
     ],
 )

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/input_error.hpp"
+
 namespace jointid::identify {
 
 namespace {
@@ -12,98 +14,153 @@ namespace {
 using model::Direction;
 using model::SpeedBasis;
 
-constexpr const char* kViscousUnit = "N·m·s/rad";
-constexpr const char* kViscousUnitPrismatic = "N·s/m";
+constexpr const char* kSlow = "slow motion through speeds near zero, in both directions";
 
-Term torque(std::string name, Integral integral, std::string meaning) {
+// A row made here is neither simulated nor accepted by controllers until `simulated` says so.
+
+Term torque(std::string name, std::string option, Integral integral, std::string meaning,
+            std::string advice) {
   return {.key = name,
           .name = name,
           .integral = integral,
           .unit = "N·m",
           .unit_prismatic = "N",
-          .meaning = std::move(meaning)};
+          .meaning = std::move(meaning),
+          .advice = std::move(advice),
+          .option = std::move(option)};
 }
 
-Term friction(std::string key, std::string name, SpeedBasis basis, Direction direction,
-              std::vector<std::string> shapes, std::string meaning) {
-  const bool viscous = basis == SpeedBasis::speed;
+Term friction(std::string key, std::string name, SpeedBasis basis, std::vector<std::string> shapes,
+              std::string meaning, std::string advice) {
+  const auto unit = model::basis_unit(basis);
   return {.key = std::move(key),
           .name = std::move(name),
           .integral = Integral::friction,
           .basis = basis,
-          .direction = direction,
           .shapes = std::move(shapes),
           .non_negative = true,
-          .unit = viscous ? kViscousUnit : "N·m",
-          .unit_prismatic = viscous ? kViscousUnitPrismatic : "N",
-          .meaning = std::move(meaning)};
+          .unit = unit.revolute,
+          .unit_prismatic = unit.prismatic,
+          .meaning = std::move(meaning),
+          .advice = std::move(advice),
+          .option = "name"};
 }
 
-Term harmonic(std::string key, Integral integral, Harmonic counts, std::string meaning) {
-  Term term = torque(std::move(key), integral, std::move(meaning));
+Term harmonic(std::string key, std::string option, Integral integral, Harmonic counts,
+              std::string meaning, std::string advice) {
+  Term term =
+      torque(std::move(key), std::move(option), integral, std::move(meaning), std::move(advice));
   term.harmonic = counts;
   return term;
 }
 
-std::vector<Term> make_terms() {
-  const std::vector<std::string> general{"stribeck_velocity", "stribeck_exponent"};
-  std::vector<Term> table{
-      {.key = "inertia",
-       .name = "inertia",
-       .integral = Integral::velocity_change,
-       .non_negative = true,
-       .unit = "kg·m²",
-       .unit_prismatic = "kg",
-       .meaning = "reflected inertia"},
-      friction("coulomb", "coulomb", SpeedBasis::one, Direction::both, {}, "Coulomb friction"),
-      friction("coulomb_positive", "coulomb_positive", SpeedBasis::one, Direction::positive, {},
-               "Coulomb friction, positive velocity"),
-      friction("coulomb_negative", "coulomb_negative", SpeedBasis::one, Direction::negative, {},
-               "Coulomb friction, negative velocity"),
-      friction("static", "static", SpeedBasis::stribeck, Direction::both, {"stribeck"},
-               "static friction in excess of Coulomb"),
-      friction("static_positive", "static_positive", SpeedBasis::stribeck, Direction::positive,
-               {"stribeck"}, "static excess, positive velocity"),
-      friction("static_negative", "static_negative", SpeedBasis::stribeck, Direction::negative,
-               {"stribeck"}, "static excess, negative velocity"),
-      friction("static_general", "static", SpeedBasis::stribeck_general, Direction::both, general,
-               "static friction in excess of Coulomb"),
-      friction("static_general_positive", "static_positive", SpeedBasis::stribeck_general,
-               Direction::positive, general, "static excess, positive velocity"),
-      friction("static_general_negative", "static_negative", SpeedBasis::stribeck_general,
-               Direction::negative, general, "static excess, negative velocity"),
-      {.key = "viscous",
-       .name = "viscous",
-       .integral = Integral::displacement,
-       .non_negative = true,
-       .unit = kViscousUnit,
-       .unit_prismatic = kViscousUnitPrismatic,
-       .meaning = "viscous friction"},
-      friction("viscous_positive", "viscous_positive", SpeedBasis::speed, Direction::positive, {},
-               "viscous friction, positive velocity"),
-      friction("viscous_negative", "viscous_negative", SpeedBasis::speed, Direction::negative, {},
-               "viscous friction, negative velocity"),
-      {.key = "load_friction",
-       .name = "load_friction",
-       .integral = Integral::load_friction,
-       .non_negative = true,
-       .unit = "1",
-       .unit_prismatic = "1",
-       .meaning = "friction per transmitted torque"},
-      torque("torque_offset", Integral::duration, "constant offset of the torque"),
-      torque("gravity_cos", Integral::cosine, "gravity torque, cos q part"),
-      torque("gravity_sin", Integral::sine, "gravity torque, sin q part"),
-      harmonic("position_cos", Integral::cosine, Harmonic::joint, "torque over the joint's angle"),
-      harmonic("position_sin", Integral::sine, Harmonic::joint, "torque over the joint's angle"),
-      harmonic("ripple_cos", Integral::cosine, Harmonic::motor, "ripple over the motor's angle"),
-      harmonic("ripple_sin", Integral::sine, Harmonic::motor, "ripple over the motor's angle"),
-      torque("sensor_gain", Integral::sensor, "gain of the torque sensor"),
-      torque("sensor_offset", Integral::duration, "offset of the torque sensor"),
+Term simulated(Term term, Control control) {
+  term.simulated = true;
+  term.control = control;
+  return term;
+}
+
+/// The row of one direction of motion.
+Term directed(Term row, Direction direction) {
+  const std::string side = direction == Direction::positive ? "positive" : "negative";
+  row.key += "_" + side;
+  row.name += "_" + side;
+  row.meaning += ", " + side + " velocity";
+  row.integral = Integral::friction;  // travel in one direction is not the displacement
+  row.direction = direction;
+  return row;
+}
+
+/// The rows as written: friction in both directions at once.
+std::vector<Term> base_rows() {
+  const std::string angles = "motion through a wider range of angles";
+  const std::string turns = "motion through several turns of the motor";
+  const std::string link = "motion of the link through a wider range of gravity torque";
+  const auto inertia = [] {
+    return Term{.key = "inertia",
+                .name = "inertia",
+                .integral = Integral::velocity_change,
+                .non_negative = true,
+                .unit = "kg·m²",
+                .unit_prismatic = "kg",
+                .meaning = "reflected inertia",
+                .advice = "harder acceleration"};
   };
-  for (auto& term : table) {
-    if (term.integral != Integral::sensor) continue;
+  const auto viscous = [] {
+    Term term = friction("viscous", "viscous", SpeedBasis::speed, {}, "viscous friction",
+                         "faster motion, at several speeds");
+    term.integral = Integral::displacement;  // the same integral, without a sum over samples
+    return term;
+  };
+  const auto load_friction = [] {
+    return Term{.key = "load_friction",
+                .name = "load_friction",
+                .integral = Integral::load_friction,
+                .non_negative = true,
+                .unit = "1",
+                .unit_prismatic = "1",
+                .meaning = "friction per transmitted torque",
+                .advice = "motion with different loads",
+                .option = "load_friction"};
+  };
+  const auto gain = [&] {
+    Term term =
+        torque("sensor_gain", "sensor", Integral::sensor, "gain of the torque sensor", link);
     term.unit = "N·m/unit";
     term.unit_prismatic = "N/unit";
+    return term;
+  };
+  return {
+      simulated(inertia(), Control::compensated),
+      simulated(friction("coulomb", "coulomb", SpeedBasis::one, {}, "Coulomb friction",
+                         "motion in both directions, at several speeds"),
+                Control::compensated),
+      simulated(friction("static", "static", SpeedBasis::stribeck, {"stribeck"},
+                         "static (above Coulomb)", kSlow),
+                Control::compensated),
+      simulated(
+          friction("static_general", "static", SpeedBasis::stribeck_general,
+                   {"stribeck_velocity", "stribeck_exponent"}, "static (above Coulomb)", kSlow),
+          Control::refused),
+      simulated(viscous(), Control::compensated),
+      simulated(load_friction(), Control::refused),
+      simulated(torque("torque_offset", "torque_offset", Integral::duration,
+                       "constant offset of the torque",
+                       "as much motion in one direction as in the other"),
+                Control::feedback),
+      simulated(
+          torque("gravity_cos", "gravity", Integral::cosine, "gravity torque, cos q part", angles),
+          Control::feedback),
+      simulated(
+          torque("gravity_sin", "gravity", Integral::sine, "gravity torque, sin q part", angles),
+          Control::feedback),
+      simulated(harmonic("position_cos", "harmonics", Integral::cosine, Harmonic::joint,
+                         "torque over the joint's angle", angles),
+                Control::feedback),
+      simulated(harmonic("position_sin", "harmonics", Integral::sine, Harmonic::joint,
+                         "torque over the joint's angle", angles),
+                Control::feedback),
+      simulated(harmonic("ripple_cos", "ripple", Integral::cosine, Harmonic::motor,
+                         "ripple over the motor's angle", turns),
+                Control::feedback),
+      simulated(harmonic("ripple_sin", "ripple", Integral::sine, Harmonic::motor,
+                         "ripple over the motor's angle", turns),
+                Control::feedback),
+      simulated(gain(), Control::compensated),
+      simulated(torque("sensor_offset", "sensor", Integral::duration, "offset of the torque sensor",
+                       link),
+                Control::compensated),
+  };
+}
+
+/// Friction of the velocity alone has a row for each direction behind it.
+std::vector<Term> make_terms() {
+  std::vector<Term> table;
+  for (auto& row : base_rows()) {
+    table.push_back(row);
+    if (!is_friction(row) || needs_load(row)) continue;
+    table.push_back(directed(row, Direction::positive));
+    table.push_back(directed(row, Direction::negative));
   }
   return table;
 }
@@ -123,9 +180,26 @@ const std::vector<Term>& term_table() {
 
 const std::vector<Shape>& shape_table() {
   static const std::vector<Shape> table{
-      {"stribeck", "s²/rad²", "s²/m²", "how fast static friction decays with speed"},
-      {"stribeck_velocity", "rad/s", "m/s", "speed at which static friction has decayed"},
-      {"stribeck_exponent", "1", "1", "how abruptly static friction decays"},
+      {.name = "stribeck",
+       .unit = "s²/rad²",
+       .unit_prismatic = "s²/m²",
+       .meaning = "how fast static friction decays with speed",
+       .advice = kSlow,
+       .speed_power = -2.0},
+      {.name = "stribeck_velocity",
+       .unit = "rad/s",
+       .unit_prismatic = "m/s",
+       .meaning = "speed at which static friction has decayed",
+       .advice = kSlow,
+       .speed_power = 1.0},
+      // Bounds: exponents published for real joints (Armstrong-Helouvry 1991).
+      {.name = "stribeck_exponent",
+       .unit = "1",
+       .unit_prismatic = "1",
+       .meaning = "how abruptly static friction decays",
+       .advice = kSlow,
+       .lower = 0.5,
+       .upper = 4.0},
   };
   return table;
 }
@@ -140,11 +214,21 @@ const std::vector<Model>& model_table() {
 }
 
 bool is_friction(const Term& term) {
-  return term.integral == Integral::friction || term.integral == Integral::displacement;
+  return term.integral == Integral::friction || term.integral == Integral::displacement ||
+         needs_load(term);
+}
+
+bool needs_load(const Term& term) {
+  return term.integral == Integral::load_friction;
+}
+
+model::Decay decay_of(const Term& term) {
+  if (term.basis == SpeedBasis::stribeck) return model::Decay::gaussian;
+  return term.basis == SpeedBasis::stribeck_general ? model::Decay::general : model::Decay::none;
 }
 
 Eigen::VectorXd friction_basis(const Term& term, const Eigen::VectorXd& velocity,
-                               const Eigen::VectorXd& shapes) {
+                               const Eigen::VectorXd& shapes, double load) {
   if (!is_friction(term)) {
     throw std::invalid_argument("'" + term.key + "' is not a friction term");
   }
@@ -153,12 +237,16 @@ Eigen::VectorXd friction_basis(const Term& term, const Eigen::VectorXd& velocity
                                 " shape parameters, got " + std::to_string(shapes.size()));
   }
   if (term.integral == Integral::displacement) return velocity;
+  const auto value = [&](double speed) {
+    return needs_load(term) ? std::fabs(load)
+                            : model::basis_value(term.basis, speed, shapes.data());
+  };
   return velocity.unaryExpr([&](double v) {
     if (v == 0.0 || (v > 0.0 && term.direction == Direction::negative) ||
         (v < 0.0 && term.direction == Direction::positive)) {
       return 0.0;
     }
-    return std::copysign(model::basis_value(term.basis, std::fabs(v), shapes.data()), v);
+    return std::copysign(value(std::fabs(v)), v);
   });
 }
 
@@ -176,7 +264,16 @@ Term find_term(std::string_view key) {
     known += (known.empty() ? "" : ", ") + row.key;
     if (row.harmonic != Harmonic::none) known += "_<order>";
   }
-  throw std::invalid_argument("unknown term '" + std::string(key) + "'; known: " + known);
+  throw base::InputError("known are " + known, "term", std::string(key));
+}
+
+const Shape& find_shape(std::string_view name) {
+  std::string known;
+  for (const auto& row : shape_table()) {
+    if (row.name == name) return row;
+    known += (known.empty() ? "" : ", ") + row.name;
+  }
+  throw std::invalid_argument("unknown shape '" + std::string(name) + "'; known: " + known);
 }
 
 const Model& find_model(std::string_view name) {
@@ -185,8 +282,20 @@ const Model& find_model(std::string_view name) {
     if (row.name == name) return row;
     known += (known.empty() ? "" : ", ") + row.name;
   }
-  throw std::invalid_argument("unknown friction model '" + std::string(name) +
-                              "'; known: " + known);
+  throw base::InputError("known are " + known, "model", std::string(name));
+}
+
+std::vector<std::string> model_terms(std::string_view name, bool asymmetric) {
+  std::vector<std::string> keys;
+  for (const auto& key : find_model(name).terms) {
+    if (!asymmetric) {
+      keys.push_back(find_term(key).key);
+      continue;
+    }
+    keys.push_back(find_term(key + "_positive").key);
+    keys.push_back(find_term(key + "_negative").key);
+  }
+  return keys;
 }
 
 bool is_parameter(std::string_view name) {

@@ -1,8 +1,9 @@
 #pragma once
 // The regressor is a list of named terms: each is a coefficient times a basis, integrated over each
 // window, in the torque balance  integral(torque) = sum of terms.  A new term is one row of the
-// table in terms.cpp (and a new way to integrate, if it needs one, in quadrature.cpp); bounds,
-// report, JSON, plots and CLI follow from the row.
+// table in terms.cpp; a new function of the speed is a basis in model/friction.hpp, any other new
+// way to integrate a case in quadrature.cpp. Bounds, report, JSON, plots, advice and command line
+// follow from the row.
 
 #include <Eigen/Core>
 #include <string>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "model/friction.hpp"
+#include "model/joint.hpp"
 
 namespace jointid::identify {
 
@@ -28,6 +30,14 @@ enum class Integral {
 /// What the order of a harmonic counts: turns of the joint, or of the motor in front of the gear.
 enum class Harmonic { none, joint, motor };
 
+/// What a model-based controller does about a term. Refused unless the row says otherwise: a
+/// controller must not omit a term that nobody decided about.
+enum class Control {
+  refused,      ///< no controller has it, and it must not be omitted
+  feedback,     ///< omitted: the controller's feedback corrects it
+  compensated,  ///< the controllers have it
+};
+
 /// One row: a coefficient and its basis. Rows with a Harmonic stand for a family, one term an
 /// order.
 struct Term {
@@ -43,13 +53,25 @@ struct Term {
   std::string unit;           ///< revolute
   std::string unit_prismatic;
   std::string meaning;  ///< one line for reports
+  std::string advice;   ///< which motion determines the coefficient
+  /// What adds the term: "name" is a friction model that lists it, any other text the option or
+  /// property of the joint's model that switches it on; empty: every balance has it.
+  std::string option{};
+  bool simulated = false;  ///< the simulated joint has it
+  Control control = Control::refused;
 };
 
+/// A parameter of a basis. Its default bounds are (share * peak speed)^speed_power for two shares
+/// of the peak speed, or, where speed_power is 0, lower to upper.
 struct Shape {
   std::string name;
   std::string unit;
   std::string unit_prismatic;
   std::string meaning;
+  std::string advice;  ///< which motion determines it
+  double speed_power = 0.0;
+  double lower = 0.0;
+  double upper = 0.0;
 };
 
 /// A friction model by name, as the keys of the terms it consists of.
@@ -63,17 +85,26 @@ const std::vector<Term>& term_table();
 const std::vector<Shape>& shape_table();
 const std::vector<Model>& model_table();
 
-/// True for the terms that make up the friction map f(v).
+/// Whether a term opposes motion, and so belongs to the friction map f(v, load).
 bool is_friction(const Term& term);
+/// Whether the friction depends on the torque that the drive transmits, too.
+bool needs_load(const Term& term);
+/// How the simulated joint fades this friction with speed; `none` where it does not fade.
+model::Decay decay_of(const Term& term);
 
-/// The friction term's basis at each velocity: what its coefficient multiplies. 0 at rest.
+/// The friction term's basis at each velocity: what its coefficient multiplies. 0 at rest. `load`
+/// is the torque that the drive transmits [N·m or N].
 Eigen::VectorXd friction_basis(const Term& term, const Eigen::VectorXd& velocity,
-                               const Eigen::VectorXd& shapes);
+                               const Eigen::VectorXd& shapes, double load = 0.0);
 
 /// The term of that key; "ripple_sin_2" is order 2 of the family "ripple_sin". Throws
 /// std::invalid_argument that lists the known keys.
 Term find_term(std::string_view key);
+const Shape& find_shape(std::string_view name);
 const Model& find_model(std::string_view name);
+
+/// Keys of a friction model's terms; `asymmetric`: two for each, one for each direction of motion.
+std::vector<std::string> model_terms(std::string_view name, bool asymmetric);
 
 /// Whether a parameter can have this name: a coefficient, a shape, or a coefficient that each
 /// recording has for itself, as in "torque_offset[1]".

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/input_error.hpp"
+
 namespace jointid::identify {
 
 void Penalty::add_term(const std::string& key) {
@@ -100,9 +102,10 @@ void Penalty::cut(const Masked& recordings, WindowOptions wanted) {
     const auto choice = choose_window(*recordings[i], parameters(), wanted);
     const double length = time[time.size() - 1] - time[0];
     if (choice.duration > length) {
-      throw std::invalid_argument("windows: duration " + std::to_string(choice.duration) +
-                                  " s is longer than the recording, " + std::to_string(length) +
-                                  " s");
+      throw base::InputError("duration " + std::to_string(choice.duration) +
+                                 " s is longer than the recording, " + std::to_string(length) +
+                                 " s",
+                             "windows");
     }
     choice_.noise_share = std::max(choice_.noise_share, choice.noise_share);
     choice_.noise_limited = choice_.noise_limited || choice.noise_limited;
@@ -119,12 +122,13 @@ void Penalty::cut(const Masked& recordings, WindowOptions wanted) {
   }
   const auto rows = static_cast<Eigen::Index>(windows_.size());
   if (rows == 0) {
-    throw std::invalid_argument("the joint stands still or sticks throughout: record motion");
+    throw base::InputError("the joint stands still or sticks throughout: record motion");
   }
   if (rows < parameters()) {
-    throw std::invalid_argument(
-        "windows: " + std::to_string(rows) + " windows with motion cannot determine " +
-        std::to_string(parameters()) + " parameters; use more or shorter windows");
+    throw base::InputError(std::to_string(rows) + " windows with motion cannot determine " +
+                               std::to_string(parameters()) +
+                               " parameters; use more or shorter windows",
+                           "windows");
   }
 }
 
@@ -180,6 +184,30 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
   }
 }
 
+Eigen::Matrix<std::int64_t, Eigen::Dynamic, 2> Penalty::window_bounds() const {
+  Eigen::Matrix<std::int64_t, Eigen::Dynamic, 2> bounds(window_count(), 2);
+  for (std::size_t w = 0; w < windows_.size(); ++w) {
+    const auto row = static_cast<Eigen::Index>(w);
+    bounds(row, 0) = windows_[w].begin;
+    bounds(row, 1) = windows_[w].end;
+  }
+  return bounds;
+}
+
+Eigen::VectorXd Penalty::torque_steps(const Masked& recordings) const {
+  Eigen::VectorXd steps(window_count());
+  for (std::size_t from = 0; from < windows_.size();) {
+    std::size_t to = from;
+    while (to < windows_.size() && recording_of_[to] == recording_of_[from]) ++to;
+    const auto& masked = *recordings.at(static_cast<std::size_t>(recording_of_[from]));
+    sum_torque_steps(
+        masked.recording(), masked.usable(), std::span(windows_).subspan(from, to - from),
+        steps.segment(static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(to - from)));
+    from = to;
+  }
+  return steps;
+}
+
 void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel) {
   if (shaped_.empty()) return;
   auto& all = nodes_[0];
@@ -214,12 +242,10 @@ void Penalty::own_columns(const std::vector<std::string>& per_recording, std::si
     const auto found = std::find_if(terms_.begin(), terms_.end(),
                                     [&](const Term& term) { return term.name == name; });
     if (found == terms_.end()) {
-      throw std::invalid_argument("per_recording: '" + name +
-                                  "' is not a coefficient of the model");
+      throw base::InputError("'" + name + "' is not a coefficient of the model", "per_recording");
     }
     if (!found->shapes.empty() || found->integral == Integral::sensor) {
-      throw std::invalid_argument("per_recording: '" + name +
-                                  "' must be the same in all recordings");
+      throw base::InputError("'" + name + "' must be the same in all recordings", "per_recording");
     }
     const auto at = static_cast<Eigen::Index>(found - terms_.begin());
     const auto extra = static_cast<Eigen::Index>(recordings) - 1;

@@ -75,7 +75,12 @@ class Penalty final : public PenaltyFunction {
 
   /// What was cut and why, one entry a window; sample numbers are within `recording_of`.
   [[nodiscard]] const std::vector<Window>& windows() const { return windows_; }
+  /// First and last sample of each window, a row each.
+  [[nodiscard]] Eigen::Matrix<std::int64_t, Eigen::Dynamic, 2> window_bounds() const;
   [[nodiscard]] const std::vector<int>& recording_of() const { return recording_of_; }
+  /// How far the torque rises over each window's usable intervals; `recordings` are those it was
+  /// cut from.
+  [[nodiscard]] Eigen::VectorXd torque_steps(const Masked& recordings) const;
   [[nodiscard]] const Eigen::VectorXd& usable_duration() const {
     return usable_duration_;
   }  ///< [s] a window

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/cancel.hpp"
-#include "identify/recording/recording.hpp"
+#include "identify/recording/mask.hpp"
 
 namespace jointid::identify {
 

@@ -1,27 +1,15 @@
 #include "identify/recording/recording.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
-#include <deque>
-#include <limits>
 #include <stdexcept>
 #include <string>
+
+#include "base/input_error.hpp"
 
 namespace jointid::identify {
 
 namespace {
-
-constexpr double kSlow = 0.003;            // of the peak speed: below, for long, is standing still
-constexpr double kShortestStanding = 0.1;  // [s]
-constexpr double kStandingOfPeriod =
-    0.01;  // a reversal of a slow motion is slow, too: allow for its period
-constexpr double kJolt =
-    0.05;  // of the largest torque: such a jump bends the motion within a sample
-constexpr Eigen::Index kRarest = 5;  // one interval in five may go for that, at most
-constexpr Eigen::Index kReach = 2;   // intervals left out on either side of what is not smooth
-constexpr double kResolved =
-    0.005;  // of the peak speed: a motion slower than this per quantum looks stuck
 
 void check_signal(const RecordingView::Signal& signal, const char* name, Eigen::Index samples) {
   if (signal.size() != samples) {
@@ -39,196 +27,6 @@ void check_signal(const RecordingView::Signal& signal, const char* name, Eigen::
       throw std::invalid_argument(std::string(name) + " is not finite at sample " +
                                   std::to_string(k));
     }
-  }
-}
-
-template <class Value>
-double smallest_positive(Eigen::Index from, Eigen::Index to, Value value) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (Eigen::Index k = from; k < to; ++k) {
-    const double size = std::fabs(value(k));
-    smallest = size > 0.0 && size < smallest ? size : smallest;
-  }
-  return smallest;
-}
-
-/// Marks samples first..last of each run in which `same(k)` holds for consecutive k, if the run
-/// passes `long_enough`.
-template <class Same, class LongEnough>
-void mark_runs(Eigen::Index count, std::vector<std::uint8_t>& mark, Same same,
-               LongEnough long_enough) {
-  Eigen::Index first = 0;
-  while (first < count) {
-    if (!same(first)) {
-      ++first;
-      continue;
-    }
-    Eigen::Index last = first;
-    while (last + 1 < count && same(last + 1)) ++last;
-    if (long_enough(first, last))
-      std::fill(mark.begin() + first, mark.begin() + last + 1, std::uint8_t{1});
-    first = last + 1;
-  }
-}
-
-double standing_time(const MotionScale& scale) {
-  return std::max(kShortestStanding, kStandingOfPeriod * scale.period);
-}
-
-double sticking_time(const MotionScale& scale) {
-  return scale.quantum / (kResolved * scale.peak);
-}
-
-void mark_sticking(const RecordingView& r, const MotionScale& scale,
-                   const std::vector<std::uint8_t>& after_gap,
-                   std::vector<std::uint8_t>& standing) {
-  bool any = false;
-  const auto unchanged = [&](Eigen::Index k) {  // the interval k-1 -> k, told by its end
-    return k > 0 && after_gap[static_cast<std::size_t>(k)] == 0 &&
-           r.position[k] == r.position[k - 1];
-  };
-  mark_runs(r.samples(), standing, unchanged, [&](Eigen::Index first, Eigen::Index last) {
-    const bool stuck =
-        last - first >= 2 && r.time[last] - r.time[first - 1] >= sticking_time(scale);
-    any = any || stuck;
-    return stuck;
-  });
-  for (Eigen::Index k = r.samples() - 1; any && k > 0;
-       --k) {  // a run's first sample is the one before its first interval
-    if (standing[static_cast<std::size_t>(k)] != 0 && unchanged(k))
-      standing[static_cast<std::size_t>(k - 1)] = 1;
-  }
-  if (scale.finest < kResolved * scale.peak) {
-    mark_runs(
-        r.samples(), standing, [&](Eigen::Index k) { return r.velocity[k] == 0.0; },
-        [](Eigen::Index first, Eigen::Index last) { return last > first; });
-  }
-}
-
-/// Twice the duration over the number of direction changes: the motion's period, as far as one can
-/// tell.
-double motion_period(const RecordingView& r, double reach) {
-  const double hysteresis = 0.01 * reach;
-  int changes = 0;
-  int direction = 0;  // not known before the first clear move
-  double extreme = r.position[0];
-  for (Eigen::Index k = 1; k < r.samples(); ++k) {
-    const double beyond = r.position[k] - extreme;
-    const bool turned = direction == 0 || beyond * direction < 0.0;
-    if (turned && std::fabs(beyond) <= hysteresis) continue;
-    if (turned) {
-      changes += direction != 0 ? 1 : 0;
-      direction = beyond > 0.0 ? 1 : -1;
-    }
-    extreme = r.position[k];
-  }
-  return 2.0 * (r.time[r.samples() - 1] - r.time[0]) / std::max(1, changes);
-}
-
-/// Samples begin .. end - 1 near which the joint may have stood still.
-struct Region {
-  Eigen::Index begin;
-  Eigen::Index end;
-};
-
-/// A stretch of `span` that stays within `reach` holds a whole block that does (or one that lasts
-/// very long), and reaches no farther than into the blocks beside such blocks.
-std::vector<Region> quiet_regions(const RecordingView& r, double span, double reach) {
-  const Eigen::Index n = r.samples();
-  const double usual = (r.time[n - 1] - r.time[0]) / static_cast<double>(n - 1);
-  const auto length =
-      static_cast<Eigen::Index>(std::clamp(0.25 * span / usual, 4.0, static_cast<double>(n)));
-  std::vector<Region> regions;
-  for (Eigen::Index begin = 0; begin < n; begin += length) {
-    const Eigen::Index end = std::min(n, begin + length);
-    double low = r.position[begin];
-    double high = low;
-    for (Eigen::Index k = begin + 1; k < end; ++k) {
-      low = std::min(low, r.position[k]);
-      high = std::max(high, r.position[k]);
-    }
-    const double lasting =
-        r.time[std::min(n - 1, end)] - r.time[std::max<Eigen::Index>(0, begin - 1)];
-    if (high - low > reach && lasting < 0.5 * span) continue;
-    const Region region{std::max<Eigen::Index>(0, begin - length), std::min(n, end + length)};
-    if (!regions.empty() && regions.back().end >= region.begin) {
-      regions.back().end = region.end;
-    } else {
-      regions.push_back(region);
-    }
-  }
-  return regions;
-}
-
-void mark_standing(const RecordingView& r, const MotionScale& scale,
-                   const std::vector<std::uint8_t>& after_gap,
-                   std::vector<std::uint8_t>& standing) {
-  const double span = standing_time(scale);
-  const double reach = kSlow * scale.peak * span;
-  std::deque<Eigen::Index> highest;
-  std::deque<Eigen::Index> lowest;
-  for (const auto& region : quiet_regions(r, span, reach)) {
-    Eigen::Index first = region.begin;
-    Eigen::Index marked = region.begin;  // samples before this one are settled
-    highest.clear();
-    lowest.clear();
-    for (Eigen::Index k = region.begin; k < region.end; ++k) {
-      if (after_gap[static_cast<std::size_t>(k)] != 0) {  // nobody saw what happened meanwhile
-        first = k;
-        highest.clear();
-        lowest.clear();
-      }
-      while (!highest.empty() && r.position[highest.back()] <= r.position[k]) highest.pop_back();
-      while (!lowest.empty() && r.position[lowest.back()] >= r.position[k]) lowest.pop_back();
-      highest.push_back(k);
-      lowest.push_back(k);
-      // The longest stretch ending at k that stays within reach: the joint stood still if it lasts
-      // long enough.
-      while (r.position[highest.front()] - r.position[lowest.front()] > reach) {
-        ++first;
-        if (highest.front() < first) highest.pop_front();
-        if (lowest.front() < first) lowest.pop_front();
-      }
-      if (r.time[k] - r.time[first] >= span) {
-        // Only as much of it as is as slow as `span` says: the last span's worth and what joins it.
-        Eigen::Index from = k;
-        while (from > first && from > marked && r.time[k] - r.time[from - 1] <= span) --from;
-        std::fill(standing.begin() + from, standing.begin() + k + 1, std::uint8_t{1});
-        marked = k + 1;
-      }
-    }
-  }
-}
-
-/// Reversals at which a held command jumps: the joint turns, sticks or breaks away at an instant
-/// that the samples do not tell, which is worth friction times a sample's time.
-void mark_jolts(const RecordingView& r, const MotionScale& scale,
-                std::vector<std::uint8_t>& usable) {
-  const double least = kJolt * scale.push;
-  const Eigen::Index n = r.samples();
-  const auto jumps = [&](Eigen::Index k) {
-    const Eigen::Index from = std::max<Eigen::Index>(0, k - kReach);
-    const Eigen::Index to = std::min(n - 2, k + kReach);
-    for (Eigen::Index j = from; j <= to; ++j) {
-      if (std::fabs(r.torque[j + 1] - r.torque[j]) > least) return true;
-    }
-    return false;
-  };
-  std::vector<Eigen::Index> turns;
-  for (Eigen::Index k = 0; k + 1 < n; ++k) {
-    const double here = r.velocity[k];
-    const double next = r.velocity[k + 1];
-    const bool turning =
-        (here > 0.0 && next <= 0.0) || (here < 0.0 && next >= 0.0) || (here == 0.0 && next != 0.0);
-    if (turning && jumps(k)) turns.push_back(k);
-  }
-  // A motion of few samples a reversal jumps everywhere: better a bias there than nothing left.
-  constexpr Eigen::Index width = 2 * kReach + 1;
-  if (kRarest * width * static_cast<Eigen::Index>(turns.size()) > n) return;
-  for (const auto k : turns) {
-    const auto from = std::max<Eigen::Index>(0, k - kReach);
-    const auto to = std::min(n - 2, k + kReach);
-    std::fill(usable.begin() + from, usable.begin() + to + 1, std::uint8_t{0});
   }
 }
 
@@ -250,7 +48,7 @@ void Recording::validate() const {
 void RecordingView::validate() const {
   const Eigen::Index n = samples();
   if (n < 8)
-    throw std::invalid_argument("a recording needs at least 8 samples, got " + std::to_string(n));
+    throw base::InputError("a recording needs at least 8 samples, got " + std::to_string(n));
   check_signal(time, "time", n);
   check_signal(position, "position", n);
   check_signal(velocity, "velocity", n);
@@ -265,68 +63,6 @@ void RecordingView::validate() const {
     if (gap < 0 || gap >= n - 1)
       throw std::invalid_argument("gap_after must lie inside the recording");
   }
-}
-
-double MotionScale::memory() const {
-  const double sticking = sticking_time(*this);
-  return std::isfinite(sticking) ? std::max(standing_time(*this), sticking) : standing_time(*this);
-}
-
-MotionScale motion_scale(const RecordingView& r) {
-  MotionScale scale;
-  double low = r.position[0];
-  double high = low;
-  for (Eigen::Index k = 0; k < r.samples(); ++k) {
-    scale.peak = std::max(scale.peak, std::fabs(r.velocity[k]));
-    low = std::min(low, r.position[k]);
-    high = std::max(high, r.position[k]);
-  }
-  scale.travel = high - low;
-  scale.period = motion_period(r, scale.travel);
-  scale.push = r.torque.cwiseAbs().maxCoeff();
-  scale.quantum = smallest_positive(
-      1, r.samples(), [&](Eigen::Index k) { return r.position[k] - r.position[k - 1]; });
-  scale.finest = smallest_positive(1, r.samples(), [&](Eigen::Index k) { return r.velocity[k]; });
-  return scale;
-}
-
-UsableIntervals usable_intervals(const RecordingView& r, bool mask_standstill,
-                                 const base::Cancel* cancel) {
-  const MotionScale scale = motion_scale(r);
-  if (!scale.moves()) {
-    throw std::invalid_argument("the joint never moves: there is no friction to identify");
-  }
-  return usable_intervals(r, scale, mask_standstill, cancel);
-}
-
-UsableIntervals usable_intervals(const RecordingView& r, const MotionScale& scale,
-                                 bool mask_standstill, const base::Cancel* cancel) {
-  if (cancel != nullptr) cancel->check();
-  const auto n = static_cast<std::size_t>(r.samples());
-  UsableIntervals result{std::vector<std::uint8_t>(n - 1, 1), 0};
-  if (mask_standstill) {
-    std::vector<std::uint8_t> standing(n, 0);
-    std::vector<std::uint8_t> after_gap(n, 0);
-    for (const auto gap : r.gap_after) after_gap[static_cast<std::size_t>(gap) + 1] = 1;
-    mark_sticking(r, scale, after_gap, standing);
-    if (cancel != nullptr) cancel->check();
-    mark_standing(r, scale, after_gap, standing);
-    if (cancel != nullptr) cancel->check();
-    result.standing = std::count(standing.begin(), standing.end(), std::uint8_t{1});
-    // The interval that touches a stuck sample holds a break-away or a stop; the one beside it has
-    // a derived velocity that saw the stop, and friction that changes too fast for the trapezoid.
-    constexpr auto reach = static_cast<std::size_t>(kReach);
-    for (std::size_t k = 0; result.standing > 0 && k < n; ++k) {
-      if (standing[k] == 0) continue;
-      const std::size_t from = k >= reach ? k - reach : 0;
-      const std::size_t to = std::min(n - 1, k + reach);
-      std::fill(result.usable.begin() + static_cast<std::ptrdiff_t>(from),
-                result.usable.begin() + static_cast<std::ptrdiff_t>(to), std::uint8_t{0});
-    }
-  }
-  if (mask_standstill && r.torque_hold == Hold::zero_order) mark_jolts(r, scale, result.usable);
-  for (const auto gap : r.gap_after) result.usable[static_cast<std::size_t>(gap)] = 0;
-  return result;
 }
 
 }  // namespace jointid::identify

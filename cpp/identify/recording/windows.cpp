@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/input_error.hpp"
+
 namespace jointid::identify {
 
 namespace {
@@ -44,17 +46,15 @@ double covered(const RecordingView& r) {
 }  // namespace
 
 void WindowOptions::validate() const {
-  if (count < 0)
-    throw std::invalid_argument("windows: count must be positive, got " + std::to_string(count));
+  if (count < 0) throw base::InputError("must be positive", "windows.count", base::as_value(count));
   if (!(duration >= 0.0) || !std::isfinite(duration)) {
-    throw std::invalid_argument("windows: duration must be positive, got " +
-                                std::to_string(duration) + " s");
+    throw base::InputError("must be positive", "windows.duration", duration);
   }
   if (!(factor > 0.0) || !std::isfinite(factor)) {
-    throw std::invalid_argument("windows: factor must be positive, got " + std::to_string(factor));
+    throw base::InputError("must be positive", "windows.factor", factor);
   }
   if (count > 0 && duration > 0.0)
-    throw std::invalid_argument("windows: give count or duration, not both");
+    throw base::InputError("give count or duration, not both", "windows");
 }
 
 WindowChoice choose_window(const RecordingView& r, const std::vector<std::uint8_t>& usable,
@@ -115,9 +115,9 @@ double duration_for(const std::vector<RecordingView>& recordings, std::int64_t c
     time += covered(recording);
   }
   if (count > intervals) {
-    throw std::invalid_argument("windows: " + std::to_string(count) +
-                                " windows need more than the recording's " +
-                                std::to_string(intervals) + " sample intervals");
+    throw base::InputError(std::to_string(count) + " windows need more than the recording's " +
+                               std::to_string(intervals) + " sample intervals",
+                           "windows");
   }
   return time / static_cast<double>(count);
 }

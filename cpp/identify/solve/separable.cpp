@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "identify/balance/terms.hpp"
+#include "search/brent.hpp"
 #include "search/polish.hpp"
 
 namespace jointid::identify {
@@ -16,8 +18,7 @@ namespace {
 constexpr int kScan = 64;             // intervals over the domain of a single free shape
 constexpr int kGrid = 16;             // over each of several
 constexpr std::size_t kPolished = 3;  // best points of the grid that are polished
-constexpr double kGolden = 0.6180339887498949;
-constexpr double kNarrow = 1e-9;  // of a scale's range: as near as the lowest point is sought
+constexpr double kNarrow = 1e-9;      // of a scale's range: tolerance of the lowest point
 
 /// The penalty as a function of the free shapes alone.
 class Eliminated {
@@ -96,12 +97,6 @@ class Scale {
   bool root_;
 };
 
-/// Shares of a scale's range.
-struct Interval {
-  double left;
-  double right;
-};
-
 /// Penalties at even steps over a scale.
 std::vector<double> scan(const Eliminated& reduced, const Scale& scale, SeparableResult& result) {
   std::vector<std::vector<double>> points;
@@ -110,8 +105,8 @@ std::vector<double> scan(const Eliminated& reduced, const Scale& scale, Separabl
   return reduced.values(points);
 }
 
-/// The scan's best point, between its neighbours.
-Interval lowest(const std::vector<double>& scanned) {
+/// The interval between the neighbours of the scan's best point, in shares of the range.
+search::Interval lowest(const std::vector<double>& scanned) {
   const auto best =
       static_cast<double>(std::min_element(scanned.begin(), scanned.end()) - scanned.begin());
   return {std::max(0.0, best - 1.0) / kScan, std::min<double>(kScan, best + 1.0) / kScan};
@@ -128,67 +123,16 @@ bool falls_from(const std::vector<double>& scanned, double from) {
   return true;
 }
 
-/// Parabolas through the last points, golden sections where they fail (Brent 1973, chapter 5).
-void narrow(const Eliminated& reduced, const Scale& scale, Interval interval, base::Pool& pool,
-            SeparableResult& result) {
+/// The lowest point of an interval.
+void narrow(const Eliminated& reduced, const Scale& scale, search::Interval interval,
+            base::Pool& pool, SeparableResult& result) {
   const auto value = [&](double share) {
     pool.poll();
     ++result.evaluations;
     return reduced.values({{scale.at(share)}})[0];
   };
-  auto [left, right] = interval;
-  struct Point {
-    double share;
-    double value;
-  };
-  const double begin = left + (1.0 - kGolden) * (right - left);
-  Point best{begin, value(begin)};
-  Point second = best;
-  Point third = best;
-  double step = 0.0;
-  double before = 0.0;  // the step before the last
-  for (;;) {
-    const double middle = 0.5 * (left + right);
-    if (std::fabs(best.share - middle) <= 2.0 * kNarrow - 0.5 * (right - left)) break;
-    // The parabola's lowest point is best.share + p / q.
-    const double r = (best.share - second.share) * (best.value - third.value);
-    double q = (best.share - third.share) * (best.value - second.value);
-    double p = (best.share - third.share) * q - (best.share - second.share) * r;
-    q = 2.0 * (q - r);
-    p = q > 0.0 ? -p : p;
-    q = std::fabs(q);
-    if (std::fabs(p) < std::fabs(0.5 * q * before) && p > q * (left - best.share) &&
-        p < q * (right - best.share)) {
-      before = step;
-      step = p / q;
-      const double to = best.share + step;
-      if (to - left < 2.0 * kNarrow || right - to < 2.0 * kNarrow) {
-        step = best.share < middle ? kNarrow : -kNarrow;
-      }
-    } else {
-      before = (best.share < middle ? right : left) - best.share;
-      step = (1.0 - kGolden) * before;
-    }
-    if (std::fabs(step) < kNarrow) step = step > 0.0 ? kNarrow : -kNarrow;
-    const double share = best.share + step;
-    const Point next{share, value(share)};
-    if (next.value <= best.value) {
-      (next.share < best.share ? right : left) = best.share;
-      third = second;
-      second = best;
-      best = next;
-    } else {
-      (next.share < best.share ? left : right) = next.share;
-      if (next.value <= second.value || second.share == best.share) {
-        third = second;
-        second = next;
-      } else if (next.value <= third.value || third.share == best.share ||
-                 third.share == second.share) {
-        third = next;
-      }
-    }
-  }
-  reduced.offer(reduced.full({scale.at(best.share)}), result);
+  const double best = search::minimise_brent(value, interval, kNarrow);
+  reduced.offer(reduced.full({scale.at(best)}), result);
 }
 
 /// The ends, which the narrowing never touches.
@@ -209,7 +153,7 @@ void search_near(const Eliminated& reduced, const Scale& scale, base::Pool& pool
                  SeparableResult& result) {
   for (double reach = 1.0 / kScan;; reach *= 4.0) {
     const double share = scale.share(result.best[reduced.free()[0]]);
-    const Interval near{std::max(0.0, share - reach), std::min(1.0, share + reach)};
+    const search::Interval near{std::max(0.0, share - reach), std::min(1.0, share + reach)};
     narrow(reduced, scale, near, pool, result);
     const double found = scale.share(result.best[reduced.free()[0]]);
     const double margin = 0.01 * reach;
@@ -267,7 +211,9 @@ std::vector<Scale> scales_of(const PenaltyFunction& penalty, const search::Domai
                              const Eliminated& reduced) {
   std::vector<Scale> scales;
   for (const auto i : reduced.free()) {
-    const bool root = penalty.names()[static_cast<std::size_t>(i)] == "stribeck";
+    // A shape like speed^-2 is searched in its square root, which is like a speed.
+    const auto& shape = find_shape(penalty.names()[static_cast<std::size_t>(i)]);
+    const bool root = shape.speed_power == -2.0;
     scales.emplace_back(domain.lower[i], domain.upper[i], root);
   }
   return scales;

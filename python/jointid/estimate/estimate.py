@@ -103,13 +103,16 @@ class Estimate:
         """Findings that may bias values or make them unusable."""
         return tuple(found for found in self.findings if found.severity != "info")
 
-    def friction(self, velocity: ArrayLike) -> FrictionCurve:
+    def friction(self, velocity: ArrayLike, *, load: float = 0.0) -> FrictionCurve:
         """Friction at given velocities, with a pointwise 95 % band.
 
         Parameters
         ----------
         velocity : array_like, shape (n,)
             [rad/s or m/s]
+        load : float
+            Torque that the drive transmits [N·m or N], for friction that depends on the load; its sign does not
+            matter. Default 0: friction without load, which is also what `windows.friction` shows.
 
         Returns
         -------
@@ -122,7 +125,7 @@ class Estimate:
         """
         from jointid.estimate.friction_map import friction_curve
 
-        return friction_curve(self, np.atleast_1d(np.asarray(velocity, dtype=np.float64)))
+        return friction_curve(self, np.atleast_1d(np.asarray(velocity, dtype=np.float64)), load)
 
     def predict(self, recording: Recording) -> Prediction:
         """Predict the window integrals of a recording, and compare them with the measured ones.

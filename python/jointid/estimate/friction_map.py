@@ -22,27 +22,30 @@ def shared_value(values: Mapping[str, float], name: str) -> float:
     return float(np.mean([value for key, value in values.items() if key.startswith(f"{name}[")]))
 
 
-def friction_torque(terms: Sequence[str], values: Mapping[str, float], velocity: Array) -> Array:
-    """Friction at each velocity [N·m or N], of those among the terms that belong to the friction map."""
+def friction_torque(
+    terms: Sequence[str], values: Mapping[str, float], velocity: Array, load: float = 0.0
+) -> Array:
+    """Friction at each velocity [N·m or N] while the drive transmits the torque `load`, of the friction terms."""
     total = np.zeros_like(velocity)
     for key in terms:
         term = _core.term(key)
         if term.friction:
             shapes = np.array([shared_value(values, shape) for shape in term.shapes])
-            total += shared_value(values, term.name) * _core.friction_basis(key, velocity, shapes)
+            basis = _core.friction_basis(key, velocity, shapes, load)
+            total += shared_value(values, term.name) * basis
     return total
 
 
-def friction_curve(estimate: Estimate, velocity: Array) -> FrictionCurve:
+def friction_curve(estimate: Estimate, velocity: Array, load: float = 0.0) -> FrictionCurve:
     """Friction at each velocity, and its pointwise 95 % band by linear propagation of the covariance."""
     values = {name: parameter.value for name, parameter in estimate.parameters.items()}
     terms = estimate.settings["terms"]
-    torque = friction_torque(terms, values, velocity)
+    torque = friction_torque(terms, values, velocity, load)
     sensitivity = np.zeros((len(velocity), len(estimate.free)))
     for column, name in enumerate(estimate.free):
         step = _STEP * max(abs(values[name]), 1e-3)
-        above = friction_torque(terms, {**values, name: values[name] + step}, velocity)
-        below = friction_torque(terms, {**values, name: values[name] - step}, velocity)
+        above = friction_torque(terms, {**values, name: values[name] + step}, velocity, load)
+        below = friction_torque(terms, {**values, name: values[name] - step}, velocity, load)
         sensitivity[:, column] = (above - below) / (2.0 * step)
     # An infinite variance must not meet a sensitivity of exactly zero.
     finite = np.where(np.isfinite(estimate.covariance), estimate.covariance, 0.0)

@@ -145,7 +145,7 @@ class Problem:
             torque_residual = residual
         friction = torque_residual.copy()
         for index, term in enumerate(penalty.terms):
-            if term.friction:
+            if term.friction and not term.needs_load:  # the friction map is drawn without load
                 friction += theta[index] * columns[:, index]
         duration = penalty.usable_duration.copy()  # a view would keep the penalty for good
         return WindowTable(

@@ -29,7 +29,8 @@ class WindowTable:
     velocity : ndarray
         Mean velocity [rad/s or m/s].
     friction : ndarray
-        Mean friction that the recording shows: torque less all other fitted terms [N·m or N].
+        Mean friction that the recording shows, without load: torque less all other fitted terms and
+        load friction [N·m or N].
     """
 
     recording: NDArray[np.int64]

@@ -1,4 +1,4 @@
-"""Arguments of a simulation: what is one for all, what is one each, and what cannot be used."""
+"""Checks of a simulation's arguments; single values are repeated to one list length."""
 
 import math
 from collections.abc import Iterable
@@ -23,7 +23,7 @@ Controller = (
 def side_by_side(
     joints: Any, controllers: Any, seeds: Any
 ) -> tuple[list[Joint], list[Controller], list[int]]:
-    """Return lists of one length; what is single stands for all."""
+    """Return lists of one length; a single value is used for all."""
     given = {"joints": joints, "controllers": controllers, "seeds": seeds}
     known: dict[str, tuple[type, ...]] = {
         "joints": (Joint,),
@@ -37,43 +37,48 @@ def side_by_side(
         for entry in lists[what]:
             if not isinstance(entry, known[what]) or isinstance(entry, bool):
                 names = ", ".join(kind.__name__ for kind in known[what])
-                raise InputError(f"{what}: {entry!r} is none of {names}")
+                raise InputError(f"one of {names} is expected", argument=what, value=entry)
     count = max(len(entries) for entries in lists.values())
     for what, entries in lists.items():
         if len(entries) not in (1, count) or not entries:
             raise InputError(
-                f"{what} has {len(entries)} entries where others have {count}; give one for all, or "
-                "as many"
+                f"has {len(entries)} entries where others have {count}",
+                argument=what,
+                remedy="give one for all, or as many",
             )
         lists[what] = entries if len(entries) == count else entries * count
     for seed in lists["seeds"]:
         if not 0 <= seed < 2**64:
-            raise InputError(f"seed is {seed}; a whole number from 0 to 2**64 - 1 is expected")
+            raise InputError(
+                "a whole number from 0 to 2**64 - 1 is expected", argument="seed", value=int(seed)
+            )
     return lists["joints"], lists["controllers"], [int(seed) for seed in lists["seeds"]]
 
 
 def finite(what: str, value: Any) -> float:
-    """Return an argument as a float, or refuse it."""
+    """Return an argument as a float, or raise an error."""
     if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
-        raise InputError(f"{what} is {value!r}; a number is expected")
+        raise InputError("a number is expected", argument=what, value=value)
     if not math.isfinite(value):
-        raise InputError(f"{what} is {value}; a finite number is expected")
+        raise InputError("a finite number is expected", argument=what, value=float(value))
     return float(value)
 
 
 def positive(what: str, value: Any) -> float:
-    """Return an argument above 0 as a float, or refuse it."""
+    """Return an argument above 0 as a float, or raise an error."""
     number = finite(what, value)
     if number <= 0.0:
-        raise InputError(f"{what} is {number!r}; more than 0 is expected")
+        raise InputError("more than 0 is expected", argument=what, value=number)
     return number
 
 
 def whole_multiple(what: str, value: Any, period: float) -> int:
-    """Return how many control periods an argument is, or refuse it."""
+    """Return how many control periods an argument is, or raise an error."""
     ratio = positive(what, value) / period
     if round(ratio) < 1 or abs(ratio - round(ratio)) > 1e-6 * ratio:
         raise InputError(
-            f"{what} is {value!r}; a whole number of control periods ({period!r} s) is expected"
+            f"a whole number of control periods ({period!r} s) is expected",
+            argument=what,
+            value=float(value),
         )
     return round(ratio)

@@ -22,12 +22,12 @@ from jointid.simulation.plant import Bristle, Values, simulated_joint
 from jointid.simulation.simulated_recording import SimulatedRecording
 from jointid.simulation.trajectory import Trajectory
 
-_SUBSTEPS = 2  # integration steps a control period, unless told
+_SUBSTEPS = 2  # integration steps in a control period, by default
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimulatedBatch:
-    """What came of many simulations, one entry each.
+    """Results of many simulations, one entry each.
 
     Parameters
     ----------
@@ -95,46 +95,43 @@ bristle, position, velocity, name
         As in `simulate`, or sequences of different lengths.
     """
     if not isinstance(trajectory, Trajectory):
-        raise InputError(f"trajectory is {trajectory!r}; a jointid.Trajectory is expected")
+        raise InputError("a Trajectory is expected", argument="trajectory", value=trajectory)
     joint_list, controller_list, seed_list = side_by_side(joints, controllers, seeds)
     if not isinstance(payload, Link):
         payload = finite("payload", payload)
     if bristle is not None and not isinstance(bristle, Bristle):
-        raise InputError(f"bristle is {bristle!r}; a jointid.Bristle is expected")
+        raise InputError("a Bristle is expected", argument="bristle", value=bristle)
+    if sensors is not None and not isinstance(sensors, _core.Sensors):
+        raise InputError("Sensors are expected", argument="sensors", value=sensors)
     period = positive("control_period", control_period)
     every = 1 if sample_period is None else whole_multiple("sample_period", sample_period, period)
     length = trajectory.duration if duration is None else positive("duration", duration)
-    try:
-        scenario = _core.Scenario(
-            duration=length,
-            control_period=period,
-            integration_step=(
-                period / _SUBSTEPS
-                if integration_step is None
-                else positive("integration_step", integration_step)
-            ),
-            sample_every=every,
-            settling=length / 6.0 if settling is None else finite("settling", settling),
-            sensors=_core.Sensors() if sensors is None else sensors,
-        )
-        setups, truths = [], []
-        for joint, controller, seed in zip(joint_list, controller_list, seed_list, strict=True):
-            setup, truth = _setup(joint, controller, seed, payload, bristle, scenario)
-            start = (
-                trajectory.core.at(0.0)[0] if not isinstance(controller, _core.OpenLoop) else 0.0
+    scenario = _core.Scenario(
+        duration=length,
+        control_period=period,
+        integration_step=(
+            period / _SUBSTEPS
+            if integration_step is None
+            else positive("integration_step", integration_step)
+        ),
+        sample_every=every,
+        settling=length / 6.0 if settling is None else finite("settling", settling),
+        sensors=_core.Sensors() if sensors is None else sensors,
+    )
+    setups, truths = [], []
+    for joint, controller, seed in zip(joint_list, controller_list, seed_list, strict=True):
+        setup, truth = _setup(joint, controller, seed, payload, bristle, scenario)
+        start = trajectory.core.at(0.0)[0] if not isinstance(controller, _core.OpenLoop) else 0.0
+        setups.append(
+            setup.replace(
+                position=start if position is None else finite("position", position),
+                velocity=finite("velocity", velocity),
             )
-            setups.append(
-                setup.replace(
-                    position=start if position is None else finite("position", position),
-                    velocity=finite("velocity", velocity),
-                )
-            )
-            truths.append(truth)
-        outcomes = _core.simulate_runs(
-            scenario, trajectory.core, setups, signals=recordings, threads=threads
         )
-    except (ValueError, TypeError, RuntimeError) as error:
-        raise InputError(str(error)) from None
+        truths.append(truth)
+    outcomes = _core.simulate_runs(
+        scenario, trajectory.core, setups, signals=recordings, threads=threads
+    )
     made = (
         _recording(outcome, joint, controller, truth, scenario, seed, name)
         for outcome, joint, controller, truth, seed in zip(

@@ -10,8 +10,7 @@ from jointid.base.errors import InputError
 from jointid.joint.checks import not_negative, positive_number, set_numbers
 from jointid.joint.joint import Joint
 from jointid.joint.link import Link
-
-_DECAY = {"coulomb_viscous": "none", "stribeck": "gaussian", "stribeck_general": "general"}
+from jointid.simulation.terms import require_compensated, require_simulated, require_used, terms_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,10 +36,19 @@ class Bristle:
 
 
 class Values:
-    """The values of a joint's parameters, and which of them were asked for."""
+    """The values of a joint's parameters, and which of them were read.
+
+    Attributes
+    ----------
+    terms : tuple of Term
+        Terms of the joint's model.
+    used : dict of str to float
+        The values that were read, by name.
+    """
 
     def __init__(self, joint: Joint) -> None:
         self._joint = joint
+        self.terms = terms_of(joint)
         self.used: dict[str, float] = {}
 
     def get(self, name: str) -> float | None:
@@ -52,21 +60,29 @@ class Values:
         return value
 
     def need(self, name: str) -> float:
-        """Return a parameter's value; one sentence where there is none."""
+        """Return a parameter's value; raise an error that names it where there is none."""
         value = self.get(name)
         if value is None:
             raise InputError(
-                f"the joint's parameter '{name}' has no value, which a simulation needs; give it with "
-                f"joint.with_parameters({{'{name}': ...}})"
+                "has no value, which a simulation needs",
+                argument=f"parameters.{name}",
+                remedy=f"give the joint a value of '{name}'",
             )
         return value
 
     def both(self, name: str) -> tuple[float, float]:
-        """Return a friction coefficient for positive and negative velocity."""
+        """Return a friction coefficient for positive and negative velocity; 0 where the model has none."""
+        sides = (name, name)
         if self._joint.model.resolved.asymmetric:
-            return self.need(f"{name}_positive"), self.need(f"{name}_negative")
-        value = self.need(name)
-        return value, value
+            sides = (f"{name}_positive", f"{name}_negative")
+        if not {term.name for term in self.terms}.issuperset(sides):
+            return 0.0, 0.0
+        return self.need(sides[0]), self.need(sides[1])
+
+    @property
+    def decay(self) -> str:
+        """How the model's static friction fades with speed, in the core's words."""
+        return next((term.decay for term in self.terms if term.decay != "none"), "none")
 
 
 def simulated_joint(
@@ -77,11 +93,12 @@ def simulated_joint(
     Raises
     ------
     InputError
-        A value that the simulation needs is missing or cannot be.
+        A value that the simulation needs is missing or cannot be used; a term of the model cannot be
+        simulated.
     """
-    decay = _DECAY[joint.model.resolved.name]
-    coulomb, viscous = values.both("coulomb"), values.both("viscous")
-    static = (0.0, 0.0) if decay == "none" else values.both("static")
+    require_simulated(joint, values.terms)
+    decay = values.decay
+    coulomb, viscous, static = (values.both(name) for name in ("coulomb", "viscous", "static"))
     revolute = joint.kind == "revolute"
     inertia, link_inertia = _inertias(joint, values)
     weights = []
@@ -118,7 +135,7 @@ def simulated_joint(
     elif joint.model.resolved.gravity == "free":
         harmonics.append((1.0, values.need("gravity_cos"), values.need("gravity_sin")))
     limit = torque_limit(joint)
-    return _core.SimulatedJoint(
+    plant = _core.SimulatedJoint(
         inertia=inertia,
         link_inertia=link_inertia,
         load=load,
@@ -141,6 +158,11 @@ def simulated_joint(
         weights=weights,
         harmonics=harmonics,
     )
+    # The sensor's gain and offset are read by the caller, known gravity is a fact of the link.
+    require_used(
+        [term for term in values.terms if term.option not in ("sensor", "gravity")], values.used
+    )
+    return plant
 
 
 def torque_limit(joint: Joint) -> float | None:
@@ -153,10 +175,11 @@ def torque_limit(joint: Joint) -> float | None:
 
 
 def control_estimates(joint: Joint) -> dict[str, Any]:
-    """Return what a model-based controller believes of a joint, from its parameters' values.
+    """Return the parameters that a model-based controller assumes, from a joint's values.
 
     Use it as ``jid.AdaptiveRobust(**jid.control_estimates(joint))``. Friction that differs between
-    the directions is averaged.
+    the directions is averaged. Gravity, a constant offset, ripple and harmonics are not compensated:
+    the controller's feedback corrects them.
 
     Parameters
     ----------
@@ -167,31 +190,28 @@ def control_estimates(joint: Joint) -> dict[str, Any]:
     -------
     dict of str to float
         `inertia`, `coulomb`, `viscous`, `static` and `stribeck` (0 where the model has none),
-        `sensor_gain` and `sensor_offset` (0 without a sensor: the inertia then holds the link's).
+        `sensor_gain` and `sensor_offset` (0 without a sensor: the inertia then includes the link's).
 
     Raises
     ------
     InputError
-        A value is missing, or the friction model is one that no controller has.
+        A value is missing, or the model has friction that no controller compensates: the exponent of
+        "stribeck_general", load friction.
     """
     require_kind("joint", joint, Joint)
-    if joint.model.resolved.name == "stribeck_general":
-        raise InputError(
-            "controllers compensate the friction models 'coulomb_viscous' and 'stribeck', not "
-            "'stribeck_general'; identify with model='stribeck' for the controller"
-        )
     values = Values(joint)
+    require_compensated(joint, values.terms)
     drive, link = _inertias(joint, values)
     estimates: dict[str, Any] = {"inertia": drive if joint.sensor else drive + link}
-    stribeck = joint.model.resolved.name == "stribeck"
-    for name in ("coulomb", "static", "viscous") if stribeck else ("coulomb", "viscous"):
+    for name in ("coulomb", "static", "viscous"):
         estimates[name] = sum(values.both(name)) / 2.0
-    if stribeck:
-        estimates["stribeck"] = values.need("stribeck")
-    else:  # said, lest a controller keeps what it believed before
-        estimates |= {"static": 0.0, "stribeck": 0.0}
+    # 0 is written out: a controller must not keep a value from before.
+    estimates["stribeck"] = values.need("stribeck") if values.decay == "gaussian" else 0.0
     for name in ("sensor_gain", "sensor_offset"):
         estimates[name] = values.need(name) if joint.sensor else 0.0
+    require_used(
+        [term for term in values.terms if term.control == _core.Control.compensated], values.used
+    )
     return estimates
 
 
@@ -200,13 +220,14 @@ def _inertias(joint: Joint, values: Values) -> tuple[float, float]:
     link = 0.0 if joint.link is None else _inertia(joint.link, joint.kind == "revolute")
     identified = values.get("inertia")
     if identified is not None:
-        # Without a sensor the identified inertia holds the link's.
+        # Without a sensor the identified inertia includes the link's.
         return identified, link if joint.sensor else 0.0
     drive = joint.reflected_inertia
     if drive is None:
         raise InputError(
-            "the joint's inertia is not known, which a simulation needs; give inertia or rotor_inertia, or "
-            "joint.with_parameters({'inertia': ...})"
+            "has no value, which a simulation needs",
+            argument="inertia",
+            remedy="give the joint inertia or rotor_inertia, or a value of the parameter 'inertia'",
         )
     values.used["inertia"] = drive if joint.sensor else drive + link
     return drive, link

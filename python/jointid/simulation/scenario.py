@@ -1,4 +1,4 @@
-"""A closed loop with everything but the seed decided: what a study simulates again and again."""
+"""A closed loop with all its settings except the seed, which a study simulates many times."""
 
 from __future__ import annotations
 
@@ -62,7 +62,9 @@ class Scenario:
             if not isinstance(getattr(self, name), kinds):
                 wanted = ", ".join(kind.__name__ for kind in kinds)
                 raise InputError(
-                    f"Scenario: {name} is {getattr(self, name)!r}; one of {wanted} is expected"
+                    f"one of {wanted} is expected",
+                    argument=f"Scenario.{name}",
+                    value=getattr(self, name),
                 )
 
     def simulate(
@@ -129,7 +131,10 @@ class Scenario:
         known = self.options()
         for name in changes:
             if name not in known and "." not in name:
-                raise InputError(f"Scenario: '{name}' is no field; {suggestion(name, known)}")
+                raise InputError(
+                    f"no such field; {suggestion(name, known)}",
+                    argument=f"Scenario.{name}",
+                )
         scenario = replace(self, **{n: v for n, v in changes.items() if "." not in n})
         inside: dict[str, dict[str, Any]] = {}
         for name, value in changes.items():
@@ -145,13 +150,10 @@ class Scenario:
             return replace(self, joint=self.joint.with_parameters(values))
         if part not in ("sensors", "controller"):
             raise InputError(
-                f"Scenario: '{part}.{next(iter(values))}' is not known; what is inside 'sensors', "
-                "'controller' or 'truth' can be changed"
+                "is not known; fields inside sensors, controller or truth can be changed",
+                argument=f"Scenario.{part}.{next(iter(values))}",
             )
-        try:
-            return replace(self, **{part: getattr(self, part).replace(**values)})
-        except (ValueError, TypeError) as error:
-            raise InputError(f"Scenario: {error}") from None
+        return replace(self, **{part: getattr(self, part).replace(**values)})
 
     @property
     def truth(self) -> dict[str, float]:
@@ -182,7 +184,8 @@ def believing(controller: Controller, joint: Joint) -> Controller:
     used = {n: v for n, v in estimates.items() if n in controller.asdict()}
     if "coulomb" not in used:
         raise InputError(
-            f"{type(controller).__name__} uses no estimates of friction, so there is nothing to improve; "
-            "use CompensatedPid, AdaptiveRobust or LugreObserver"
+            f"{type(controller).__name__} uses no estimates of friction",
+            argument="controller",
+            remedy="use CompensatedPid, AdaptiveRobust or LugreObserver",
         )
     return controller.replace(**used)

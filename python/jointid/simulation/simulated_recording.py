@@ -1,4 +1,4 @@
-"""A recording that a simulation made: what the sensors saw, and what was."""
+"""A simulated recording: the sensors' signals and the true ones."""
 
 import functools
 from collections.abc import Iterator, Mapping
@@ -14,7 +14,7 @@ from jointid.recording.signals import FloatArray, signal_array
 
 
 class Truth(Mapping[str, Any]):
-    """What was true in a simulation: parameters as a mapping, signals as attributes of `signals`.
+    """True values of a simulation: parameters as a mapping, signals in `signals`.
 
     Parameters
     ----------
@@ -64,8 +64,9 @@ class SimulatedRecording(Recording):
         for name, values in truth.signals.items():
             if len(values) != len(self.time):
                 raise InputError(
-                    f"the true {name} has {len(values)} samples and time has {len(self.time)}; all "
-                    "signals need the same number"
+                    f"has {len(values)} samples and time has {len(self.time)}; all signals need the "
+                    "same number",
+                    argument=f"true_signals.{name}",
                 )
         vars(self)["truth"] = truth
 

@@ -106,11 +106,18 @@ class Trajectory:
         """
         if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= 10_000:
             raise InputError(
-                f"Trajectory: count is {count!r}; a whole number from 1 to 10000 is expected"
+                "a whole number from 1 to 10000 is expected",
+                argument="Trajectory.count",
+                value=count,
             )
         low, high = _positive("lowest", lowest), _positive("highest", highest)
         if low > high:
-            raise InputError(f"Trajectory: lowest is {low!r}, above highest {high!r}; swap them")
+            raise InputError(
+                f"above highest, {high!r}",
+                argument="Trajectory.lowest",
+                value=low,
+                remedy="exchange them",
+            )
         rate = 2.0 * np.pi * np.linspace(low, high, count)
         number = np.arange(count)
         phase = -np.pi * number * (number + 1) / count
@@ -183,7 +190,7 @@ class Trajectory:
 
     @classmethod
     def from_recording(cls, recording: Recording) -> Self:
-        """Return what a recording, read from a file perhaps, was to follow: its reference, else its position."""
+        """Return the motion of a recording: its reference if it has one, else its position."""
         followed = recording.position if recording.reference is None else recording.reference
         return cls.from_samples(recording.time, followed)
 
@@ -226,10 +233,7 @@ class Trajectory:
             if not isinstance(value, tuple):
                 arguments[name] = _number(name, value)
         trajectory = cls(form, tuple(arguments.items()))
-        try:
-            _ = trajectory.core  # what is wrong is told now
-        except ValueError as error:
-            raise InputError(str(error)) from None
+        _ = trajectory.core  # raises what is wrong now, not at first use
         return trajectory
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -238,14 +242,16 @@ class Trajectory:
 
 def _number(name: str, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
-        raise InputError(f"Trajectory: {name} is {value!r}; a number is expected")
+        raise InputError("a number is expected", argument=f"Trajectory.{name}", value=value)
     return float(value)
 
 
 def _positive(name: str, value: object) -> float:
     number = _number(name, value)
     if not (0.0 < number < math.inf):
-        raise InputError(f"Trajectory: {name} is {number!r}; more than 0 is expected")
+        raise InputError(
+            "a finite number above 0 is expected", argument=f"Trajectory.{name}", value=number
+        )
     return number
 
 
@@ -254,10 +260,10 @@ def _samples(name: str, values: npt.ArrayLike) -> tuple[float, ...]:
         array = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError):
         raise InputError(
-            f"Trajectory: {name} does not hold numbers; an array of floats is expected"
+            "an array of numbers is expected", argument=f"Trajectory.{name}", value=values
         ) from None
     if array.ndim != 1:
         raise InputError(
-            f"Trajectory: {name} has the shape {array.shape}; one dimension is expected"
+            f"one dimension is expected, the shape is {array.shape}", argument=f"Trajectory.{name}"
         )
     return tuple(array.tolist())

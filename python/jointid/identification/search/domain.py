@@ -19,8 +19,6 @@ _GENEROUS = 10.0
 # The Stribeck velocity lies between these shares of the peak speed: outside, nobody could see it.
 _SLOWEST_STRIBECK = 0.02
 _FASTEST_STRIBECK = 0.5
-# Exponents of the Stribeck decay that have been seen in the literature (Armstrong-Helouvry 1991).
-_EXPONENTS = (0.5, 4.0)
 # Shapes at which a gain is looked for, in logarithms between their bounds; fewer on long recordings.
 _SHARES = (0.25, 0.5, 0.75, 1.0)
 _LONG = 500_000
@@ -66,11 +64,15 @@ def _shape_range(parameter: Parameter, peak_speed: float) -> tuple[float, float]
 
 
 def _shape_bounds(name: str, peak_speed: float) -> tuple[float, float]:
-    if name == "stribeck":
-        return (_FASTEST_STRIBECK * peak_speed) ** -2, (_SLOWEST_STRIBECK * peak_speed) ** -2
-    if name == "stribeck_velocity":
-        return _SLOWEST_STRIBECK * peak_speed, _FASTEST_STRIBECK * peak_speed
-    return _EXPONENTS
+    """Default bounds of a shape; a name that the core's table does not have is a bug."""
+    shape = _core.shape(name)
+    if shape.speed_power == 0.0:
+        return shape.lower, shape.upper
+    low, high = (
+        (share * peak_speed) ** shape.speed_power
+        for share in (_SLOWEST_STRIBECK, _FASTEST_STRIBECK)
+    )
+    return (low, high) if shape.speed_power > 0.0 else (high, low)
 
 
 class _Recorded:

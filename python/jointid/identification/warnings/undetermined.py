@@ -32,23 +32,6 @@ _INSEPARABLE = 0.98
 # Width between the regressions with the noise in the sensor and with the noise in the torque, over the gain.
 _WIDE = 0.0075
 
-_SLOW = "slow motion through speeds near zero, in both directions"
-_ADVICE = {
-    "sensor_gain": "motion of the link through a wider range of gravity torque",
-    "sensor_offset": "motion of the link through a wider range of gravity torque",
-    "static": _SLOW,
-    "stribeck": _SLOW,
-    "coulomb": "motion in both directions, at several speeds",
-    "viscous": "faster motion, at several speeds",
-    "inertia": "harder acceleration",
-    "torque_offset": "as much motion in one direction as in the other",
-    "stribeck_velocity": _SLOW,
-    "stribeck_exponent": _SLOW,
-    "load_friction": "motion with different loads",
-    "gravity_cos": "motion through a wider range of angles",
-    "gravity_sin": "motion through a wider range of angles",
-}
-
 
 @dataclass(frozen=True, slots=True)
 class _Reason:
@@ -93,7 +76,7 @@ def _advice(
     evidence: Evidence, reasons: Mapping[str, list[_Reason]], sign_was_guessed: bool
 ) -> Iterator[Action]:
     kinds = [_kind(name) for name in reasons]
-    motions = dict.fromkeys(_ADVICE[kind] for kind in kinds if kind in _ADVICE)
+    motions = dict.fromkeys(filter(None, map(_motion, reasons)))
     if motions:
         yield Action("record", text="; ".join(motions))
     if "inertia" in kinds:
@@ -104,6 +87,15 @@ def _advice(
         # A bound of 0 is refused: the sensor's residual is divided by the gain.
         bound = {"sensor_gain": {"min" if gain > 0.0 else "max": float(f"{0.01 * gain:.1e}")}}
         yield Action("call", {"parameters": bound}, text="if that is its sign")
+
+
+def _motion(name: str) -> str:
+    """Which motion determines a parameter, whatever its order or recording; from the terms' table."""
+    base = name.split("[")[0]
+    for term in _core.terms():
+        if base == term.name or (term.family and base.startswith(f"{term.name}_")):
+            return term.advice
+    return next((shape.advice for shape in _core.shapes() if shape.name == base), "")
 
 
 def _kind(name: str) -> str:

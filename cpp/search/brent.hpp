@@ -1,0 +1,19 @@
+#pragma once
+// The minimum of a function of one variable in an interval (Brent 1973, chapter 5): parabolas
+// through the last points, golden sections where they fail.
+
+#include <functional>
+
+namespace jointid::search {
+
+struct Interval {
+  double left;
+  double right;
+};
+
+/// Where the lowest value was found, to an absolute tolerance: a local minimum of the interval. The
+/// ends themselves are not evaluated.
+double minimise_brent(const std::function<double(double)>& value, Interval interval,
+                      double tolerance);
+
+}  // namespace jointid::search

@@ -1,0 +1,52 @@
+// Bad input carries its argument, value and reason; a bug does not look like bad input.
+
+#include <cmath>
+#include <string>
+
+#include "base/choices.hpp"
+#include "base/require.hpp"
+#include "check.hpp"
+#include "model/joint.hpp"
+
+namespace jointid::tests {
+namespace {
+
+using base::InputError;
+
+template <class Call>
+InputError refused(Call call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error;
+  }
+  return InputError("nothing was refused");
+}
+
+CHECK_CASE("input error: a requirement says which number, what it is, and its limit") {
+  const base::Requirement require("joint");
+  const auto low = refused([&] { require.above_zero("inertia", -2.5); });
+  CHECK(low.argument() == "joint.inertia");
+  CHECK(std::get<double>(low.value()) == -2.5);
+  CHECK(low.reason() == "must be finite and above 0");
+  CHECK(std::string(low.what()) == "joint.inertia is -2.5: must be finite and above 0");
+  const auto whole = refused([&] { require.that(false, "order", 3, "0, 1 or 2"); });
+  CHECK(std::get<std::int64_t>(whole.value()) == 3);
+  CHECK(std::string(whole.what()) == "joint.order is 3: must be 0, 1 or 2");
+  require.finite("load", 0.0);
+  CHECK(std::isnan(std::get<double>(refused([&] { require.finite("x", std::nan("")); }).value())));
+}
+
+CHECK_CASE("input error: an unknown word lists the known ones") {
+  const auto error = refused([] { base::chosen<model::Decay>("linear"); });
+  CHECK(std::string(error.what()) == "decay is 'linear': known are none, gaussian, general");
+  CHECK(std::get<std::string>(error.value()) == "linear");
+}
+
+CHECK_CASE("input error: a sentence without argument or value is the reason") {
+  CHECK(std::string(InputError("nothing moves").what()) == "nothing moves");
+  CHECK(std::string(InputError("too long", "windows").what()) == "windows: too long");
+}
+
+}  // namespace
+}  // namespace jointid::tests

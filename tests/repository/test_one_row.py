@@ -1,0 +1,149 @@
+"""A new term is one row: nobody else spells a term's name, but for the places listed here with a reason."""
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from jointid import _core
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+TABLE = "cpp/identify/balance/terms.cpp"
+
+# Places that may name a term: the term (a whole name, or a beginning that ends in `*`), where, and why.
+ALLOWED: list[tuple[str, str, str]] = [
+    # Known for another reason than the balance.
+    ("inertia*", "cpp/", "a property of any joint, simulated or estimated"),
+    ("inertia*", "python/jointid/", "a property of the joint file, which may fix it"),
+    ("gravity_*", "python/jointid/", "gravity may be known from the link: it is then no unknown"),
+    ("sensor_*", "cpp/", "the residual may be in the sensor's units"),
+    ("sensor_*", "python/jointid/", "the residual may be in the sensor's units"),
+    ("torque_offset", "cpp/model/", "simulated"),
+    ("torque_offset", "cpp/bind/simulate", "simulated"),
+    ("torque_offset", "cpp/identify/penalty/penalty.cpp", "its integral is a window's duration"),
+    (
+        "torque_offset",
+        "python/jointid/",
+        "an option of the model, which the sensor's offset excludes",
+    ),
+    ("load_friction", "python/jointid/", "an option of the model, and of the joint file"),
+    # Capabilities: what a row declares as simulated or compensated is written here, once each.
+    ("*", "cpp/model/joint.cpp", "the simulated joint"),
+    ("*", "cpp/bind/simulate.cpp", "the simulated joint"),
+    ("*", "cpp/simulate/estimates.hpp", "what controllers compensate"),
+    ("*", "cpp/bind/simulate_controllers.cpp", "what controllers compensate"),
+    ("*", "python/jointid/simulation/plant.py", "values for both"),
+    # Judgements about one friction model.
+    ("*", "python/jointid/identification/warnings/", "whether the data support static friction"),
+    ("coulomb*", "python/jointid/identification/search/domain.py", "collinear with an offset"),
+    ("*", "python/jointid/joint/thesis.py", "the thesis's joint, with its bounds"),
+    ("coulomb", "python/jointid/simulation/scenario.py", "a controller with friction estimates"),
+    ("coulomb", "python/jointid/cli/", "a controller with friction estimates; the demo's values"),
+    ("viscous", "python/jointid/cli/", "the demo's values"),
+    ("coulomb", "python/jointid/hardware/bench/", "a controller with friction estimates"),
+    # Tables that show derived quantities: breakaway torque and Stribeck velocity.
+    ("*", "python/jointid/estimate/", "derived quantities of the Stribeck curve"),
+]
+# A friction model and a shape parameter of the same name: where the text is the model's.
+MODELS = {model.name for model in _core.models()}
+
+
+def names() -> set[str]:
+    """Keys, names and shapes of the table, as the built core has them."""
+    rows = _core.terms()
+    return (
+        {row.key for row in rows} | {row.name for row in rows} | {s for r in rows for s in r.shapes}
+    )
+
+
+def strings(path: Path) -> Iterator[tuple[int, str]]:
+    """Every string of a source file but docstrings, with its line."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix != ".py":
+        for number, line in enumerate(text.splitlines(), 1):
+            code = re.sub(r"^\s*//.*|\s//.*", "", line)
+            yield from ((number, found) for found in re.findall(r'"((?:[^"\\]|\\.)*)"', code))
+        return
+    tree = ast.parse(text)
+    documents = {
+        id(node.value)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+    }
+    for node in ast.walk(tree):
+        if (
+            isinstance(node, ast.Constant)
+            and isinstance(node.value, str)
+            and id(node) not in documents
+        ):
+            yield node.lineno, node.value
+
+
+def allowed(name: str, place: str) -> bool:
+    return any(
+        place.startswith(folder)
+        and (name.startswith(term[:-1]) if term.endswith("*") else name == term)
+        for term, folder, _ in ALLOWED
+    )
+
+
+def spelt(repository: Path, wanted: set[str]) -> list[str]:
+    """Every place outside the table that spells a term's name without being allowed to."""
+    found = []
+    for path in sorted([*(repository / "cpp").rglob("*"), *(repository / "python").rglob("*.py")]):
+        place = path.relative_to(repository).as_posix()
+        if path.suffix not in {".cpp", ".hpp", ".py"} or place == TABLE or "/tests/" in place:
+            continue
+        for line, text in strings(path):
+            base = text.split("[")[0]
+            if base in wanted - MODELS and not allowed(base, place):
+                found.append(f"{place}:{line}: '{text}'")
+    return found
+
+
+def test_a_term_is_spelt_in_its_row_alone() -> None:
+    assert spelt(REPOSITORY, names()) == []
+
+
+def test_a_name_anywhere_else_is_found(tmp_path: Path) -> None:
+    for place, line in (
+        ("cpp/bind/extra.cpp", 'auto x = f("drag");'),
+        ("python/x.py", "x = 'drag[1]'"),
+    ):
+        path = tmp_path / place
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(line, encoding="utf-8")
+    (tmp_path / "python" / "y.py").write_text('"""drag"""\n', encoding="utf-8")
+    assert spelt(tmp_path, {"drag"}) == ["cpp/bind/extra.cpp:1: 'drag'", "python/x.py:1: 'drag[1]'"]
+
+
+@pytest.mark.parametrize(("term", "folder", "reason"), ALLOWED)
+def test_every_exception_is_needed(term: str, folder: str, reason: str) -> None:
+    assert reason
+    if (term, folder) == ("*", "python/jointid/estimate/"):
+        pytest.skip("the tables of derived quantities are being written")
+    here = [
+        text.split("[")[0]
+        for path in [*(REPOSITORY / "cpp").rglob("*.?pp"), *(REPOSITORY / "python").rglob("*.py")]
+        if path.relative_to(REPOSITORY).as_posix().startswith(folder)
+        for _, text in strings(path)
+    ]
+    hits = {t for t in here if (t.startswith(term[:-1]) if term.endswith("*") else t == term)}
+    assert hits & names(), f"{term} is not in {folder}: drop the exception"
+
+
+def test_every_row_of_the_source_is_in_the_built_core() -> None:
+    """The table is read from the extension; a stale build would let a new row pass unseen."""
+    text = (REPOSITORY / TABLE).read_text(encoding="utf-8")
+    rows = text[text.index("base_rows()") : text.index("make_terms()")]
+    keys = re.findall(r'(?:key = |friction\(|torque\(|harmonic\()\s*"(\w+)"', rows)
+    assert len(keys) == 15
+    assert {row.key for row in _core.terms()} == {
+        key + side
+        for key in keys
+        for side in ("", "_positive", "_negative")
+        if not side
+        or _core.term(key + ("_2" if "ripple" in key or "position" in key else "")).option == "name"
+    }

@@ -1,0 +1,126 @@
+"""A term that a simulation or a controller does not have is refused by name, never dropped."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+import jointid as jid
+from jointid import _core
+from jointid.base.advice import Action
+from jointid.simulation import plant
+from jointid.simulation.terms import terms_of
+
+FRICTION = {"coulomb": 4.0, "viscous": 1.0}
+# Options that switch terms on, and values for their parameters.
+OPTIONS: dict[str, tuple[dict[str, Any], dict[str, float]]] = {
+    "gravity": ({"model": jid.Model(gravity="free")}, {"gravity_cos": 1.0, "gravity_sin": 0.5}),
+    "torque_offset": ({}, {"torque_offset": 0.3}),
+    "load_friction": ({"model": jid.Model(load_friction=True)}, {"load_friction": 0.1}),
+    "harmonics": (
+        {"model": jid.Model(harmonics=(3,))},
+        {"position_cos_3": 0.1, "position_sin_3": 0.2},
+    ),
+    "ripple": (
+        {"model": jid.Model(ripple=(2,)), "gear_ratio": 50.0},
+        {"ripple_cos_2": 0.1, "ripple_sin_2": 0.2},
+    ),
+    "sensor": ({"sensor": True}, {"sensor_gain": 2.0, "sensor_offset": 1.0}),
+}
+
+
+def joint(option: str | None = None, **changes: Any) -> jid.Joint:
+    fields, values = OPTIONS[option] if option is not None else ({}, {})
+    return jid.Joint(inertia=2.0, **fields, **changes).with_parameters(FRICTION | values)
+
+
+def drag(**changes: Any) -> Any:
+    """A term as the core would give it if somebody added the row and nothing else."""
+    row = {
+        "key": "drag",
+        "name": "drag",
+        "meaning": "quadratic drag",
+        "option": "name",
+        "shapes": [],
+        "family": False,
+        "decay": "none",
+        "simulated": False,
+        "control": _core.Control.refused,
+    }
+    return SimpleNamespace(**row | changes)
+
+
+def with_term(monkeypatch: pytest.MonkeyPatch, term: Any) -> None:
+    monkeypatch.setattr(plant, "terms_of", lambda joint: (*terms_of(joint), term))
+
+
+def run(subject: jid.Joint) -> jid.Recording:
+    return jid.simulate(subject, jid.OpenLoop(), jid.Trajectory.step(1.0, duration=0.01))
+
+
+def test_a_joint_has_the_terms_of_its_model_and_options() -> None:
+    keys = [term.key for term in terms_of(joint())]
+    assert keys == ["inertia", "coulomb", "viscous"]
+    for option in OPTIONS:
+        added = {term.key for term in terms_of(joint(option))} - set(keys)
+        assert added == {term.key for term in _core.terms() if term.option == option}, option
+    apart = [term.key for term in terms_of(jid.Joint(model=jid.Model("stribeck", asymmetric=True)))]
+    assert apart[1:3] == ["coulomb_positive", "coulomb_negative"]
+    assert len(apart) == 7
+
+
+def test_every_option_of_the_table_is_known_to_a_joint() -> None:
+    assert {term.option for term in _core.terms()} == {"", "name", *OPTIONS}
+
+
+@pytest.mark.parametrize("option", OPTIONS)
+def test_what_is_said_to_be_simulated_is_simulated(option: str) -> None:
+    found = run(joint(option)).truth
+    assert found is not None
+    assert set(OPTIONS[option][1]) <= set(found)
+
+
+def test_a_term_that_cannot_be_simulated_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    with_term(monkeypatch, drag())
+    with pytest.raises(jid.InputError, match="a simulation does not have the term 'drag'") as error:
+        run(joint())
+    assert (error.value.argument, error.value.value) == ("model", "coulomb_viscous")
+    with_term(monkeypatch, drag(option="load_friction"))
+    with pytest.raises(jid.InputError, match="set the joint with load_friction=False"):
+        run(joint())
+
+
+def test_a_term_that_a_controller_does_not_have_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    with_term(monkeypatch, drag(simulated=True))
+    with pytest.raises(jid.InputError, match="do not compensate the term 'drag', quadratic drag"):
+        jid.control_estimates(joint())
+    with_term(monkeypatch, drag(control=_core.Control.feedback))
+    assert "drag" not in jid.control_estimates(joint())
+
+
+def test_a_capability_without_its_arithmetic_stops(monkeypatch: pytest.MonkeyPatch) -> None:
+    with_term(monkeypatch, drag(simulated=True, control=_core.Control.compensated))
+    for use in (run, jid.control_estimates):
+        with pytest.raises(NotImplementedError, match="'drag' is not used"):
+            use(joint())
+
+
+def test_a_controller_refuses_friction_that_it_does_not_have() -> None:
+    with pytest.raises(jid.InputError, match="'load_friction'") as error:
+        jid.control_estimates(joint("load_friction"))
+    assert error.value.argument == "load_friction"
+    (remedy,) = error.value.remedy
+    assert isinstance(remedy, Action)
+    assert remedy.arguments == {"load_friction": False}
+    for option in set(OPTIONS) - {"load_friction"}:  # known, and left to the feedback
+        assert jid.control_estimates(joint(option))["coulomb"] == 4.0
+
+
+def test_a_friction_term_that_nobody_decided_about_is_refused() -> None:
+    """The flags of today, so that a change of one is a decision."""
+    refused = {t.key for t in _core.terms() if t.control == _core.Control.refused}
+    general = {f"static_general{side}" for side in ("", "_positive", "_negative")}
+    assert refused == {"load_friction", *general}
+    left = {t.option for t in _core.terms() if t.control == _core.Control.feedback}
+    assert left == {"torque_offset", "gravity", "harmonics", "ripple"}
+    assert all(term.simulated for term in _core.terms())
