@@ -200,12 +200,10 @@ def _say(step: str) -> None:
 
 def _agreed(bench: Bench) -> bool:
     """Whether the user wants the real joint to move."""
-    from jointid.hardware.bench.drive_types import drive_type
-
     low, high = bench.limits.position
     print(
         f"'{bench.joint.name}' will move between {low:.3g} and {high:.3g} rad with up to "
-        f"{bench.limits.torque:.4g} N·m, over {drive_type(bench.drive_type).address(bench)}.",
+        f"{bench.limits.torque:.4g} N·m, over {bench.address}.",
         file=sys.stderr,
     )
     if not sys.stdin.isatty():
