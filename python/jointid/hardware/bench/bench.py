@@ -1,4 +1,4 @@
-"""A bench: a joint, how its drive is reached, how it is to be moved, and within what limits."""
+"""A bench: a joint, its drive, a motion, a controller and limits."""
 
 from __future__ import annotations
 
@@ -87,9 +87,9 @@ class Bench:
     Attributes
     ----------
     joint : Joint
-        Its parameters' values are what the controller believes at first.
+        Its parameters' values are those that the controller assumes at first.
     controller : AdaptiveRobust, CompensatedPid, LugreObserver, …
-        Believing the joint's values.
+        With the joint's values, where it uses estimates.
     trajectory : Trajectory
     drive : object
         Options of the drive, of its type's own kind.
