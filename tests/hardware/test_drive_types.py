@@ -1,6 +1,9 @@
 """Drive types: found by name, nothing else names a make of drive, and hardware is independent of analysis."""
 
 import ast
+import io
+import subprocess
+import sys
 from collections.abc import Iterator
 from importlib.metadata import EntryPoint, EntryPoints
 from pathlib import Path
@@ -10,6 +13,7 @@ import pytest
 from house_rules import _imported
 
 import jointid as jid
+from jointid.cli.command_line import main
 from jointid.hardware.bench import drive_types
 from jointid.hardware.bench.drive_types import DriveType, drive_type, drive_type_names
 
@@ -117,6 +121,22 @@ def test_a_type_without_a_decoder_is_refused_by_replay(
 def test_a_type_that_is_built_in_cannot_be_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
     installed(monkeypatch, ("elmo", f"{__name__}:Wheel"))
     assert not isinstance(drive_type("elmo"), Wheel)
+
+
+def test_the_address_of_a_drive_is_shown_before_a_joint_moves(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("sys.stdin", io.StringIO(""))
+    assert main(["run", str(EXAMPLE)]) == 3
+    asked = capsys.readouterr().err
+    assert "will move between -1.4 and 1.4 rad with up to 160 N·m" in asked
+    assert "over socketcan can0, node 127." in asked
+
+
+def test_hardware_loads_no_make_of_drive() -> None:
+    code = "import sys, jointid.hardware; print([n for n in sys.modules if 'hardware.elmo' in n])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
 
 
 def test_an_unknown_type_in_a_joint_file_has_its_place(tmp_path: Path) -> None:

@@ -52,10 +52,10 @@ def _parameters(result: Commissioning) -> list[str]:
     if result.truth:
         head += ["truth", "error"]
     rows = [head]
-    believed = last.joint.parameters
+    assumed = last.joint.parameters
     initial = result.runs[0].controller.asdict()
     for name in last.free:
-        if name not in believed:
+        if name not in assumed:
             continue
         found = [estimate.parameters[name] for estimate in result.estimates]
         row = [name, f"{initial[name]:.4g}" if name in initial else ""]

@@ -1,4 +1,4 @@
-"""A bench: a joint, how its drive is reached, how it is to be moved, and within what limits."""
+"""A bench: a joint, its drive, a motion, a controller and limits."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 from jointid import _core
 from jointid.base.errors import InputError
-from jointid.hardware.bench.drive_types import DEFAULT_TYPE
+from jointid.hardware.bench.drive_types import DEFAULT_TYPE, drive_type
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.options import SessionOptions
 from jointid.hardware.session.realtime import RealTimeOptions
@@ -87,9 +87,9 @@ class Bench:
     Attributes
     ----------
     joint : Joint
-        Its parameters' values are what the controller believes at first.
+        Its parameters' values are those that the controller assumes at first.
     controller : AdaptiveRobust, CompensatedPid, LugreObserver, …
-        Believing the joint's values.
+        With the joint's values, where it uses estimates.
     trajectory : Trajectory
     drive : object
         Options of the drive, of its type's own kind.
@@ -114,6 +114,11 @@ class Bench:
     emulation: Emulation | None = None
     drive_type: str = DEFAULT_TYPE
 
+    @property
+    def address(self) -> str:
+        """Where the real drive is, e.g. "socketcan can0, node 127"."""
+        return drive_type(self.drive_type).address(self)
+
     @classmethod
     def load(cls, path: str | Path) -> Bench:
         """Read a joint file with a table `[session]`; `examples/hardware/joint.toml` explains it.
@@ -122,6 +127,12 @@ class Bench:
         ------
         InputError
             Names file, table and key.
+
+        Examples
+        --------
+        >>> bench = jid.hardware.Bench.load("examples/hardware/joint.toml")
+        >>> bench.address
+        'socketcan can0, node 127'
         """
         from jointid.hardware.bench.bench_file import load_bench
 

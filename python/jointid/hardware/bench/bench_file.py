@@ -108,8 +108,8 @@ def _controller(table: Table, joint: Joint) -> Controller:
         controller = believing(controller, joint)
     except InputError as error:
         raise InputError(str(error), place=table.source) from error
-    believed: Controller = controller.replace(**gains.entries)
-    return believed
+    assumed: Controller = controller.replace(**gains.entries)
+    return assumed
 
 
 def _emulation(table: Table, joint: Joint, adapter: DriveType) -> Emulation:

@@ -78,6 +78,10 @@ class DriveType:
         """
         raise NotImplementedError
 
+    def address(self, bench: Bench) -> str:
+        """Return where the real drive is, shown before a joint moves. Default: its options."""
+        return str(bench.drive)
+
     def emulate(self, bench: Bench, seed: int) -> AbstractContextManager[Drive]:
         """Return a context manager that yields an emulated drive on virtual time.
 

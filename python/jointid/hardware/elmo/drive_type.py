@@ -57,6 +57,10 @@ class ElmoType(DriveType):
         ) as opened:
             yield ElmoDrive(opened, bench.joint, bench.drive)
 
+    def address(self, bench: Bench) -> str:
+        """Return bus and node."""
+        return f"{bench.bus.interface} {bench.bus.channel}, node {bench.drive.node}"
+
     @contextmanager
     def emulate(self, bench: Bench, seed: int) -> Iterator[ElmoDrive]:
         """Yield the drive on an emulated bus with a clock of its own."""
