@@ -89,8 +89,8 @@ def test_the_interval_is_students(estimate: jid.Estimate) -> None:
 
 def test_each_direction_has_its_own() -> None:
     run = jid.load(data_folder() / "kr300_joint1.csv.gz")
-    model = {"model": "stribeck", "asymmetric": True}
-    estimate = jid.identify(run, jid.Joint(torque_offset=False), method="separable", **model)
+    joint = jid.Joint(torque_offset=False)
+    estimate = jid.identify(run, joint, model="stribeck", asymmetric=True, method="separable")
     found, value = estimate.derived, values(estimate)
     assert list(found) == ["breakaway_positive", "breakaway_negative", "stribeck_velocity"]
     for side in ("positive", "negative"):

@@ -142,7 +142,7 @@ def test_whole_pages_of_what_was_accepted(junk: str, monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: figure.draw_without_rendering())
     drawn = ("convergence", "covariance", "settings", "windows")
     most = 12 if junk in ("negative", "large") else 2  # else hardly any number is accepted
-    seen = set()
+    seen: set[Path_] = set()
     for path in paths(document()):
         kind = tuple("0" if isinstance(key, int) else key for key in path)
         if path and path[0] in drawn and kind not in seen and len(seen) < most:
@@ -153,12 +153,13 @@ def test_whole_pages_of_what_was_accepted(junk: str, monkeypatch: pytest.MonkeyP
 
 
 def test_the_path_is_named() -> None:
-    for path, named in {
+    named_paths: dict[Path_, str] = {
         ("parameters", "coulomb", "value"): r"^parameters\.coulomb\.value: this is None: a number",
         ("windows", "start", 3): r"^windows\.start\[3\]: ",
         ("settings", "seed"): r"^settings\.seed: ",
         ("joint", "drive", "gear_ratio"): r"^joint: \[drive\] gear_ratio",
-    }.items():
+    }
+    for path, named in named_paths.items():
         with pytest.raises(jid.InputError, match=named):
             jid.Estimate.from_json(damaged(path, "null"))
 

@@ -311,11 +311,3 @@ def test_readme_names_no_other_codes() -> None:
     cells = [line.split("|")[1] for line in table.splitlines()[2:]]
     codes = [code for cell in cells for code in re.findall(r"`(\w+)`", cell)]
     assert sorted(codes) == sorted(registry.finding_types())
-
-
-def test_every_picture_named_is_in_the_report(well_excited: jid.Recording) -> None:
-    page = html_report(jid.identify(well_excited, jid.thesis_joint()))
-    pictures = {each.picture for each in registry.finding_types().values() if each.picture}
-    assert pictures == {"windows", "friction-map", "convergence"}
-    for name in pictures:
-        assert f'id="{name}"' in page
