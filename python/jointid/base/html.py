@@ -11,23 +11,10 @@ from html import escape
 
 _TAGS = frozenset(
     (
-        *(
-            "html",
-            "head",
-            "meta",
-            "title",
-            "style",
-            "body",
-            "section",
-            "footer",
-            "div",
-            "span",
-            "h1",
-            "h2",
-            "h3",
-        ),
-        *("p", "br", "b", "em", "strong", "small", "sub", "sup", "code", "a", "ul", "ol", "li"),
+        *("html", "head", "meta", "title", "style", "body", "section", "footer", "div", "span"),
+        *("h1", "h2", "h3", "p", "br", "b", "em", "strong", "small", "sub", "sup", "code", "a"),
         *("figure", "figcaption", "img", "table", "caption", "thead", "tbody", "tr", "th", "td"),
+        *("ul", "ol", "li"),
     )
 )
 _EMPTY = frozenset(("br", "img", "meta"))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
+from jointid.base.advice import Action
 from jointid.base.html import Html, element, table
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Finding
@@ -42,7 +43,11 @@ def html_shifts(estimate: Estimate) -> Html:
     return table(body, head=head, class_="numbers")
 
 
-def html_findings(estimate: Estimate, pictures: Mapping[str, str] | None = None) -> Html:
+def html_findings(
+    estimate: Estimate,
+    pictures: Mapping[str, str] | None = None,
+    action: Callable[[Action], str] = str,
+) -> Html:
     """The findings as a list, or a line that says there are none.
 
     Parameters
@@ -50,16 +55,23 @@ def html_findings(estimate: Estimate, pictures: Mapping[str, str] | None = None)
     estimate : Estimate
     pictures : mapping of str to str, optional
         Code → section of the page that shows it, which the finding then links to. Default: no links.
+    action : callable
+        Words the advice of a finding. Default: as at a Python prompt.
     """
     if not estimate.findings:
         return element("p", "No warnings.")
     return element(
-        "ul", *(_finding(found, pictures or {}) for found in estimate.findings), class_="findings"
+        "ul",
+        *(_finding(found, pictures or {}, action) for found in estimate.findings),
+        class_="findings",
     )
 
 
-def _finding(found: Finding, pictures: Mapping[str, str]) -> Html:
-    parts: list[Html | str] = [element("b", found.code), f" ({found.severity}): {found.message}"]
+def _finding(found: Finding, pictures: Mapping[str, str], action: Callable[[Action], str]) -> Html:
+    parts: list[Html | str] = [
+        element("b", found.code),
+        f" ({found.severity}): {found.worded(action)}",
+    ]
     if found.code in pictures:
         parts += [" ", element("a", "picture", href=f"#{pictures[found.code]}")]
     return element("li", *parts, class_=found.severity)

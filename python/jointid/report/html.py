@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jointid import plot
+from jointid.base.advice import Action
 from jointid.base.argument_checks import require_path
 from jointid.base.files import write_whole
 from jointid.base.html import Html, element, page
@@ -41,12 +42,14 @@ footer { margin-top: 3rem; color: #777; font-size: .85rem; }
 """
 
 
-def html_report(estimate: Estimate) -> str:
+def html_report(estimate: Estimate, action: Callable[[Action], str] = str) -> str:
     """The report as one HTML page that needs no other file.
 
     Parameters
     ----------
     estimate : Estimate
+    action : callable
+        Words the advice of a finding. Default: as at a Python prompt.
     """
     title = f"{estimate.joint.name or 'joint'}: friction identified by jointid"
     body = [
@@ -54,7 +57,7 @@ def html_report(estimate: Estimate) -> str:
         element("h2", "Parameters"),
         html_table(estimate),
         element("h2", "Warnings"),
-        html_findings(estimate, _shown_by(estimate)),
+        html_findings(estimate, _shown_by(estimate), action),
         *_pictures(estimate),
         element("h2", "Uncertainty"),
         element(
@@ -113,10 +116,12 @@ def _pictures(estimate: Estimate) -> list[Html]:
     return parts
 
 
-def save_report(estimate: Estimate, path: str | Path) -> Path:
+def save_report(
+    estimate: Estimate, path: str | Path, action: Callable[[Action], str] = str
+) -> Path:
     """Write the report, whole or not at all; returns its path."""
     target = require_path("path", path)
-    write_whole(target, html_report(estimate).encode())
+    write_whole(target, html_report(estimate, action).encode())
     return target
 
 

@@ -7,7 +7,7 @@ from importlib import import_module
 from jointid.identification.warnings.check import Check, FindingType
 
 # In the order in which findings are listed: the most severe first. Each file has a CHECK.
-_FILES = (
+FILES = (
     "stopped",
     "velocity",
     "speed",
@@ -31,7 +31,13 @@ _FILES = (
     "assumed_units",
 )
 
-CHECKS: tuple[Check, ...] = tuple(import_module(f"{__package__}.{file}").CHECK for file in _FILES)
+
+def checks_of(files: tuple[str, ...]) -> tuple[Check, ...]:
+    """Return the checks of these files of the folder."""
+    return tuple(import_module(f"{__package__}.{file}").CHECK for file in files)
+
+
+CHECKS = checks_of(FILES)
 
 
 def finding_types() -> dict[str, FindingType]:

@@ -1,0 +1,58 @@
+"""The page of an estimate: sections, pictures inside, and findings that link to the picture that shows them."""
+
+from pathlib import Path
+
+import pytest
+
+import jointid as jid
+from jointid.cli.demo import data_folder
+from jointid.identification.warnings.registry import finding_types
+from jointid.report.html import html_report, save_report
+
+
+@pytest.fixture(scope="module")
+def robot() -> jid.Estimate:
+    recording = jid.load(data_folder() / "kr300_joint1.csv.gz")
+    joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
+    return jid.identify(recording, joint)
+
+
+def test_every_picture_named_by_a_check_is_in_the_page(robot: jid.Estimate) -> None:
+    page = html_report(robot)
+    pictures = {each.picture for each in finding_types().values() if each.picture}
+    assert pictures == {"windows", "friction-map", "convergence"}
+    for name in pictures:
+        assert f'<h2 id="{name}">' in page
+    assert page.count("data:image/png;base64,") == len(pictures)
+
+
+def test_a_finding_links_to_its_picture(robot: jid.Estimate) -> None:
+    assert {"structured_residual"} <= {found.code for found in robot.findings}
+    page = html_report(robot)
+    assert '<li class="warning"><b>structured_residual</b> (warning): the residuals are' in page
+    assert '<a href="#windows">picture</a>' in page
+
+
+def test_no_link_leads_to_a_picture_that_is_not_there() -> None:
+    recording = jid.load(data_folder() / "well_excited.csv.gz")
+    rough = jid.GaOptions(population=20, generations=3, polish=False)
+    stopped = jid.identify(recording, jid.thesis_joint(), ga=rough)
+    assert stopped.findings[0].code == "stopped"
+    assert 'href="#convergence"' in html_report(stopped)
+    plain = jid.identify(recording, jid.thesis_joint(), method="separable")
+    page = html_report(plain)
+    assert "convergence" not in page.lower()
+    assert "<p>No warnings.</p>" in page
+
+
+def test_another_interface_words_the_advice(robot: jid.Estimate) -> None:
+    page = html_report(robot, lambda action: f"<{action.kind}>")
+    assert "a bias may remain; &lt;inspect&gt; <a href" in page
+
+
+def test_the_page_is_written_whole(robot: jid.Estimate, tmp_path: Path) -> None:
+    path = save_report(robot, tmp_path / "page.html")
+    text = path.read_text(encoding="utf-8")
+    assert text == html_report(robot)
+    assert text.startswith("<!doctype html>")
+    assert text.endswith("</body></html>")
