@@ -71,9 +71,9 @@ def test_a_command_runs(
 ) -> None:
     command, *arguments = shlex.split(line, comments=True)[1:]
     if command == "emulate":  # until Ctrl-C, on an interface of the machine: only its arguments
-        from jointid.cli.arguments import parser
+        from jointid.cli.parser import command_parser
 
-        assert parser().parse_args([command, *arguments]).command == command
+        assert command_parser().parse_args([command, *arguments]).command == command
         return
     for path in files.iterdir():
         shutil.copy(path, tmp_path)
