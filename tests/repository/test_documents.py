@@ -140,14 +140,6 @@ def test_each_decision_has_a_date() -> None:
         assert re.search(r"\*20\d\d-\d\d-\d\d\.\*", decision), decision[:60]
 
 
-def test_contributing_lists_every_folder_of_the_code() -> None:
-    listed = re.findall(r"^\| `((?:python|cpp)/[\w/]+)` \|", read("CONTRIBUTING.md"), re.MULTILINE)
-    sources = [*(ROOT / "python" / "jointid").rglob("*.py"), *(ROOT / "cpp").rglob("*.?pp")]
-    folders = {path.parent.relative_to(ROOT).as_posix() for path in sources}
-    assert len(set(listed)) == len(listed)
-    assert set(listed) == folders - {"python/jointid"}
-
-
 def test_the_house_is_drawn_in_ten_lines() -> None:
     picture = blocks(read("CONTRIBUTING.md"), "")[0]
     assert len(picture.splitlines()) == 10
