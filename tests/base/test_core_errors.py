@@ -23,7 +23,7 @@ BAD: list[tuple[Any, str, Any, str]] = [
     ),
     (lambda: jid.Sensors(torque_noise=-1.0), "Sensors.torque_noise", -1.0, "must be finite and"),
     (
-        lambda: jid.Pd(**{"stifness": 1.0}),
+        lambda: jid.Pd(stifness=1.0),
         "Pd.stifness",
         None,
         "no such field; fields are stiffness",

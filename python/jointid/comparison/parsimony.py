@@ -63,7 +63,7 @@ def refusal(estimate: Estimate) -> str | None:
     """Why the data do not carry a model, or None when they do."""
     for warning in estimate.warnings:
         if warning.code == "model_too_rich":
-            return f"not eligible: {warning.message.split(';')[0]}"
+            return f"not eligible: {warning.cause}"
     ended = [p for p in estimate.parameters.values() if p.at_bound is not None]
     if ended:
         told = ", ".join(
