@@ -1,4 +1,4 @@
-"""Where to look for a sensor's gain that nobody bounds: its sign and size, by least squares with either sign."""
+"""Bounds of a sensor's gain without stated bounds: its sign and size, by least squares with either sign."""
 
 from __future__ import annotations
 
@@ -116,7 +116,10 @@ def _swing(penalty: _core.Penalty, columns: Array) -> float:
     spread = float(np.std(reading))
     if spread <= 1e-9 * max(abs(mean), 1e-300):
         raise InputError(
-            "the sensor's reading does not vary: its gain cannot be identified; check the column, or drop the sensor"
+            "its reading does not vary, so its gain cannot be identified",
+            argument="sensor",
+            place="recording",
+            remedy="check the column, or leave the sensor out",
         )
     return float(np.std(penalty.target / penalty.usable_duration)) / spread
 

@@ -157,6 +157,8 @@ def _read_state(path: Path) -> _core.GaState:
     try:
         return _core.GaState.from_bytes(path.read_bytes())
     except OSError as error:
-        raise InputError(f"{path}: the checkpoint cannot be read: {error.strerror}") from error
+        raise InputError(
+            f"the checkpoint cannot be read: {error.strerror}", argument="resume", place=str(path)
+        ) from error
     except ValueError as error:
-        raise InputError(f"{path}: {error}") from error
+        raise InputError(str(error), argument="resume", place=str(path)) from error
