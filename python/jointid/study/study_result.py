@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
+from jointid.joint.checks import suggestion
 from jointid.study import study_file, tables
 from jointid.study.row import Row
 from jointid.study.summary import Summary, summarise
@@ -82,7 +83,11 @@ class Study:
         """
         table = tables.columns(self)
         if name not in table:
-            raise InputError(f"the study has no column '{name}'; it has {', '.join(table)}")
+            raise InputError(
+                f"the study has no such column; {suggestion(name, table)}",
+                argument="name",
+                value=name,
+            )
         return np.array(table[name])
 
     def truth_of(self, cell: int) -> dict[str, float]:

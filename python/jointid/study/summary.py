@@ -121,7 +121,9 @@ def summarise(study: Study, within: float) -> Summary:
         `within` is not positive.
     """
     if isinstance(within, bool) or not isinstance(within, int | float) or not within > 0.0:
-        raise InputError(f"within is {within!r}; a share above 0, such as 0.05, is expected")
+        raise InputError(
+            "a share above 0, such as 0.05, is expected", argument="within", value=within
+        )
     mine: list[list[Row]] = [[] for _ in study.cells]
     for row in study.rows:
         mine[row.cell].append(row)

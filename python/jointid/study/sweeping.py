@@ -10,6 +10,7 @@ from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from typing import Any
 
+from jointid.base.advice import Action
 from jointid.base.argument_checks import require_path, whole_number
 from jointid.base.errors import InputError
 from jointid.identification.prepared import require_joint
@@ -71,8 +72,9 @@ class StudyBrokenError(RuntimeError):
 
     def __init__(self, study: Study) -> None:
         super().__init__(
-            f"a worker of the executor died after {len(study.rows)} of {len(study.cells) * study.trials} "
-            "trials; out of memory perhaps. What is in output= can be gone on with by resume=True"
+            f"a worker of the executor ended unexpectedly after {len(study.rows)} of "
+            f"{len(study.cells) * study.trials} trials, perhaps for lack of memory. A study with an output file can be "
+            "resumed"
         )
         self.study = study
 
@@ -170,20 +172,30 @@ def sweep(
     trials = whole_number("trials", trials, 1, 10**9)
     whole_number("seed", work.seed + trials - 1, 0, 2**64 - 1)
     if callback is not None and not callable(callback):
-        raise InputError(f"callback must be callable, got {callback!r}")
+        raise InputError("a function is expected", argument="callback", value=callback)
     if executor is not None and not hasattr(executor, "submit"):
-        raise InputError(f"executor is {executor!r}; a concurrent.futures.Executor is expected")
+        raise InputError(
+            "a concurrent.futures.Executor is expected", argument="executor", value=executor
+        )
     header = header_of_work(work, trials, truth)
     file = None
     if output is not None:
         output = require_path("output", output)
         if output.suffix != ".jsonl":
             raise InputError(
-                f"output {output}: a study grows in a .jsonl file; Study.save writes tables"
+                "a file that ends in .jsonl is expected",
+                argument="output",
+                value=str(output),
+                remedy="save the study as a table when it is done",
             )
         file = StudyFile(output, header, resume=resume)
     elif resume:
-        raise InputError("resume=True goes on with a file; give it as output=")
+        raise InputError(
+            "there is no file to continue",
+            argument="resume",
+            value=True,
+            remedy=Action("call", {"output": ...}, text="the file of the study", function="sweep"),
+        )
     rows = [] if file is None else [row for row in file.rows if row.trial < trials]
     total = len(work.cells) * trials
     places = work.ordered(trials, (row.place for row in rows))
@@ -212,7 +224,7 @@ def _searched(search: Search) -> Search:
     for name in ("callback", "checkpoint", "resume"):
         if getattr(search, name) is not None:
             raise InputError(
-                "a sweep has its own callback, and a file that it continues",
+                "a sweep has its own callback and its own file",
                 argument=f"search.{name}",
                 remedy="leave it out of the search",
             )
@@ -236,9 +248,10 @@ def _work(
     if tracking:
         if scenario is None:
             raise InputError(
-                "recordings cannot be tracked again; give a scenario that simulates",
+                "the tracking error after identification needs a simulation, and recordings are given",
                 argument="tracking",
                 value=True,
+                remedy="give a scenario instead of recordings",
             )
         scenario.believing(scenario.joint)
     work = Work(
