@@ -246,7 +246,7 @@ def test_a_default_model_that_is_one_with_the_sensors_offset_is_left_out(
         "stribeck:asymmetric",
     }
     assert "left out: stribeck:asymmetric: asymmetric Coulomb friction and" in found.report()
-    with pytest.raises(InputError, match="sensor_offset are the same"):
+    with pytest.raises(InputError, match="sensor_offset are indistinguishable"):
         jid.compare_models(well_excited, jid.thesis_joint(), models="stribeck:asymmetric")
 
 
@@ -342,8 +342,11 @@ def compare(**options: object) -> Callable[[], object]:
         (compare(folds=100_000), "use fewer folds"),
         (compare(search="magic"), "separable"),
         (compare(parameters={"magic": 1.0}), "magic: there is no such parameter"),
-        (lambda: jid.compare_models([]), "got none"),
-        (lambda: jid.compare_models([simulated(0), 3]), "recording 1"),  # type: ignore[list-item]
+        (lambda: jid.compare_models([]), r"recordings is \[\]: at least one"),
+        (
+            lambda: jid.compare_models([simulated(0), 3]),  # type: ignore[list-item]
+            "recording 1: recordings is 3: a Recording is expected",
+        ),
     ],
 )
 def test_bad_input_is_told_in_a_sentence(call: Callable[[], object], told: str) -> None:

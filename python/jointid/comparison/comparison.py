@@ -150,7 +150,7 @@ def compare_models(
         except InputError as error:
             if models is not None or spec == specs[0]:
                 raise
-            left_out[str(spec)] = str(error.__cause__)
+            left_out[str(spec)] = error.reason
             fitter.total -= 1 + parts
     # Residuals over windows of different length cannot be compared: the shortest for all.
     duration = min(estimate.settings["windows"] for estimate in whole.values())

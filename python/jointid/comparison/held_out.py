@@ -55,7 +55,11 @@ class Fold:
             missed += float(np.sum(table.residual[inside] ** 2))
             measured += float(np.sum(table.measured[inside] ** 2))
         if measured == 0.0:
-            raise InputError("no torque was measured in what is held out; use fewer folds")
+            raise InputError(
+                "the torque is zero in the held-out part",
+                argument="folds",
+                remedy="use fewer folds",
+            )
         return float(np.sqrt(missed / measured))
 
 
@@ -77,8 +81,10 @@ def folds_by_block(recording: Recording, windows: WindowTable, count: int) -> tu
     """
     if count * _FEWEST > len(windows.start):
         raise InputError(
-            f"folds is {count}, but the recording has {len(windows.start)} windows; "
-            f"a block needs {_FEWEST}: use fewer folds, or shorter windows"
+            f"the recording has {len(windows.start)} windows, and each block needs at least {_FEWEST}",
+            argument="folds",
+            value=count,
+            remedy="use fewer folds, or shorter windows",
         )
     firsts = [part[0] for part in np.array_split(np.arange(len(windows.start)), count)]
     edges = [-np.inf, *(float(windows.start[first]) for first in firsts[1:]), np.inf]

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from jointid.base.errors import InputError
 from jointid.estimate.student import quantile
+from jointid.joint.checks import suggestion
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
@@ -132,14 +133,21 @@ class OnlineIdentifier:
         """
         for name in others:
             if name not in _OPTIONAL:
+                known = ("time", "position", "torque", *_OPTIONAL)
                 raise InputError(
-                    f"feed: there is no signal '{name}'; there are time, position, torque, {', '.join(_OPTIONAL)}"
+                    f"there is no such signal; {suggestion(name, known)}",
+                    argument=name,
+                    place="samples",
                 )
         given = {"time": time, "position": position, "torque": torque, **others}
         here = tuple(name for name, value in given.items() if value is not None)
         signals = self._signals or here
         if "position" not in signals:
-            raise InputError("feed: samples need a position, of the output side")
+            raise InputError(
+                "it is missing; the position of the output is needed",
+                argument="position",
+                place="samples",
+            )
         samples = checked(given, signals)
         if self._signals is None:
             self._settings.check_signals(signals)
@@ -147,10 +155,15 @@ class OnlineIdentifier:
         if times.size == 0:
             return
         if not (times[0] > self._last_time and bool(np.all(np.diff(times) > 0.0))):
+            earlier, later = self._last_time, times[0]
+            if later > earlier:
+                first = int(np.flatnonzero(np.diff(times) <= 0.0)[0])
+                earlier, later = times[first], times[first + 1]
             raise InputError(
-                f"feed: time must increase from sample to sample, got {times[0]} s after {self._last_time} s"
-                if times[0] <= self._last_time
-                else "feed: time must increase from sample to sample"
+                f"time must increase from sample to sample, and the one before is {earlier} s",
+                argument="time",
+                value=float(later),
+                place="samples",
             )
         self._worker.put({name: values.copy() for name, values in samples.items()})
         self._signals = signals

@@ -177,7 +177,7 @@ class Sliding:
         if form is None or plan.penalty.window_count <= 2 * len(domain.names):
             return None
         if form.error > _ROUGH:
-            raise InputError(f"on-line: {form.reason}")
+            raise InputError(form.reason, place="on-line identification")
         best = _core.minimise_separable(form, domain.lower, domain.upper, threads=1).best
         penalty, residual, jacobian = plan.penalty.linearised(best)
         sizes = np.linalg.norm(jacobian, axis=0)

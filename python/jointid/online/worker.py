@@ -42,7 +42,7 @@ class Worker:
         with self._condition:
             self._raise_failure()
             if self._closed:
-                raise InputError("feed: the identifier is closed")
+                raise InputError("the identifier is closed", place="feed")
             self._waiting.append(samples)
             last = samples["time"][-1]
             while (
@@ -66,7 +66,9 @@ class Worker:
     def wait(self, timeout: float | None) -> OnlineEstimate | None:
         """Wait until all samples handed over have been looked at; the latest estimate."""
         if self.thread is threading.current_thread():
-            raise InputError("wait: the callback cannot wait for the thread that it runs on")
+            raise InputError(
+                "the callback cannot wait for the thread that it runs on", place="wait"
+            )
         with self._condition:
             done = self._condition.wait_for(
                 lambda: self._failure is not None or (not self._waiting and not self._busy), timeout
