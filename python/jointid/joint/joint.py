@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.advice import Action
-from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
 from jointid.joint.checks import (
     check_choice,
     check_flag,
+    check_mapping,
     finite_number,
     positive_number,
     set_numbers,
@@ -231,7 +231,7 @@ class Joint:
         InputError
             An unknown parameter, no finite number, or a value outside the parameter's bounds.
         """
-        require_mapping("values", values, "{'coulomb': 25.0}")
+        check_mapping("", "values", values)
         table = merge(self.parameters, {name: {"value": value} for name, value in values.items()})
         for name in values:
             finite_number(f"parameter '{name}'", "value", table[name].value)

@@ -8,6 +8,7 @@ from jointid import _core
 from jointid.base.errors import InputError
 from jointid.joint.checks import (
     check_flag,
+    check_mapping,
     check_parameter_name,
     finite_number,
     is_number,
@@ -118,8 +119,7 @@ def merge(
     InputError
         As in `parameter_table`; also when a change does not fit what it is laid over.
     """
-    if not isinstance(changes, Mapping):
-        raise InputError("a mapping from names is expected", argument="parameters", value=changes)
+    check_mapping("", "parameters", changes)
     table = dict(base)
     for name, entry in changes.items():
         check_parameter_name(name)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.joint.checks import check_choice
+from jointid.joint.checks import check_choice, finite_number
 from jointid.joint.joint import Joint
 from jointid.problem.terms import TermChoice
 from jointid.problem.window_table import WindowTable
@@ -34,6 +34,8 @@ _WINDOWS_EXPECTED = (
 )
 
 _RECORDING_EXPECTED = "a Recording is expected, or several; load reads one from a file"
+
+_LARGEST = 1e15  # number or duration of windows that the core can represent
 
 _HOLDS = {"zoh": _core.Hold.zero_order, "linear": _core.Hold.linear}
 
@@ -83,9 +85,10 @@ class Problem:
 
     def _cut(self, made: type[Made], windows: Windows) -> Made:
         options = self.window_options(windows)
+        recordings = self.in_core  # its errors are values already
         try:
             return made(
-                recordings=self.in_core,
+                recordings=recordings,
                 terms=list(self.choice.terms),
                 windows=options,
                 residual=_core.Residual[self.choice.residual],
@@ -179,7 +182,9 @@ class Problem:
         return [self._in_core(recording) for recording in self.recordings]
 
     def _in_core(self, recording: Recording) -> _core.Recording:
-        hold = self.torque_hold or recording.torque_hold
+        hold = self.torque_hold
+        if hold is None:
+            hold = recording.torque_hold
         if hold is None:
             hold = (self.joint.torque_hold if self.joint is not None else None) or "linear"
         check_choice("", "torque_hold", hold, _HOLDS)
@@ -230,9 +235,9 @@ def _options(windows: int | float | _core.WindowOptions | None) -> _core.WindowO
         return windows
     if isinstance(windows, bool | str) or not isinstance(windows, numbers.Real):
         raise InputError(_WINDOWS_EXPECTED, argument="windows", value=windows)
-    if not 0 < windows < 1e15:
+    if not 0.0 < finite_number("", "windows", windows) < _LARGEST:
         raise InputError(
-            "a finite value above 0 is expected", argument="windows", value=float(windows)
+            f"a value above 0 and below {_LARGEST:g} is expected", argument="windows", value=windows
         )
     if isinstance(windows, numbers.Integral):
         return _core.WindowOptions(count=int(windows))

@@ -12,11 +12,10 @@ from typing import Any
 import numpy as np
 
 from jointid import _core
-from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError, shown
 from jointid.identification.prepared import prepare
 from jointid.identification.search.search import Search
-from jointid.joint.checks import check_flag, finite_number, is_number, suggestion
+from jointid.joint.checks import check_flag, check_mapping, finite_number, is_number, suggestion
 from jointid.joint.model import FIELDS, Model
 from jointid.simulation.scenario import Scenario
 
@@ -108,7 +107,9 @@ def _check_setting(name: str, value: object, present: object) -> None:
             raise InputError("a text is expected", argument=name, value=value, place="grid")
     elif not isinstance(present, int):
         finite_number("grid", name, value)
-    elif not (is_number(value) and isinstance(value, numbers.Integral) and abs(value) < _TOO_LARGE):
+    elif not (
+        is_number(value) and isinstance(value, numbers.Integral) and abs(int(value)) < _TOO_LARGE
+    ):
         raise InputError(
             f"a whole number below {_TOO_LARGE} is expected",
             argument=name,
@@ -117,9 +118,11 @@ def _check_setting(name: str, value: object, present: object) -> None:
         )
 
 
-def _changes(parameters: object) -> dict[str, Any]:
-    example = "{'coulomb': {'max': 50.0}}"
-    return dict(require_mapping("parameters", {} if parameters is None else parameters, example))
+def _changes(parameters: Any) -> dict[str, Any]:
+    if parameters is None:
+        return {}
+    check_mapping("", "parameters", parameters)
+    return dict(parameters)
 
 
 def is_option(name: str) -> bool:

@@ -215,6 +215,8 @@ def sweep(
         study = study_of(header, rows, time.perf_counter() - began)
         raise StudyInterruptedError(study) from interrupt
     if rows and all(row.status == REFUSED for row in rows):
+        # A row has only the error's text: run its trial again for the error itself.
+        list(Runner(work, strict=True).run([rows[0].place]))
         raise InputError(rows[0].message)
     return study_of(header, rows, time.perf_counter() - began)
 

@@ -143,7 +143,8 @@ def _refuse_zero_gain(
             argument="sensor_gain",
             place="parameters",
             remedy=(
-                "give it a min above 0 or a max below 0",
+                "set its min above 0",
+                "set its max below 0",
                 Action("call", {"residual": "torque"}),
             ),
         )

@@ -88,6 +88,13 @@ def _random(search: Search, engine: Engine, domain: SearchDomain) -> _core.GaRes
 
 
 def _genetic(search: Search, engine: Engine, domain: SearchDomain) -> _core.GaResult:
+    if search.checkpoint is not None and not Path(search.checkpoint).parent.is_dir():
+        raise InputError(
+            f"the folder {Path(search.checkpoint).parent} does not exist",
+            argument="checkpoint",
+            value=str(search.checkpoint),
+            remedy="create it first",
+        )
     state = None if search.resume is None else _read_state(Path(search.resume))
     try:
         result = _core.minimise_genetic(
@@ -104,7 +111,9 @@ def _genetic(search: Search, engine: Engine, domain: SearchDomain) -> _core.GaRe
             else functools.partial(_write_state, search),
         )
     except ValueError as error:
-        raise InputError(str(error)) from error
+        if state is None or isinstance(error, InputError):
+            raise
+        raise InputError(str(error), place=str(search.resume)) from error
     if search.checkpoint is not None and result.state is not None:
         _write_state(search, result.state)
     return result

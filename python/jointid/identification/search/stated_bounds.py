@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
-from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
+from jointid.joint.checks import check_mapping
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter, merge
 
@@ -29,7 +29,7 @@ def parameter_bounds(
         The call names a parameter that is not among them, or bounds that contradict each other.
     """
     if changes is not None:
-        require_mapping("parameters", changes, "{'coulomb': {'max': 50.0}}")
+        check_mapping("", "parameters", changes)
     table = merge(_known_values(joint), joint.parameters if joint is not None else {})
     table = merge(
         table, {name: _freed(table, name, entry) for name, entry in (changes or {}).items()}
