@@ -9,7 +9,7 @@ import pytest
 import jointid as jid
 from jointid import _core
 from jointid.base.advice import Action
-from jointid.identification.search.data_bounds import shape_bounds
+from jointid.identification.search.computed_bounds import shape_bounds
 
 TIME = np.arange(0.0, 2.0, 0.002)
 MOTION: dict[str, Any] = {"time": TIME, "position": np.sin(7.0 * TIME)}

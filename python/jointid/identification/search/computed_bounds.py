@@ -48,7 +48,7 @@ def shape_range(parameter: Parameter, peak_speed: float) -> tuple[float, float]:
     )
 
 
-class DataBounds:
+class ComputedBounds:
     """Bounds of coefficients from the size of the penalty's columns; each column is computed once.
 
     Parameters

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.identification.search.data_bounds import DataBounds, shape_bounds, shape_range
+from jointid.identification.search.computed_bounds import ComputedBounds, shape_bounds, shape_range
 from jointid.identification.search.gain_domain import around
 from jointid.identification.search.stated_bounds import parameter_bounds
 from jointid.joint.joint import Joint
@@ -81,7 +81,7 @@ def domain_for(
         if not each.vary and each.value is not None
     }
     shapes = [shape_range(each, peak_speed) for each in known[penalty.coefficients :]]
-    data = DataBounds(penalty, shapes, _signs(known))
+    computed = ComputedBounds(penalty, shapes, _signs(known))
     for index, (name, parameter) in enumerate(zip(names, known, strict=True)):
         if not parameter.vary:
             assert parameter.value is not None  # Parameter refuses a fixed one without a value
@@ -95,7 +95,7 @@ def domain_for(
             elif name == "sensor_gain" and parameter.value:
                 bounds = around(parameter.value)
             else:
-                bounds = data.of_coefficient(index, fixed)
+                bounds = computed.of_coefficient(index, fixed)
             low = bounds[0] if low is None else low
             high = bounds[1] if high is None else high
         if not low < high:
@@ -115,7 +115,7 @@ def domain_for(
         lower=lower,
         upper=upper,
         from_data=tuple(from_data),
-        guessed_sign=data.guessed_sign,
+        guessed_sign=computed.guessed_sign,
     )
 
 
