@@ -96,7 +96,7 @@ class StudyFile:
             self._synced = time.monotonic()
 
     def __enter__(self) -> Self:
-        """The file."""
+        """Return the file."""
         return self
 
     def __exit__(
