@@ -196,7 +196,7 @@ class Runner:
     def _refused(self, place: Place, error: InputError) -> Row:
         if self._strict:
             raise error
-        # Without advice, which is a matter of who asks: the row may be read anywhere.
+        # Without advice, which depends on the face: a row is read from any of them.
         plain = InputError(
             error.reason, argument=error.argument, value=error.value, place=error.place
         )
