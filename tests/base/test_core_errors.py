@@ -9,6 +9,7 @@ import pytest
 import jointid as jid
 from jointid import _core
 
+MISSPELT: dict[str, Any] = {"stifness": 1.0}
 WRONG: list[Any] = [2.5, "no"]
 BAD: list[tuple[Any, str, Any, str]] = [
     (lambda: jid.GaOptions(population=1), "GaOptions.population", 1, "must be 4 to 1000000"),
@@ -23,7 +24,7 @@ BAD: list[tuple[Any, str, Any, str]] = [
     ),
     (lambda: jid.Sensors(torque_noise=-1.0), "Sensors.torque_noise", -1.0, "must be finite and"),
     (
-        lambda: jid.Pd(stifness=1.0),
+        lambda: jid.Pd(**MISSPELT),
         "Pd.stifness",
         None,
         "no such field; fields are stiffness",

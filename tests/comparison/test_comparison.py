@@ -89,7 +89,7 @@ def test_emps_refuses_the_stribeck_term(shared_data: object) -> None:
     assert found.winner == "coulomb_viscous"
     assert not row(found, "stribeck").eligible
     assert "static friction ended at its lower bound" in row(found, "stribeck").reason
-    assert "the data do not carry stribeck" in found.reason
+    assert "the data do not support stribeck" in found.reason
     assert row(found, "coulomb_viscous").score == pytest.approx(0.0418, rel=0.05)
 
 
@@ -121,7 +121,7 @@ def test_a_model_on_its_bound_cannot_win() -> None:
     )
     assert not any(entry.eligible for entry in found.rows)
     assert "viscous at its upper bound" in row(found, "coulomb_viscous").reason
-    assert "carry none of the models" in found.reason
+    assert "support none of the models" in found.reason
     assert found.winner == "stribeck"  # still told: what predicts best
 
 
@@ -155,9 +155,9 @@ def test_the_simplest_within_one_standard_error_wins() -> None:
     assert judged[winner].model == "also_middle"
     assert "simplest model within one standard error of the best, rich with 10 ± 1 %" in reason
     assert [entry.reason.split(",")[0] for entry in judged] == [
-        "not clearly better than the winner",
-        "not clearly better than the winner",
-        "misses by more than one standard error over the best",
+        "not significantly better than the winner",
+        "not significantly better than the winner",
+        "more than one standard error worse than the best",
         "winner",
     ]
 
@@ -170,8 +170,8 @@ def test_an_ineligible_model_neither_wins_nor_sets_the_mark() -> None:
     ]
     judged, winner, reason = judge(entries)
     assert judged[winner].model == "good"
-    assert "no simpler model comes within" in reason
-    assert "do not carry refused" in reason
+    assert "no simpler model is within" in reason
+    assert "do not support refused" in reason
     assert judged[0].reason == "not eligible: because"
 
 
@@ -245,8 +245,8 @@ def test_a_default_model_that_is_one_with_the_sensors_offset_is_left_out(
         "coulomb_viscous:asymmetric",
         "stribeck:asymmetric",
     }
-    assert "left out: stribeck:asymmetric: asymmetric Coulomb friction and" in found.report()
-    with pytest.raises(InputError, match="sensor_offset are the same"):
+    assert "not compared: stribeck:asymmetric: asymmetric Coulomb friction and" in found.report()
+    with pytest.raises(InputError, match="sensor_offset are indistinguishable"):
         jid.compare_models(well_excited, jid.thesis_joint(), models="stribeck:asymmetric")
 
 
@@ -342,8 +342,11 @@ def compare(**options: object) -> Callable[[], object]:
         (compare(folds=100_000), "use fewer folds"),
         (compare(search="magic"), "separable"),
         (compare(parameters={"magic": 1.0}), "magic: there is no such parameter"),
-        (lambda: jid.compare_models([]), "got none"),
-        (lambda: jid.compare_models([simulated(0), 3]), "recording 1"),  # type: ignore[list-item]
+        (lambda: jid.compare_models([]), r"recordings is \[\]: at least one"),
+        (
+            lambda: jid.compare_models([simulated(0), 3]),  # type: ignore[list-item]
+            "recording 1: recordings is 3: a Recording is expected",
+        ),
     ],
 )
 def test_bad_input_is_told_in_a_sentence(call: Callable[[], object], told: str) -> None:

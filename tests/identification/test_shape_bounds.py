@@ -3,18 +3,18 @@
 import pytest
 
 from jointid import _core
-from jointid.identification.search.domain import _shape_bounds
+from jointid.identification.search.computed_bounds import shape_bounds
 
 
 def test_default_bounds_are_those_of_the_table() -> None:
-    assert _shape_bounds("stribeck", 2.0) == ((0.5 * 2.0) ** -2, (0.02 * 2.0) ** -2)
-    assert _shape_bounds("stribeck_velocity", 2.0) == (0.04, 1.0)
-    assert _shape_bounds("stribeck_exponent", 2.0) == (0.5, 4.0)
+    assert shape_bounds("stribeck", 2.0) == ((0.5 * 2.0) ** -2, (0.02 * 2.0) ** -2)
+    assert shape_bounds("stribeck_velocity", 2.0) == (0.04, 1.0)
+    assert shape_bounds("stribeck_exponent", 2.0) == (0.5, 4.0)
     for shape in _core.shapes():
-        low, high = _shape_bounds(shape.name, 0.7)
+        low, high = shape_bounds(shape.name, 0.7)
         assert 0.0 < low < high, shape.name
 
 
 def test_an_unknown_shape_is_refused() -> None:
     with pytest.raises(ValueError, match="unknown shape 'width'"):
-        _shape_bounds("width", 2.0)
+        shape_bounds("width", 2.0)

@@ -173,8 +173,8 @@ def test_with_parameters_sets_values_and_nothing_else() -> None:
 @pytest.mark.parametrize(
     ("values", "said"),
     [
-        ({"coulomb": 50.1}, "parameter 'coulomb': value is 50.1: this is above max 50.0"),
-        ({"sensor_offset": -31}, "value is -31.0: this is below min -30.0"),
+        ({"coulomb": 50.1}, "parameter 'coulomb': value is 50.1: it is above max 50.0"),
+        ({"sensor_offset": -31}, "value is -31.0: it is below min -30.0"),
         ({"coulomb": math.nan}, "value is nan"),
         ({"coulomb": None}, "value is None: a number"),
         ({"coulomb": {"value": 1.0}}, "a number is expected"),
@@ -444,10 +444,10 @@ BAD = [
         "[drive]: gear_ration: there is no such key; did you mean 'gear_ratio'?",
     ),
     ("[drive]\nqqq = 3", "[drive]: qqq: there is no such key; known are inertia, rotor_inertia"),
-    ("gear_ratio = 3", "gear_ratio: it does not belong here, but in [drive]"),
+    ("gear_ratio = 3", "gear_ratio: it belongs in [drive], not here"),
     (
         "[drive]\nfriction = 'stribeck'",
-        "[drive]: friction: it does not belong here, but in [model]",
+        "[drive]: friction: it belongs in [model], not here",
     ),
     ("[drives]", "drives: there is no such key; did you mean 'drive'?"),
     ("drive = 3", "drive is 3: a table [drive] is expected"),
@@ -456,7 +456,10 @@ BAD = [
     ("kind = 'prismtic'", "kind is 'prismtic': it is unknown; did you mean 'prismatic'?"),
     ("[drive]\ngear_ratio = '101'", "[drive]: gear_ratio is '101': a number is expected"),
     ("[drive]\ngear_ratio = true", "[drive]: gear_ratio is True: a number is expected"),
-    ("[drive]\ngear_ratio = 0", "[drive]: gear_ratio is 0: 1 stands for a joint without a gear"),
+    (
+        "[drive]\ngear_ratio = 0",
+        "[drive]: gear_ratio is 0: a value other than 0 is expected; 1 is a joint without",
+    ),
     ("[drive]\ngear_ratio = nan", "[drive]: gear_ratio is nan: a finite number is expected"),
     ("[drive]\ninertia = -2.5", "[drive]: inertia is -2.5: more than 0 is expected"),
     ("[drive]\nrotor_inertia = 0", "[drive]: rotor_inertia is 0.0: more than 0 is expected"),
@@ -467,7 +470,7 @@ BAD = [
     ),
     (
         "[drive]\nrotor_inertia = 1e300\ngear_ratio = 1e9",
-        "[drive]: rotor_inertia is 1e+300: it cannot be used",
+        "[drive]: rotor_inertia is 1e+300: gear_ratio² · rotor_inertia is inf kg·m², which cannot",
     ),
     ("[drive]\ntorque_hold = 'zero'", "[drive]: torque_hold is 'zero': it is unknown; known are"),
     ("[model]\nfriction = 'stribek'", "[model]: name is 'stribek': it is unknown; did you"),
@@ -476,7 +479,7 @@ BAD = [
     ("[model]\ngravity = true", "[model]: gravity is True: it is unknown; known are none, known"),
     (
         "kind = 'prismatic'\n[model]\ngravity = 'free'",
-        "[model]: gravity is 'free': the weight on a prismatic",
+        "[model]: gravity is 'free': gravity on a prismatic joint is the same",
     ),
     (
         "[model]\ntorque_offset = 'yes'",
@@ -499,17 +502,17 @@ BAD = [
     ),
     (
         "[parameters.coulomb]\nmin = 5\nmax = 3",
-        "[parameters.coulomb]: min is 5.0: this is above max 3.0",
+        "[parameters.coulomb]: min is 5.0: it is above max 3.0",
     ),
     (
         "[parameters.coulomb]\nvalue = 5\nmax = 3",
-        "[parameters.coulomb]: value is 5.0: this is above max",
+        "[parameters.coulomb]: value is 5.0: it is above max",
     ),
     ("[parameters.coulomb]\nvary = false", "[parameters.coulomb]: vary is False: there is no"),
     ("[parameters.coulomb]\nvary = 'no'", "[parameters.coulomb]: vary is 'no': true or false"),
     (
         "[limits]\nposition = [1.2, -1.2]",
-        "[limits]: position is [1.2, -1.2]: the lower limit comes",
+        "[limits]: position is [1.2, -1.2]: the first limit must be below",
     ),
     ("[limits]\nposition = 1.2", "[limits]: position is 1.2: [lowest, highest] is expected"),
     ("[limits]\nposition = [0, 'a']", "[limits]: position is 'a': a number is expected"),
@@ -549,7 +552,7 @@ def test_a_file_that_cannot_be_used(tmp_path: Path, text: str, said: str) -> Non
         (b"schema = 0", "schema is 0: 2 is expected"),
         (b"schema = true", "schema is True: 2 is expected"),
         (b"schema = '1'", "schema is '1': 2 is expected"),
-        (b"schema = 1\n# caf\xe9", ", line 2: this is no text in UTF-8"),
+        (b"schema = 1\n# caf\xe9", ", line 2: this is not text in UTF-8"),
         (b"PK\x03\x04\x00", ", line 1: not TOML"),
     ],
 )

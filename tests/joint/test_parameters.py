@@ -62,9 +62,9 @@ def test_bounds_belong_to_the_range() -> None:
         ({"value": "25"}, "value is '25': a number"),
         ({"value": True}, "value is True: a number"),
         ({"value": 1j}, "value is a complex: a number"),
-        ({"min": 3.0, "max": 2.0}, "min is 3.0: this is above max 2.0"),
-        ({"value": 1.0, "min": 2.0}, "value is 1.0: this is below min 2.0"),
-        ({"value": 3.0, "max": 2.0}, "value is 3.0: this is above max 2.0"),
+        ({"min": 3.0, "max": 2.0}, "min is 3.0: it is above max 2.0"),
+        ({"value": 1.0, "min": 2.0}, "value is 1.0: it is below min 2.0"),
+        ({"value": 3.0, "max": 2.0}, "value is 3.0: it is above max 2.0"),
         ({"vary": False}, "vary is False: there is no value"),
         ({"value": 1.0, "vary": 0}, "vary is 0: true or false"),
         ({"vary": None}, "vary is None: true or false"),
@@ -168,8 +168,8 @@ def test_a_fixed_parameter_is_freed() -> None:
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (12.0, "value is 12.0: this is above max 9.0"),
-        ({"min": 6.0}, "value is 5.0: this is below min 6.0"),
+        (12.0, "value is 12.0: it is above max 9.0"),
+        ({"min": 6.0}, "value is 5.0: it is below min 6.0"),
         ({"value": None, "vary": False}, "vary is False: there is no value"),
     ],
 )

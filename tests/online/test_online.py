@@ -136,7 +136,7 @@ def test_standing_still_gives_no_estimate_and_no_error() -> None:
         ({"window": 0.0}, "window is 0.0: a duration above 0"),
         ({"update": float("nan")}, "update is nan: a duration above 0"),
         ({"window": 1.0}, "window is 1.0: at least four times update"),
-        ({"model": "stribeck_general"}, "two shapes"),
+        ({"model": "stribeck_general"}, "two shape parameters"),
         ({"joint": "joint.toml"}, "a Joint is expected"),
         ({"callback": 3}, "callback is 3: a function"),
     ],
@@ -149,24 +149,31 @@ def test_refuses_settings(changes: dict[str, object], told: str) -> None:
 @pytest.mark.parametrize(
     ("sample", "told"),
     [
-        ({"time": 0.0, "position": 0.0, "torque": 1.0}, "'velocity' is missing"),
+        ({"time": 0.0, "position": 0.0, "torque": 1.0}, "samples: velocity: it is missing"),
         (
             {"time": 0.0, "position": 0.0, "velocity": 0.0, "torque": 1.0, "sensor": 2.0},
-            "time must increase",
+            "time is 0.0: .* the one before is 1.0 s",
         ),
         (
             {"time": 9.0, "position": np.nan, "velocity": 0.0, "torque": 1.0, "sensor": 2.0},
-            "'position' is nan",
+            "samples, number 0: position is nan",
         ),
         (
             {"time": [9.0, 9.1], "position": 0.0, "velocity": 0.0, "torque": 1.0, "sensor": 2.0},
-            "'time' has 2 sample",
+            "position: its shape is .* time has 2 samples",
         ),
         (
             {"time": 9.0, "position": "x", "velocity": 0.0, "torque": 1.0, "sensor": 2.0},
-            "not a number",
+            "position is 'x': a number",
         ),
-        ({"time": 9.0, "speed": 1.0}, "no signal 'speed'"),
+        (
+            {
+                name: [2.0, 3.0, 3.0]
+                for name in ("time", "position", "velocity", "torque", "sensor")
+            },
+            "time is 3.0: .* the one before is 3.0 s",
+        ),
+        ({"time": 9.0, "speed": 1.0}, "samples: speed: there is no such signal"),
     ],
 )
 def test_refuses_samples(sample: dict[str, object], told: str) -> None:
@@ -218,9 +225,9 @@ def test_closes_from_its_own_callback(excited: jid.Recording) -> None:
 
 def test_a_refused_first_sample_decides_nothing(excited: jid.Recording) -> None:
     with jid.OnlineIdentifier(jid.thesis_joint()) as identifier:
-        with pytest.raises(jid.InputError, match="need a position"):
+        with pytest.raises(jid.InputError, match="position: it is missing"):
             identifier.feed(time=0.0, torque=1.0)
-        with pytest.raises(jid.InputError, match="not a number"):
+        with pytest.raises(jid.InputError, match="torque is nan: a finite number"):
             identifier.feed(time=0.0, position=0.0, torque=np.nan)
         for block in blocks(excited.crop(0.0, 3.0), 3000):
             identifier.feed(**block)

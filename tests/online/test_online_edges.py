@@ -116,14 +116,14 @@ with jid.OnlineIdentifier(jid.thesis_joint()) as identifier:
         ({"model": {"asymmetric": 2}}, "asymmetric is 2"),
         ({"mask_standstill": "no"}, "mask_standstill is 'no'"),
         ({"parameters": {"nope": 1.0}}, "nope: there is no such parameter"),
-        ({"parameters": {"load_friction": 1.0}}, "'load_friction' is not part"),
+        ({"parameters": {"load_friction": 1.0}}, "load_friction: it is not part"),
         ({"parameters": {"coulomb": {"min": 3.0, "max": 1.0}}}, "above max"),
         ({"torque_hold": "foo"}, "torque_hold is 'foo'"),
         ({"window": "30"}, "window is '30'"),
         ({"update": None}, "update is None"),
         ({"windows": "cumulative"}, "windows is 'cumulative'"),
-        ({"windows": 200}, "windows is 200: on line"),
-        ({"windows": 2.2}, "more than 14 are needed"),
+        ({"windows": 200}, "windows is 200: the duration of a window in seconds"),
+        ({"windows": 2.2}, "windows is 2.2: 7 parameters need more than 14 windows"),
     ],
 )
 def test_refuses_settings_at_once(changes: dict[str, object], told: str) -> None:
@@ -133,7 +133,7 @@ def test_refuses_settings_at_once(changes: dict[str, object], told: str) -> None
 
 def test_without_a_joint_the_first_sample_says_whether_there_is_a_sensor() -> None:
     with jid.OnlineIdentifier(parameters={"sensor_gain": 2.0}) as identifier:
-        with pytest.raises(jid.InputError, match="'sensor_gain' is not part"):
+        with pytest.raises(jid.InputError, match="sensor_gain: it is not part"):
             identifier.feed(time=0.0, position=0.0, torque=0.0)
         identifier.feed(time=0.0, position=0.0, torque=0.0, sensor=0.0)
 
@@ -141,9 +141,12 @@ def test_without_a_joint_the_first_sample_says_whether_there_is_a_sensor() -> No
 @pytest.mark.parametrize(
     ("sample", "told"),
     [
-        ({"motor_position": 0.0, "torque": 0.0, "sensor": 0.0}, "no signal 'motor_position'"),
-        ({"position": 0.0, "sensor": 0.0}, "samples need a torque"),
-        ({"position": 0.0, "torque": 0.0}, "the samples have no 'sensor'"),
+        (
+            {"motor_position": 0.0, "torque": 0.0, "sensor": 0.0},
+            "motor_position: there is no such signal; did you mean",
+        ),
+        ({"position": 0.0, "sensor": 0.0}, "samples: torque: it is missing"),
+        ({"position": 0.0, "torque": 0.0}, "the samples have no signal sensor"),
     ],
 )
 def test_refuses_the_first_sample(sample: dict[str, float], told: str) -> None:

@@ -283,7 +283,7 @@ def test_a_dead_worker_is_told_with_what_was_done(
                 for process in list(pool._processes.values())[:1]:
                     process.kill()
 
-        with pytest.raises(jid.StudyBrokenError, match="resume=True") as broken:
+        with pytest.raises(jid.StudyBrokenError, match="with an output file can be") as broken:
             jid.sweep(recording, joint, executor=pool, callback=kill_one, **again)
     assert 4 < len(broken.value.study) < 160
     assert jid.Study.load(path).rows == broken.value.study.rows
@@ -354,25 +354,37 @@ def test_what_cannot_be_used_here_is_refused_there_only(
 @pytest.mark.parametrize(
     ("keywords", "told"),
     [
-        ({"grid": {"ga.populaton": [20]}}, "'ga.populaton' cannot be swept; did you mean"),
-        ({"grid": {"sensors.torque_noise": [1.0]}}, "give a scenario|jointid.Scenario"),
-        ({"grid": {"windows": 100}}, "a list of values is expected"),
-        ({"grid": {"windows": []}}, "has no values"),
-        ({"grid": {"windows": [100, 100]}}, "a value twice"),
-        ({"grid": {"ga": [jid.GaOptions()]}}, "which a table cannot show"),
-        ({"grid": {"ga.population": [1]}}, "population"),
+        ({"grid": {"ga.populaton": [20]}}, "grid: ga.populaton: it cannot be swept; did you mean"),
+        (
+            {"grid": {"sensors.torque_noise": [1.0]}},
+            "grid: sensors.torque_noise: .* simulation.*; give a scenario",
+        ),
+        ({"grid": {3: [1.0]}}, "grid is 3: the name of a setting"),
+        ({"grid": {"windows": 100}}, "grid: windows is 100: a list of values is expected"),
+        ({"grid": {"windows": []}}, r"grid: windows is \[\]: at least one value"),
+        ({"grid": {"windows": [100, 100]}}, r"windows is \[100, 100\]: a value is given twice"),
+        ({"grid": {"windows": {(1, 2): 100}}}, r"grid: windows: \(1, 2\) is no label"),
+        ({"grid": {"ga": [jid.GaOptions()]}}, "which a table cannot show; give a mapping"),
+        ({"grid": {"ga.population": [1]}}, "population is 1: must be 4 to 1000000"),
+        ({"grid": {"ga.population": ["many"]}}, "grid: ga.population is 'many': a whole number"),
+        ({"grid": {"ga.population": [True]}}, "ga.population is True: a whole number"),
+        ({"grid": {"ga.population": [10**30]}}, "ga.population is 10*: a whole number below"),
+        ({"grid": {"ga.coding": [3]}}, "ga.coding is 3: a text"),
+        ({"grid": {"ga.polish": [1]}}, "ga.polish is 1: true or false"),
+        ({"grid": {"ga.tolerance": ["small"]}}, "ga.tolerance is 'small': a number"),
+        ({"grid": {"ga.tolerance": [float("nan")]}}, "ga.tolerance is nan: a finite number"),
         ({"grid": {"method": ["simplex"]}}, "method is 'simplex': it is unknown"),
-        ({"grid": [("windows", 3)]}, "a mapping from a setting's name"),
+        ({"grid": [("windows", 3)]}, r"grid is \[\('windows', 3\)\]: a mapping from a setting's"),
         ({"trials": 0}, "trials is 0: 1 to"),
         ({"search": jid.Search(seed=2**64 - 1), "trials": 2}, "seed is .*: 0 to"),
         ({"grid": {"ga": ["thesys"]}}, "did you mean 'thesis'"),
         ({"search": jid.Search(checkpoint="x.bin")}, "leave it out of the search"),
-        ({"tracking": True}, "give a scenario"),
-        ({"resume": True}, "give it as output="),
-        ({"output": "x.csv"}, "grows in a .jsonl file"),
-        ({"output": "nowhere/x.jsonl"}, "does not exist"),
-        ({"executor": 3}, "a concurrent.futures.Executor is expected"),
-        ({"callback": 3}, "callback must be callable"),
+        ({"tracking": True}, "tracking is True: .*; give a scenario"),
+        ({"resume": True}, "resume is True: there is no file to continue; sweep with output="),
+        ({"output": "x.csv"}, r"output is 'x\.csv': a file that ends in \.jsonl"),
+        ({"output": "nowhere/x.jsonl"}, "output is 'nowhere/x.jsonl': .* does not exist; create"),
+        ({"executor": 3}, "executor is 3: a concurrent.futures.Executor is expected"),
+        ({"callback": 3}, "callback is 3: a function"),
         ({"truth": 3}, "truth is 3"),
         ({"truth": {"coulomb": "much"}}, "coulomb is 'much'"),
         ({"standard_errors": 1}, "standard_errors is 1: true or false"),
@@ -384,6 +396,21 @@ def test_wrong_input_is_told_in_a_sentence(
     with pytest.raises(jid.InputError, match=told) as error:
         jid.sweep(recording, joint, **keywords)
     assert "\n" not in str(error.value)
+
+
+def test_a_refused_row_has_no_advice_and_the_error_has(
+    recording: jid.Recording, joint: jid.Joint
+) -> None:
+    mixed = jid.sweep(
+        recording, joint, grid={"model": ["stribeck", "stribeck:asymmetric"]}, trials=1
+    )
+    message = mixed.rows[1].message
+    assert message.startswith("asymmetric is True: ")
+    assert "identify with" not in message
+    with pytest.raises(jid.InputError) as caught:
+        jid.sweep(recording, joint, model="stribeck:asymmetric", trials=1)
+    assert (caught.value.argument, caught.value.value) == ("asymmetric", True)
+    assert "identify with parameters=" in str(caught.value)
 
 
 def test_a_scenario_refuses_what_it_has_not(scenario: jid.Scenario, joint: jid.Joint) -> None:
@@ -416,7 +443,7 @@ def test_the_table_is_the_same_in_every_form(study: jid.Study, tmp_path: Path) -
     assert (back.cells, back.truth, back.trials) == (study.cells, study.truth, study.trials)
     with pytest.raises(jid.InputError, match=r"saved as \.csv, \.parquet, \.jsonl"):
         study.save(tmp_path / "table.xlsx")
-    with pytest.raises(jid.InputError, match="no column 'colomb'"):
+    with pytest.raises(jid.InputError, match=r"'colomb': .* no such column; did you mean 'coul"):
         study.column("colomb")
 
 
@@ -527,7 +554,7 @@ def test_another_studys_file_is_left_alone(
     jid.sweep(recording, joint, grid=GRID, trials=1, output=path)
     content = path.read_bytes()
     changes: list[tuple[dict[str, Any], str]] = [
-        ({"grid": GRID}, "go on with it by resume=True"),
+        ({"grid": GRID}, "the file exists; sweep with resume=True .* or sweep with output="),
         ({"grid": {"ga.population": [8]}, "resume": True}, "other swept settings"),
         ({"grid": GRID | {"ga.population": [8]}, "resume": True}, "other values of the grid"),
         ({"grid": GRID, "search": jid.Search(seed=1), "resume": True}, "another seed"),

@@ -154,8 +154,6 @@ def run(arguments: argparse.Namespace) -> int:
                 agree=None if arguments.emulate or arguments.yes else _agreed_again,
             )
     except (SessionRefusedError, SessionStoppedError) as error:
-        if isinstance(error, SessionStoppedError) and error.stop.limit == "error":
-            raise  # a bug; the motor is off and the recording closed
         print(f"jointid run: {error}", file=sys.stderr)
         return STOPPED
     if arguments.save is not None:

@@ -1,1 +1,1 @@
-"""Comparing models by what they predict of motion that they have not seen."""
+"""Comparison of models by how well they predict held-out motion."""

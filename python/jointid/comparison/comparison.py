@@ -1,4 +1,4 @@
-"""`compare_models`: which friction model predicts motion that it has not been fitted to."""
+"""`compare_models`: which friction model predicts motion best that it was not fitted to."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ class ComparisonStep:
     Attributes
     ----------
     number, total : int
-        Fits done so far, and in all.
+        Number of fits done so far, and of all fits.
     model : str
-        What was fitted.
+        Text of the fitted model.
     """
 
     number: int
@@ -43,24 +43,24 @@ class ComparisonStep:
 
 
 def default_models() -> tuple[Model, ...]:
-    """The models compared by default: Coulomb + viscous and Stribeck, each also asymmetric."""
+    """Return the models compared by default: Coulomb + viscous and Stribeck, each also asymmetric."""
     return tuple(Model(name, asymmetric=side or None) for side in (False, True) for name in _MODELS)
 
 
 def compared_models(models: object) -> tuple[Model, ...]:
-    """The models of a call: one or several, as `Model.of` takes them.
+    """Return the models of a call: one or several, each as `Model.of` accepts it.
 
     Raises
     ------
     InputError
-        None, something else, a model without a name, or the same model twice.
+        No model, something else, a model without a name, or the same model twice.
     """
     alone = isinstance(models, str | Model | Mapping)
     if not alone and not isinstance(models, Iterable):
         raise InputError("a list of models is expected", argument="models", value=models)
     entries = tuple(Model.of(each) for each in ((models,) if alone else tuple(models)))  # type: ignore[arg-type]
     if not entries:
-        raise InputError("give at least one, e.g. stribeck", argument="models", value=[])
+        raise InputError("at least one is expected, e.g. stribeck", argument="models", value=[])
     for index, model in enumerate(entries):
         if model.name is None:
             raise InputError("a compared model needs a name", argument="models", value=str(model))
@@ -85,23 +85,23 @@ def compare_models(
 ) -> Comparison:
     """Compare friction models by how well they predict what they were not fitted to.
 
-    One recording is cut into contiguous blocks, of several recordings each is a block of its own. Every
-    model is fitted to all blocks but one and predicts that one, in turn. The winner is the model with
-    the fewest parameters whose score lies within one standard error of the best score (the
-    one-standard-error rule of Breiman et al., 1984). A model that the data do not carry, because its
-    estimate on everything warns `model_too_rich` or ends on a bound, cannot win.
+    One recording is cut into contiguous blocks; of several recordings, each is one block. Every model is
+    fitted to all blocks but one and predicts that block, for each block in turn. The winner is the model
+    with the fewest parameters whose score is within one standard error of the best score (the
+    one-standard-error rule of Breiman et al., 1984). A model that the data do not support cannot win:
+    its estimate from all data has the warning `model_too_rich`, or a parameter on a bound.
 
     Parameters
     ----------
     recordings : Recording or sequence of Recording
     joint : Joint, optional
-        As in `identify`, but its model's name and `asymmetric` are not used, and an asymmetric
-        model takes no offset from it: asymmetric Coulomb friction holds one.
+        As in `identify`, except that its model's name and `asymmetric` are not used, and that an
+        asymmetric model has no offset, because asymmetric Coulomb friction contains it.
     models : sequence of Model, str or mapping, optional
-        Models or their texts, such as "coulomb_viscous:asymmetric". Default: `default_models()`, less those
-        that cannot be distinguished from an offset here; they are listed in `settings["left_out"]`.
+        Models or their texts, such as "coulomb_viscous:asymmetric". Default: `default_models()`, without
+        those that cannot be used with these data; they are listed in `settings["left_out"]`.
     folds : int
-        Blocks of one recording; of several recordings, groups at most.
+        Number of blocks of one recording, or largest number of groups of several. Default 5.
     parameters : mapping, optional
         As in `identify`; for all models.
     search : Search or str, optional
@@ -109,7 +109,7 @@ def compare_models(
     residual, torque_hold, mask_standstill
         As in `identify`.
     windows : int, float, str or WindowOptions, optional
-        As in `identify`; all models get the same, by default the shortest that one of them asks for.
+        As in `identify`; the same for all models. Default: the shortest of the models' defaults.
     callback : callable, optional
         Called with a `ComparisonStep` after every fit.
 
@@ -120,14 +120,14 @@ def compare_models(
     Raises
     ------
     InputError
-        Anything that cannot be used, in one sentence.
+        Input that cannot be used: the error names the argument and the reason.
     KeyboardInterrupt
         Ctrl-C.
     """
     runs = listed(recordings)
     specs = default_models() if models is None else compared_models(models)
     if isinstance(folds, bool) or not isinstance(folds, int | np.integer) or folds < 2:
-        raise InputError("a whole number from 2 on is expected", argument="folds", value=folds)
+        raise InputError("a whole number of 2 or more is expected", argument="folds", value=folds)
     parts = int(folds) if len(runs) == 1 else min(int(folds), len(runs))
     chosen = Search.of(search, method="separable")
     fitter = _Fitter(
@@ -150,9 +150,9 @@ def compare_models(
         except InputError as error:
             if models is not None or spec == specs[0]:
                 raise
-            left_out[str(spec)] = str(error.__cause__)
+            left_out[str(spec)] = error.reason
             fitter.total -= 1 + parts
-    # Residuals over windows of different length cannot be compared: the shortest for all.
+    # Residuals over windows of different duration cannot be compared: all models get the shortest.
     duration = min(estimate.settings["windows"] for estimate in whole.values())
     cut = _core.WindowOptions(duration=duration, cumulative=_cumulative(windows))
     for spec, estimate in whole.items():
@@ -187,7 +187,7 @@ def compare_models(
 
 
 class _Fitter:
-    """Fits models to parts of the data, names them in refusals, and tells the callback how far it is."""
+    """Fits models to parts of the data, names the model in errors, and reports progress to the callback."""
 
     def __init__(
         self,
@@ -235,7 +235,7 @@ def _cumulative(windows: Windows) -> bool:
 
 
 def _row(spec: Model, estimate: Estimate, scores: Sequence[float]) -> ComparedModel:
-    told = refusal(estimate)
+    reason = refusal(estimate)
     return ComparedModel(
         model=str(spec),
         spec=spec,
@@ -244,6 +244,6 @@ def _row(spec: Model, estimate: Estimate, scores: Sequence[float]) -> ComparedMo
         stderr=float(np.std(scores, ddof=1) / np.sqrt(len(scores))),
         fold_scores=tuple(scores),
         penalty=estimate.penalty,
-        eligible=told is None,
-        reason=told or "",
+        eligible=reason is None,
+        reason=reason or "",
     )

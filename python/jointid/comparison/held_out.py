@@ -1,4 +1,4 @@
-"""Folds of a cross-validation: what is fitted, and what is held out to be predicted."""
+"""Folds of a cross-validation: the recordings to fit, and the held-out blocks to predict."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from jointid.estimate.estimate import Estimate
 from jointid.problem.window_table import WindowTable
 from jointid.recording.recording import Recording
 
-_FEWEST = 4  # windows in a held-out block
+_FEWEST = 4  # windows that a held-out block needs
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Block:
-    """A stretch of a recording, both edges included.
+    """A part of a recording, both edges included.
 
     Attributes
     ----------
     recording : Recording
-        The whole of it: windows, mask and velocities in the stretch are those of the whole.
+        The whole recording: windows, mask and velocities in the block are those of the whole.
     start, stop : float
         [s], on the recording's clock.
     """
@@ -35,18 +35,23 @@ class Block:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fold:
-    """One split: recordings to fit, and the blocks that the fit has not seen."""
+    """One split: recordings to fit, and held-out blocks."""
 
     training: tuple[Recording, ...]
     held_out: tuple[Block, ...]
 
     def residual(self, estimate: Estimate) -> float:
-        """Relative residual of the held-out windows: norm of the misses over that of the measured.
+        """Return the relative residual of the held-out windows: norm of the residuals over that of the measured.
 
         Parameters
         ----------
         estimate : Estimate
             Fitted to `training`.
+
+        Raises
+        ------
+        InputError
+            The held-out torque is zero.
         """
         missed = measured = 0.0
         for block in self.held_out:
@@ -55,20 +60,25 @@ class Fold:
             missed += float(np.sum(table.residual[inside] ** 2))
             measured += float(np.sum(table.measured[inside] ** 2))
         if measured == 0.0:
-            raise InputError("no torque was measured in what is held out; use fewer folds")
+            raise InputError(
+                "the torque is zero in the held-out part",
+                argument="folds",
+                remedy="use fewer folds",
+            )
         return float(np.sqrt(missed / measured))
 
 
 def folds_by_block(recording: Recording, windows: WindowTable, count: int) -> tuple[Fold, ...]:
-    """Cut one recording into contiguous blocks of equally many windows, each held out once.
+    """Cut one recording into contiguous blocks of equally many windows; each is held out once.
 
-    The training recording has a gap where the block was, and no window crosses a gap.
+    The training recording has a gap in place of the block, and no window crosses a gap.
 
     Parameters
     ----------
     windows : WindowTable
-        The windows of the whole recording; where the joint stands still there are none.
+        Windows of the whole recording; none where the joint stands still.
     count : int
+        Number of blocks.
 
     Raises
     ------
@@ -77,8 +87,10 @@ def folds_by_block(recording: Recording, windows: WindowTable, count: int) -> tu
     """
     if count * _FEWEST > len(windows.start):
         raise InputError(
-            f"folds is {count}, but the recording has {len(windows.start)} windows; "
-            f"a block needs {_FEWEST}: use fewer folds, or shorter windows"
+            f"the recording has {len(windows.start)} windows, and each block needs at least {_FEWEST}",
+            argument="folds",
+            value=count,
+            remedy="use fewer folds, or shorter windows",
         )
     firsts = [part[0] for part in np.array_split(np.arange(len(windows.start)), count)]
     edges = [-np.inf, *(float(windows.start[first]) for first in firsts[1:]), np.inf]
@@ -92,7 +104,7 @@ def folds_by_block(recording: Recording, windows: WindowTable, count: int) -> tu
 
 
 def folds_by_recording(recordings: Sequence[Recording], count: int) -> tuple[Fold, ...]:
-    """Hold out whole recordings: each alone, or in `count` groups when there are more."""
+    """Return folds that hold out whole recordings: each alone, or in `count` groups if there are more."""
     groups = np.array_split(np.arange(len(recordings)), min(count, len(recordings)))
     return tuple(
         Fold(
@@ -106,7 +118,7 @@ def folds_by_recording(recordings: Sequence[Recording], count: int) -> tuple[Fol
 
 
 def _without(recording: Recording, start: float, stop: float) -> Recording:
-    """The recording without the samples from start up to, not including, stop."""
+    """Return the recording without the samples from start up to, not including, stop."""
     kept = (recording.time < start) | (recording.time >= stop)
     return Recording(
         **{signal: getattr(recording, signal)[kept] for signal in recording.signals},

@@ -1,4 +1,4 @@
-"""Which of the compared models wins: the one-standard-error rule, told in sentences."""
+"""Choice of the winning model by the one-standard-error rule, with the reason for each model."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from jointid.estimate.estimate import Estimate
 
 
 def judge(rows: Sequence[ComparedModel]) -> tuple[tuple[ComparedModel, ...], int, str]:
-    """Choose by the one-standard-error rule.
+    """Choose a model by the one-standard-error rule.
 
     Returns
     -------
@@ -19,55 +19,56 @@ def judge(rows: Sequence[ComparedModel]) -> tuple[tuple[ComparedModel, ...], int
     winner : int
         Its index.
     reason : str
+        Why it won, in a sentence.
     """
     entrants = [row for row in rows if row.eligible] or list(rows)
     best = min(entrants, key=lambda row: row.score)
     limit = best.score + best.stderr
     near = [row for row in entrants if row.score <= limit]
     winner = min(near, key=lambda row: (row.parameters, row.score))
-    told = f"{100.0 * best.score:.3g} ± {100.0 * best.stderr:.2g} %"
+    best_score = f"{100.0 * best.score:.3g} ± {100.0 * best.stderr:.2g} %"
     judged = []
     for row in rows:
         reason = row.reason
         if row is winner:
             reason = "; ".join(part for part in (reason, "winner") if part)
         elif row.eligible and row.score > limit:
-            reason = f"misses by more than one standard error over the best, {told}"
+            reason = f"more than one standard error worse than the best, {best_score}"
         elif row.eligible:
             instead = f"{row.parameters} parameters instead of {winner.parameters}"
             if row.parameters == winner.parameters:
-                instead = "as many parameters"
-            reason = f"not clearly better than the winner, with {instead}"
+                instead = "the same number of parameters"
+            reason = f"not significantly better than the winner, with {instead}"
         judged.append(replace(row, reason=reason))
     count = f"{winner.parameters} parameter{'s' * (winner.parameters != 1)}"
     if winner is best:
-        sentence = f"{winner.model} ({count}) predicts held-out motion best, {told}"
+        sentence = f"{winner.model} ({count}) predicts held-out motion best, {best_score}"
         if any(row.parameters < winner.parameters for row in entrants):
-            sentence += ", and no simpler model comes within one standard error"
+            sentence += ", and no simpler model is within one standard error of it"
     else:
         sentence = (
             f"{winner.model} ({count}) is the simplest model within one standard error of the best, "
-            f"{best.model} with {told}: it has {100.0 * winner.score:.3g} %"
+            f"{best.model} with {best_score}; its residual is {100.0 * winner.score:.3g} %"
         )
     refused = [row.model for row in rows if not row.eligible]
     if len(refused) == len(rows):
         sentence += (
-            "; but the data carry none of the models, so mind the warnings of the winner's estimate"
+            "; but the data support none of the models: see the warnings of the winner's estimate"
         )
     elif refused:
-        sentence += f"; the data do not carry {', '.join(refused)}"
+        sentence += f"; the data do not support {', '.join(refused)}"
     return tuple(judged), list(rows).index(winner), sentence
 
 
 def refusal(estimate: Estimate) -> str | None:
-    """Why the data do not carry a model, or None when they do."""
+    """Return why the data do not support a model, or None if they do."""
     for warning in estimate.warnings:
         if warning.code == "model_too_rich":
             return f"not eligible: {warning.cause}"
     ended = [p for p in estimate.parameters.values() if p.at_bound is not None]
     if ended:
-        told = ", ".join(
+        bounds = ", ".join(
             f"{p.name} at its {'lower' if p.at_bound == 'min' else 'upper'} bound" for p in ended
         )
-        return f"not eligible: {told}"
+        return f"not eligible: {bounds}"
     return None

@@ -1,4 +1,4 @@
-"""What a comparison of models found: a row a model, the winner, and why."""
+"""The result of a comparison of models: a row for each model, the winner, and the reason."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jointid.estimate.estimate import Estimate
 from jointid.joint.model import Model
 
 SCHEMA = 1
-"""Raised when a reader of the old form would misread the new one."""
+"""Increased when a reader of the earlier format would misread the new one."""
 
 _PLAIN = (
     *("model", "parameters", "score", "stderr", "fold_scores", "penalty", "eligible", "reason"),
@@ -37,11 +37,11 @@ class ComparedModel:
         Its standard error over the folds.
     fold_scores : tuple of float
     penalty : float
-        Fitted to everything [unit of a window integral, squared].
+        Of the fit to all data [unit of a window integral, squared].
     eligible : bool
-        Whether the data carry the model.
+        Whether the data support the model; otherwise it cannot win.
     reason : str
-        Why it wins or does not.
+        Why it wins or does not win.
     """
 
     model: str
@@ -68,9 +68,10 @@ class Comparison:
     reason : str
         Why it won, in a sentence.
     estimate : Estimate
-        The winner fitted to everything.
+        The winner fitted to all data.
     settings : mapping
-        How the comparison was made: folds, what was held out, windows, models left out and why.
+        Folds, what each held out ("held_out"), windows, method, residual, and the models that were not
+        compared with the reason for each ("left_out").
     """
 
     rows: tuple[ComparedModel, ...]
@@ -84,7 +85,7 @@ class Comparison:
         return f"Comparison({scores}; winner {self.winner})"
 
     def report(self) -> str:
-        """The comparison as text: a line a model, then the winner and why."""
+        """Return the comparison as text: a line for each model, then the winner and the reason."""
         table = [_HEAD, *self._cells()]
         widths = [max(len(row[column]) for row in table) for column in range(len(_HEAD))]
         lines = [f"jointid comparison — {self._title()}", ""]
@@ -97,7 +98,10 @@ class Comparison:
             if index == 0:
                 lines.append("  ".join("-" * width for width in widths))
         lines += ["", self._setting()]
-        lines += [f"left out: {model}: {why}" for model, why in self.settings["left_out"].items()]
+        lines += [
+            f"not compared: {model}: {reason}"
+            for model, reason in self.settings["left_out"].items()
+        ]
         return "\n".join([*lines, f"winner: {self.winner}", self.reason])
 
     def _repr_html_(self) -> str:
@@ -110,11 +114,11 @@ class Comparison:
         table = (
             f"<table class='jointid'><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
         )
-        told = f"<p>{escape(self._setting())}</p><p>{escape(self.reason)}</p>"
-        return f"<div><b>jointid comparison — {escape(self._title())}</b>{table}{told}</div>"
+        text = f"<p>{escape(self._setting())}</p><p>{escape(self.reason)}</p>"
+        return f"<div><b>jointid comparison — {escape(self._title())}</b>{table}{text}</div>"
 
     def to_json(self) -> str:
-        """Everything, as JSON with a schema version; the winner's estimate as `Estimate.to_json` writes it."""
+        """Return everything as JSON with a schema version; the winner's estimate as in `Estimate.to_json`."""
         document = {
             "schema": SCHEMA,
             "kind": "jointid comparison",
@@ -136,7 +140,7 @@ class Comparison:
             unit = "group of recordings"
         return (
             f"{settings['folds']} folds, one {unit} held out in each; residual of the {settings['residual']}, "
-            "relative to what was measured"
+            "relative to the measured signal"
         )
 
     def _cells(self) -> list[tuple[str, ...]]:
@@ -154,5 +158,5 @@ class Comparison:
 
 
 def _row(row: ComparedModel) -> dict[str, Any]:
-    """A row, of JSON's types; the model as its fields."""
+    """Return a row in JSON types; the model as its fields."""
     return {name: getattr(row, name) for name in _PLAIN} | {"spec": row.spec.stated()}

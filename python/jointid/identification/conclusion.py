@@ -27,7 +27,7 @@ from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
-# Components of the weakest direction below this share are not worth naming.
+# Parameters with a smaller component of the weakest direction are not named.
 _NAMED = 0.3
 
 
@@ -44,16 +44,16 @@ def infer(
     settings: dict[str, Any],
     seconds: float,
 ) -> Estimate:
-    """The estimate at a minimum.
+    """Return the estimate at a minimum.
 
     Parameters
     ----------
     shifts : tuple of ndarray or None
-        How each parameter moves when the windows are halved and doubled.
+        Change of each parameter when the windows are halved and doubled.
     """
     threads = problem.threads
-    # Before anything of a window's size is held, and all of that no longer than needed: an hour's
-    # recording leaves no room for more.
+    # First, before arrays of one value per window are allocated, and these are freed early: a recording
+    # of an hour fills the memory.
     inspections = tuple(inspect(run, threads) for run in problem.recordings)
     value, residual, jacobian = penalty.linearised(best)
     columns = penalty.columns(best[penalty.coefficients :])
@@ -65,12 +65,12 @@ def infer(
     freedom = freedom_of(domain, best, columns_with(jacobian, residual), alone)
     free = list(freedom.indices)
     table = problem.table(penalty, best, (residual, columns))
-    freely = jacobian[:, free]
+    free_jacobian = jacobian[:, free]
     del jacobian
     centre = _centre(penalty, columns, free)
-    by_chance = parameter_covariance(freely, residual, centre, threads=threads)
-    systematic = systematic_errors(problem, penalty, best, free, freely, columns, shifts)
-    del freely
+    by_chance = parameter_covariance(free_jacobian, residual, centre, threads=threads)
+    systematic = systematic_errors(problem, penalty, best, free, free_jacobian, columns, shifts)
+    del free_jacobian
     spread = widened(by_chance, systematic)
     at_best = regressor(penalty, columns, threads)
     del columns

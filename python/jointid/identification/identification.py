@@ -32,35 +32,35 @@ def identify(
     """Identify a joint's friction, and its torque sensor if it has one, from ordinary motion.
 
     The penalty is the sum of squared window residuals of the integrated torque balance (thesis 4-21 to
-    4-24): it needs no acceleration.
+    4-24), so no acceleration is needed.
 
     Parameters
     ----------
     recordings : Recording or sequence of Recording
-        One run, or several that share all parameters but those of `per_recording`.
+        One recording, or several that share all parameters but those of `per_recording`.
     joint : Joint, optional
-        Known facts, bounds and the model. Without one, inertia, Coulomb and viscous friction and an
+        Known values, bounds and the model. Without one, inertia, Coulomb and viscous friction and an
         offset are identified with bounds from the data, and the sensor if the recording has one.
     model : Model, str or mapping, optional
-        Terms of the torque balance, e.g. ``"stribeck:ripple=2"``; goes over the joint's model, field by
-        field. Default: the joint's, else "coulomb_viscous".
+        Terms of the torque balance, e.g. ``"stribeck:ripple=2"``; each stated field overrides that of the
+        joint's model. Default: the joint's, else "coulomb_viscous".
     parameters : mapping, optional
-        Changes by name: a number fixes; {"value", "min", "max", "vary"} or a `Parameter` change those
-        fields. Values in SI.
+        Changes by name: a number fixes the parameter; {"value", "min", "max", "vary"} or a `Parameter`
+        changes those fields. Values in SI units.
     search : Search or str, optional
-        How to search, or the method's name: "ga" (default), "separable" or "random".
+        Settings of the search, or a method: "ga" (default), "separable" or "random".
     residual : str, optional
         "sensor" (default with a sensor) or "torque".
     windows : int, float, "cumulative" or WindowOptions, optional
-        An int is about how many (gaps and several recordings round it), a float their duration [s];
-        "cumulative" compares the running integral at each sample, as the thesis's MATLAB does.
-        Default: the shortest that the noise of the velocity allows.
+        An int is the approximate number of windows (gaps and several recordings change it), a float
+        their duration [s]; "cumulative" compares the running integral at each sample, as the thesis's
+        MATLAB program does. Default: the shortest windows that the noise of the velocity allows.
     torque_hold : str, optional
-        "zoh" when the torque is a command held between samples, "linear" when it is measured.
+        "zoh" for a torque command held between samples, "linear" for a measured torque.
         Default: the recording's, else the joint's, else "linear".
     mask_standstill : bool
-        Leave out runs in which the joint sticks or stands still (default), where friction is
-        set-valued and the model says nothing.
+        Whether to leave out the parts in which the joint sticks or stands still, where friction is
+        set-valued and the model does not apply. Default True.
 
     Returns
     -------
@@ -69,9 +69,9 @@ def identify(
     Raises
     ------
     InputError
-        Anything that cannot be used, in one sentence.
+        Input that cannot be used: the error names the argument and the reason.
     KeyboardInterrupt
-        Ctrl-C, within 0.1 s.
+        Ctrl-C; it is raised within 0.1 s.
     """
     started = time.perf_counter()
     chosen = Search.of(search)

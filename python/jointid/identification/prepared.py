@@ -1,4 +1,4 @@
-"""An identification ready to search: recordings, terms, windows and domain put together."""
+"""An identification before its search: recordings, terms, windows and search domain."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Prepared:
-    """What to search, and in which domain.
+    """A penalty to minimise, and the domain to search.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Prepared:
         The direct sum over the windows.
     domain : SearchDomain
     windows : int, float, str, WindowOptions or None
-        As they were asked for.
+        As given in the call.
     """
 
     problem: Problem
@@ -48,9 +48,14 @@ class Prepared:
     windows: Windows
 
     def estimate(self, search: Search, outcome: Outcome, started: float) -> Estimate:
-        """All that follows from where a search ended: intervals, checks, warnings.
+        """Return the estimate of a search's outcome: intervals, checks, warnings.
 
-        `started` is a reading of `time.perf_counter`.
+        Parameters
+        ----------
+        search : Search
+        outcome : Outcome
+        started : float
+            Reading of `time.perf_counter` at the start of the identification.
         """
         return infer(
             problem=self.problem,
@@ -87,7 +92,7 @@ class Prepared:
         }
 
     def _window_shifts(self, best: Array) -> tuple[Array | None, Array | None]:
-        """How the answer moves when windows are halved and doubled; None where such cannot be cut."""
+        """Return the change of the parameters when windows are halved and doubled; None where that is impossible."""
         problem, domain = self.problem, self.domain
         options = problem.window_options(self.windows)
         shifts: list[Array | None] = []
@@ -117,12 +122,12 @@ def prepare(
     mask_standstill: bool = True,
     threads: int = 0,
 ) -> Prepared:
-    """Put an identification together; parameters as in `identify`.
+    """Return an identification ready to search; parameters as in `identify`.
 
     Raises
     ------
     InputError
-        Anything that cannot be used, in one sentence.
+        Input that cannot be used.
     """
     runs = listed(recordings)
     require_joint(joint)
@@ -148,7 +153,7 @@ def prepare(
 
 
 def require_joint(joint: object) -> None:
-    """Refuse what is neither a joint nor None."""
+    """Refuse a value that is neither a joint nor None."""
     if joint is not None and not isinstance(joint, Joint):
         raise InputError(
             "a Joint is expected; Joint.load reads one from a file", argument="joint", value=joint

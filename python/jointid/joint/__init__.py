@@ -1,1 +1,1 @@
-"""Joints: what is known of one, its parameters, and the file that holds them."""
+"""Joints: their known values, models, parameters, and joint files."""

@@ -1,10 +1,10 @@
-"""Checks of single fields, alike for everything that states a joint: values, files, calls."""
+"""Checks of single fields, the same for values, files and calls."""
 
 from __future__ import annotations
 
 import math
 import numbers
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import fields
 from typing import Any
 
@@ -14,7 +14,7 @@ from jointid.recording.signals import closest
 
 
 def check_parameter_name(name: object) -> None:
-    """Refuse what is no parameter's name, with a suggestion."""
+    """Refuse a name that no parameter has, with a suggestion."""
     known = _core.parameter_names()
     if not isinstance(name, str) or not _core.is_parameter(name):
         raise InputError(
@@ -25,13 +25,13 @@ def check_parameter_name(name: object) -> None:
 
 
 def suggestion(name: object, known: Collection[str]) -> str:
-    """Return what would be right instead of an unknown name: the nearest, or all."""
+    """Return a phrase with the known name nearest to an unknown one, or with all known names."""
     close = closest(name, known)
     return f"did you mean '{close}'?" if close else f"known are {', '.join(known)}"
 
 
 def is_number(value: object) -> bool:
-    """Return whether this is a real number; True and False are none."""
+    """Return whether this is a real number; True and False are not."""
     return isinstance(value, numbers.Real) and not isinstance(value, bool)
 
 
@@ -50,9 +50,17 @@ def finite_number(owner: str, field: str, value: Any) -> float:
 
 
 def check_flag(owner: str, field: str, value: object) -> None:
-    """Refuse what is neither True nor False."""
+    """Refuse a value that is neither True nor False."""
     if not isinstance(value, bool):
         raise InputError("true or false is expected", argument=field, value=value, place=owner)
+
+
+def check_mapping(owner: str, field: str, value: object) -> None:
+    """Refuse a value that is not a mapping."""
+    if not isinstance(value, Mapping):
+        raise InputError(
+            "a mapping from names to values is expected", argument=field, value=value, place=owner
+        )
 
 
 def positive_number(owner: str, field: str, value: object) -> float:
@@ -69,7 +77,7 @@ def positive_number(owner: str, field: str, value: object) -> float:
 
 
 def check_choice(owner: str, field: str, value: object, known: Collection[str]) -> None:
-    """Refuse what is none of the known words."""
+    """Refuse a value that is not one of the known texts."""
     if not isinstance(value, str) or value not in known:
         raise InputError(
             f"it is unknown; {suggestion(value, known)}", argument=field, value=value, place=owner
@@ -87,7 +95,7 @@ def not_negative(owner: str, field: str, value: object) -> float:
 def set_numbers(
     instance: Any, owner: str, names: Collection[str], convert: Callable[[str, str, object], float]
 ) -> None:
-    """Turn fields of a frozen instance into checked floats; None stays where it is the default."""
+    """Convert fields of a frozen instance to checked floats; None stays where it is the default."""
     for field in fields(instance):
         value = getattr(instance, field.name)
         if field.name in names and not (value is None and field.default is None):

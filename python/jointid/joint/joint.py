@@ -1,4 +1,4 @@
-"""A joint: what is known of it before its friction is identified, and what was found."""
+"""A joint: its known values before an identification, and the identified ones after it."""
 
 import functools
 import math
@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.advice import Action
-from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
 from jointid.joint.checks import (
     check_choice,
     check_flag,
+    check_mapping,
     finite_number,
     positive_number,
     set_numbers,
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 Kind = Literal["revolute", "prismatic"]
 TorqueHold = Literal["zoh", "linear"]
 
-# Two statements of the same inertia may differ by this share: printed values are rounded.
+# Two values of the same inertia may differ by this share: printed values are rounded.
 _INERTIA_TOLERANCE = 1e-3
 
 
@@ -40,9 +40,9 @@ _INERTIA_TOLERANCE = 1e-3
 class Joint:
     """One joint of a robot: drive, friction model, sensor, link, parameters and limits.
 
-    Everything is on the output side of the gear unless it says motor side. For a prismatic joint
-    read force [N] for torque, mass [kg] for inertia, metres for radians; the gear ratio is then
-    the motor's angle per travel [rad/m].
+    Values are on the output side of the gear, except those marked as motor side. For a prismatic joint,
+    torque means force [N], inertia means mass [kg], radians are metres, and the gear ratio is the motor's
+    angle per travel [rad/m].
 
     Parameters
     ----------
@@ -55,22 +55,23 @@ class Joint:
     rotor_inertia : float, optional
         Motor side [kg·m²].
     gear_ratio : float
-        Motor's angle per output angle; negative when they turn against each other. Default 1.
+        Motor's angle per output angle; negative if they turn in opposite directions. Default 1.
     torque_constant : float, optional
         Motor side [N·m/A].
     torque_hold : {"zoh", "linear"}, optional
-        How the torque lives between samples: held, or on a straight line. Default: not known.
+        Torque between samples: held, or linearly interpolated. Default: not known.
     sensor : bool
         Whether the joint has a torque sensor. Default False.
     model : Model, str or mapping
-        Terms of the torque balance that the joint is known to have; as text, e.g. ``"stribeck:ripple=2"``.
-        Default: nothing stated.
+        Known terms of the torque balance; as text, e.g. ``"stribeck:ripple=2"``. Default: no field stated.
     torque_offset : bool, optional
         Whether the torque has a constant offset. Default: only without a sensor.
     link : Link, optional
+        Default: not known.
     parameters : mapping of str to Parameter
-        What is known of each parameter: values, bounds of the search. Default: nothing.
+        Known values of parameters, and bounds of the search. Default: none.
     limits : Limits
+        Default: none known.
 
     Raises
     ------
@@ -96,7 +97,12 @@ class Joint:
         if not isinstance(self.name, str):
             raise InputError("a text is expected", argument="name", value=self.name, place="joint")
         if any("\ud800" <= letter <= "\udfff" for letter in self.name):
-            raise InputError("no file can hold it", argument="name", value=self.name, place="joint")
+            raise InputError(
+                "it has characters that no file can store",
+                argument="name",
+                value=self.name,
+                place="joint",
+            )
         owner = self._owner
         check_choice(owner, "kind", self.kind, get_args(Kind))
         if self.torque_hold is not None:
@@ -105,7 +111,10 @@ class Joint:
         set_numbers(self, owner, ("gear_ratio",), finite_number)
         if self.gear_ratio == 0.0:
             raise InputError(
-                "1 stands for a joint without a gear", argument="gear_ratio", value=0, place=owner
+                "a value other than 0 is expected; 1 is a joint without a gear",
+                argument="gear_ratio",
+                value=0,
+                place=owner,
             )
         check_flag(owner, "sensor", self.sensor)
         if self.torque_offset is not None:
@@ -136,7 +145,7 @@ class Joint:
         product = f"gear_ratio² · rotor_inertia is {reflected:.6g}"
         if not math.isfinite(reflected) or reflected == 0.0:
             raise InputError(
-                f"it cannot be used: {product} kg·m²",
+                f"{product} kg·m², which cannot be used",
                 argument="rotor_inertia",
                 value=self.rotor_inertia,
                 place=owner,
@@ -155,7 +164,7 @@ class Joint:
         gravity = self.model.resolved.gravity
         if gravity != "none" and self.kind == "prismatic":
             raise InputError(
-                "the weight on a prismatic joint is the same everywhere",
+                "gravity on a prismatic joint is the same at every position",
                 argument="gravity",
                 value=gravity,
                 place=owner,
@@ -177,17 +186,16 @@ class Joint:
         Raises
         ------
         InputError
-            No such file, not TOML, or something in it cannot be used: one sentence names file,
-            table and key.
+            No such file, not TOML, or a value that cannot be used: the error names file, table and key.
         """
         from jointid.joint.joint_file import load_joint
 
         return load_joint(path)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the joint to a joint file, whole or not at all.
+        """Write the joint to a joint file; a failed write changes no file.
 
-        An existing joint file keeps its comments, its order and its tables `user` and `estimate`.
+        An existing joint file keeps its comments, its order and its tables `user`, `session` and `estimate`.
 
         Raises
         ------
@@ -219,7 +227,7 @@ class Joint:
         return replace(self, **changes)
 
     def with_parameters(self, values: Mapping[str, float]) -> Self:
-        """Return a joint with some parameters' values set; their min, max and vary stay.
+        """Return a joint with the values of some parameters changed; their min, max and vary stay.
 
         Parameters
         ----------
@@ -229,9 +237,9 @@ class Joint:
         Raises
         ------
         InputError
-            An unknown parameter, no finite number, or a value outside the parameter's bounds.
+            An unknown parameter, a value that is not a finite number, or one outside the parameter's bounds.
         """
-        require_mapping("values", values, "{'coulomb': 25.0}")
+        check_mapping("", "values", values)
         table = merge(self.parameters, {name: {"value": value} for name, value in values.items()})
         for name in values:
             finite_number(f"parameter '{name}'", "value", table[name].value)
@@ -239,14 +247,14 @@ class Joint:
 
     @property
     def reflected_inertia(self) -> float | None:
-        """Inertia of the drive at the output [kg·m²], or [kg]; None when it is not known."""
+        """Inertia of the drive at the output [kg·m²], or [kg]; None if it is not known."""
         if self.inertia is not None or self.rotor_inertia is None:
             return self.inertia
         return self.gear_ratio * self.gear_ratio * self.rotor_inertia
 
     @property
     def gravity_coefficients(self) -> GravityCoefficients:
-        """Torque of gravity on the link, mass · gravity · centre_of_mass · cos(q + angle), expanded.
+        """Coefficients of the torque of gravity on the link, mass · gravity · centre_of_mass · cos(q + angle).
 
         Raises
         ------
@@ -266,7 +274,7 @@ class Joint:
         )
 
     def output_torque(self, recording: "Recording") -> NDArray[np.float64]:
-        """Return the drive's torque at the output, from the first of the signals that is there.
+        """Return the drive's torque at the output, from the first signal that the recording has.
 
         Parameters
         ----------
@@ -282,7 +290,7 @@ class Joint:
         Raises
         ------
         InputError
-            None of the signals is there, or the current without a torque constant.
+            The recording has none of the signals, or the current and the joint no torque constant.
         """
         if recording.torque is not None:
             return recording.torque
@@ -298,7 +306,7 @@ class Joint:
                 "the recording has only the current, and the joint has no torque constant",
                 argument="torque_constant",
                 place=self._owner,
-                remedy="give torque_constant in N·m/A, in the joint file under [drive]",
+                remedy="give the joint's torque_constant in N·m/A",
             )
         return recording.current * (self.torque_constant * self.gear_ratio)
 

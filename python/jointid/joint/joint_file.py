@@ -1,4 +1,4 @@
-"""Joint files: a joint as TOML, read with its place in every complaint, written keeping comments."""
+"""Joint files: a joint as TOML; errors name file, table and key, and writing keeps comments."""
 
 import os
 import re
@@ -20,11 +20,11 @@ from jointid.joint.parameters import Parameter, parameter_table
 from jointid.joint.toml_edit import update_table
 
 SCHEMA = 2
-"""Raised when a reader of the old form would misread the new one."""
+"""Increased when a reader of the earlier format would misread the new one."""
 
 _TOP = ("schema", "name", "kind")
 _DRIVE = ("inertia", "rotor_inertia", "gear_ratio", "torque_constant", "torque_hold")
-# A model's fields; its name is that of the friction, as older files have it.
+# A model's fields; its name has the key of older files.
 _NAME = "friction"
 _MODEL = (_NAME, *FIELDS, "torque_offset")
 _KEYS: dict[str, tuple[str, ...]] = {
@@ -32,11 +32,11 @@ _KEYS: dict[str, tuple[str, ...]] = {
     "model": _MODEL,
     "sensor": ("present",),
     "link": tuple(field.name for field in fields(Link)),
-    "parameters": (),  # the core knows the names
+    "parameters": (),  # the core has the names
     "limits": tuple(field.name for field in fields(Limits)),
 }
-# Not the joint's: kept as they are. `estimate` tells where values come from, `session` how the joint is
-# moved on its bench, `user` is free.
+# Tables that are not fields of the joint, and are kept: `estimate` is the origin of values, `session` the
+# settings of the joint's bench, `user` is free.
 _KEPT = ("estimate", "session", "user")
 
 
@@ -68,13 +68,13 @@ def save_joint(joint: Joint, path: str | os.PathLike[str]) -> None:
         )
     before = _text(place) if place.exists() else ""
     if before.strip():
-        # Whatever is there is overwritten only when it is a joint file.
+        # An existing file is overwritten only if it is a joint file.
         joint_from_document(_parsed(before, place), str(place))
     write_whole(place, _edited(before, joint, place).encode())
 
 
 def joint_document(joint: Joint) -> dict[str, Any]:
-    """Return a joint as the tables and keys of its file, of JSON's types; what is None is left out."""
+    """Return a joint as the tables and keys of its file, in JSON types and without None."""
     document: dict[str, Any] = {
         "schema": SCHEMA,
         "name": joint.name,
@@ -104,7 +104,7 @@ def joint_from_document(document: Mapping[str, Any], source: str) -> Joint:
     document : mapping
         Tables `estimate`, `session` and `user` are ignored.
     source : str
-        Where it comes from, for complaints: the name of a file.
+        Its origin, for errors: the name of a file.
 
     Raises
     ------
@@ -137,19 +137,19 @@ def joint_from_document(document: Mapping[str, Any], source: str) -> Joint:
 
 
 def _model_table(joint: Joint) -> dict[str, Any]:
-    """Return the table [model]: what is stated, the name as that of the friction."""
+    """Return the table [model] of the stated fields."""
     stated = joint.model.stated()
     table = {_NAME: stated.pop("name")} if "name" in stated else {}
     return table | _listed(stated) | _known(joint, ("torque_offset",))
 
 
 def _model(table: dict[str, Any], source: str) -> dict[str, Any]:
-    """Return the arguments of a joint that the table [model] states."""
+    """Return the arguments of a joint from the table [model]."""
     arguments = {"torque_offset": table.pop("torque_offset", None)}
     name = table.pop(_NAME, None)
     if name is not None and table.setdefault("name", name) != name:
         raise InputError(
-            f"the model's name is stated twice, as name and as {_NAME}",
+            f"the model's name is given twice, as name and as {_NAME}",
             argument="name",
             value=table["name"],
             place=f"{source}: [model]",
@@ -161,7 +161,7 @@ def _model(table: dict[str, Any], source: str) -> dict[str, Any]:
 
 
 def _known(source: object, names: tuple[str, ...]) -> dict[str, Any]:
-    """Return the attributes that are not None; TOML and JSON have lists for tuples."""
+    """Return the attributes that are not None; tuples become lists, as in TOML and JSON."""
     return _listed({name: getattr(source, name) for name in names})
 
 
@@ -244,7 +244,7 @@ def _parameters(table: dict[str, Any], source: str) -> dict[str, Parameter]:
 
 
 def _refuse(source: str, table: str, error: InputError) -> NoReturn:
-    """Raise what a constructor raised, with the place in the file instead of the object."""
+    """Raise a constructor's error with the place in the file instead of that of the object."""
     raise InputError(
         error.reason,
         argument=error.argument,
@@ -258,9 +258,7 @@ def _refuse_key(source: str, table: str, key: str, known: tuple[str, ...]) -> No
     place = f"{source}: [{table}]" if table else source
     for other, keys in _KEYS.items():
         if key in keys:
-            raise InputError(
-                f"it does not belong here, but in [{other}]", argument=key, place=place
-            )
+            raise InputError(f"it belongs in [{other}], not here", argument=key, place=place)
     raise InputError(f"there is no such key; {suggestion(key, known)}", argument=key, place=place)
 
 
@@ -271,7 +269,9 @@ def _text(path: Path) -> str:
     try:
         content = path.read_bytes()
     except FileNotFoundError:
-        raise InputError("there is no such file; check the path", place=str(path)) from None
+        raise InputError(
+            "there is no such file", place=str(path), remedy="check the path"
+        ) from None
     except IsADirectoryError:
         raise InputError(
             "this is a folder; the name of a joint file is expected", place=str(path)
@@ -279,11 +279,11 @@ def _text(path: Path) -> str:
     except OSError as error:
         raise InputError(f"the file cannot be read: {error.strerror}", place=str(path)) from error
     try:
-        return content.decode("utf-8-sig")  # some editors of Windows begin a file with a mark
+        return content.decode("utf-8-sig")  # some editors on Windows write a byte order mark
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise InputError(
-            "this is no text in UTF-8",
+            "this is not text in UTF-8",
             place=f"{path}, line {line}",
             remedy="save the file as UTF-8",
         ) from None
@@ -294,39 +294,40 @@ def _parsed(text: str, path: Path) -> dict[str, Any]:
         return tomllib.loads(text)
     except RecursionError:
         raise InputError("not a joint file: it is nested too deeply", place=str(path)) from None
-    except ValueError as error:  # mostly a TOMLDecodeError; numbers of 5000 digits are another
+    except ValueError as error:  # a TOMLDecodeError, or a number with too many digits
         reason, _, position = str(error).partition(" (at ")
         found = re.match(r"line (\d+)", position)
         line = int(found[1]) if found else text.rstrip().count("\n") + 1
         raise InputError(
-            f"not TOML: {reason}; a joint file has lines like gear_ratio = 101",
+            f"not TOML: {reason}",
             place=f"{path}, line {line}",
+            remedy="write lines like gear_ratio = 101",
         ) from None
 
 
 def _edited(before: str, joint: Joint, path: Path) -> str:
-    """Return the text of a joint file turned into that of another joint."""
+    """Return the text of a joint file, edited to describe another joint."""
     import tomlkit
 
     windows = "\r\n" in before
     for inline in (False, True):
         editable = tomlkit.parse(before.replace("\r\n", "\n"))
         wanted = joint_document(joint)
-        # Tables that may be empty stay, with what is said there.
+        # Tables that may be empty stay, with their comments.
         if "sensor" in editable:
             bare = "present" not in editable["sensor"]
             wanted["sensor"] = {} if bare and joint.sensor else {"present": joint.sensor}
         for table in {"parameters", "limits"} & set(editable):
             wanted.setdefault(table, {})
-        unsaid = {} if inline else _defaults(new=not before.strip())
-        update_table([editable], wanted, unsaid, kept=_KEPT, inline=inline)
+        usual = {} if inline else _defaults(new=not before.strip())
+        update_table([editable], wanted, usual, kept=_KEPT, inline=inline)
         text = tomlkit.dumps(editable)
-        # The promise is checked, not trusted: TOML can be laid out in very many ways, and not
-        # in all of them a new table may have lines of its own, or be empty.
+        # The result is verified: TOML has very many layouts, and in some of them a new table cannot have
+        # lines of its own, or be empty.
         try:
             if joint_from_document(tomllib.loads(text), str(path)) == joint:
                 return text.replace("\n", "\r\n") if windows else text
-        except ValueError:
+        except ValueError:  # from the parser, or an InputError
             continue
     raise InputError(
         "the layout of this file cannot be kept", place=str(path), remedy="save it as a new file"
@@ -334,10 +335,10 @@ def _edited(before: str, joint: Joint, path: Path) -> str:
 
 
 def _defaults(*, new: bool) -> dict[str, Any]:
-    """Return tables and keys that are not added: they go without saying."""
-    # NOTE: with the value, so that a whole table never goes without saying.
-    unsaid = {name: {"value": None, "vary": True} for name in _core.parameter_names()}
-    if new:  # tells a reader what there is to change
-        return {"parameters": unsaid}
+    """Return the tables and keys that are not written, because they have their defaults."""
+    # NOTE: with the value, so that a table with a value is always written.
+    usual = {name: {"value": None, "vary": True} for name in _core.parameter_names()}
+    if new:  # a new file shows all other fields, so that a reader can change them
+        return {"parameters": usual}
     link = {field.name: field.default for field in fields(Link)}
-    return {**joint_document(Joint()), "link": link, "parameters": unsaid}
+    return {**joint_document(Joint()), "link": link, "parameters": usual}

@@ -1,4 +1,4 @@
-"""What hangs on a joint, and what it must not exceed."""
+"""The link on a joint, and the joint's limits."""
 
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ class GravityCoefficients:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Link:
-    """What hangs on the joint.
+    """The link that the joint moves.
 
     Parameters
     ----------
@@ -37,12 +37,12 @@ class Link:
     inertia : float, optional
         About the joint's axis [kg·m²].
     gravity : float
-        [m/s²], across the axis. Default 9.80665.
+        [m/s²], perpendicular to the axis. Default 9.80665.
 
     Raises
     ------
     InputError
-        A value that is not finite, or negative (angle aside).
+        A value that is not finite, or negative (except the angle).
     """
 
     mass: float
@@ -58,19 +58,20 @@ class Link:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """What the joint must not exceed; a limit that is None is not known.
+    """Limits that the joint must not exceed; a limit that is None is not known.
 
     Parameters
     ----------
     position : tuple of float, optional
         Lowest and highest [rad] or [m].
     velocity, torque, current : float, optional
-        Largest magnitude: [rad/s] or [m/s]; at the output, [N·m] or [N]; in the motor, [A].
+        Largest magnitudes: velocity [rad/s] or [m/s], torque at the output [N·m] or [N], current in the
+        motor [A].
 
     Raises
     ------
     InputError
-        A limit that is not finite or not positive, or a position range that is none.
+        A limit that is not finite or not positive, or a position range that is empty.
     """
 
     position: tuple[float, float] | None = None
@@ -90,7 +91,7 @@ class Limits:
             low, high = (finite_number("limits", "position", bound) for bound in self.position)
             if not low < high:
                 raise InputError(
-                    "the lower limit comes first, then the higher",
+                    "the first limit must be below the second",
                     argument="position",
                     value=[low, high],
                     place="limits",

@@ -1,4 +1,4 @@
-"""What a model of a joint's torque holds: one value, whoever states it and wherever."""
+"""The model of a joint's torque: one value for calls, joints, joint files and the command line."""
 
 from __future__ import annotations
 
@@ -20,35 +20,37 @@ _LISTS = ("ripple", "harmonics", "per_recording")
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """The terms of a joint's torque balance; a field that is None is left to whoever else states it.
+    """The terms of a joint's torque balance; a field that is None is not stated.
 
-    The model of a call goes over the model of its joint, field by field; what neither states takes the
-    default. As text: the name, then options, each after a colon: ``"stribeck:asymmetric:ripple=2,4"``,
-    ``":gravity=free"``.
+    A field that a call's model does not state is taken from the joint's model, and else has its default.
+    As text, a model is its name and then its options, each after a colon:
+    ``"stribeck:asymmetric:ripple=2,4"``, ``":gravity=free"``.
 
     Parameters
     ----------
     name : str, optional
-        Friction: "coulomb_viscous" (default), "stribeck" or "stribeck_general" (with a free exponent).
+        Of the friction model: "coulomb_viscous" (default), "stribeck" or "stribeck_general" (with a free
+        exponent).
     gravity : {"none", "known", "free"}, optional
-        Torque of gravity that the drive carries and no sensor sees: none (default), computed from the
+        Torque of gravity that loads the drive and not the sensor: none (default), computed from the
         joint's link, or identified.
     asymmetric : bool, optional
         Whether friction differs between the two directions. Default False.
     ripple : collection of float, optional
-        Orders of a torque over the motor's angle, e.g. (2,) for a strain-wave gear; each is a sine and a
-        cosine [N·m]. Default none.
+        Orders of a torque that is periodic in the motor's angle, e.g. (2,) for a strain-wave gear; each
+        has a sine and a cosine coefficient [N·m]. Default none.
     harmonics : collection of float, optional
-        Orders of a torque over the joint's angle. Default none.
+        Orders of a torque that is periodic in the joint's angle. Default none.
     load_friction : bool, optional
         Whether friction grows with the magnitude of the drive's torque. Default False.
     per_recording : collection of str, optional
-        Coefficients that each of several recordings has for itself, e.g. ("torque_offset",). Default none.
+        Coefficients with a separate value for each of several recordings, e.g. ("torque_offset",).
+        Default none.
 
     Raises
     ------
     InputError
-        A field of the wrong kind, an unknown name, or fields that cannot be told apart.
+        A field of the wrong kind, an unknown name, or fields with indistinguishable terms.
 
     Examples
     --------
@@ -80,7 +82,7 @@ class Model:
             object.__setattr__(self, "per_recording", _coefficients(self.per_recording))
         if self.gravity in ("known", "free") and _GRAVITY_ORDER in (self.harmonics or ()):
             raise InputError(
-                "order 1 over the joint's angle is what gravity is",
+                "order 1 of the joint's angle is the same term as gravity",
                 argument="harmonics",
                 value=list(self.harmonics or ()),
                 remedy="leave out order 1, or set gravity to none",
@@ -88,13 +90,13 @@ class Model:
 
     @classmethod
     def of(cls, value: object, argument: str = "model") -> Model:
-        """Return a model from whatever states one: a model, its text, a mapping of its fields, None.
+        """Return a model from a model, its text, a mapping of its fields, or None.
 
         Parameters
         ----------
         value : Model, str, mapping or None
         argument : str
-            Its name, for the error. Default "model".
+            Name of the argument, for the error. Default "model".
 
         Raises
         ------
@@ -124,7 +126,7 @@ class Model:
         Raises
         ------
         InputError
-            A part that is no option, or an option given twice.
+            An unknown option, or an option that is given twice.
         """
         name, *parts = text.split(":")
         options: dict[str, Any] = {}
@@ -170,12 +172,12 @@ class Model:
         return replace(self, **changes)
 
     def over(self, base: Model) -> Model:
-        """Return this model, with the fields that it leaves open taken from another."""
+        """Return this model, with the fields that it does not state taken from another."""
         return Model(**(base.stated() | self.stated()))
 
     @property
     def resolved(self) -> ResolvedModel:
-        """Every field, with the default for those that nobody stated."""
+        """All fields, those that are not stated with their defaults."""
         return ResolvedModel(**self.stated())
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -184,7 +186,7 @@ class Model:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ResolvedModel:
-    """A model in which nothing is open; the fields are those of `Model`, with their defaults."""
+    """A model with a value for every field; fields as in `Model`."""
 
     name: str = "coulomb_viscous"
     gravity: Gravity = "none"
@@ -195,7 +197,7 @@ class ResolvedModel:
     per_recording: tuple[str, ...] = ()
 
     def __str__(self) -> str:
-        """The name and what differs from the defaults, as text that `Model.parse` reads."""
+        """Return the name and the fields that differ from their defaults, as text that `Model.parse` reads."""
         usual = ResolvedModel()
         stated = {item.name: getattr(self, item.name) for item in fields(self)}
         switched = {n: v for n, v in stated.items() if n == "name" or v != getattr(usual, n)}
@@ -264,13 +266,15 @@ def _refused(field: str, value: Collection[Any], reason: str) -> InputError:
 def _read(key: str, text: str) -> Any:
     """Return an option's value from its text."""
     if key in _LISTS:
-        return () if text == "none" else tuple(_word(key, part) for part in text.split(","))
+        return (
+            () if text == "none" else tuple(_number_or_text(key, part) for part in text.split(","))
+        )
     if key == "gravity":
         return text
-    return {"true": True, "false": False}.get(text, _word("", text))
+    return {"true": True, "false": False}.get(text, _number_or_text("", text))
 
 
-def _word(key: str, text: str) -> Any:
+def _number_or_text(key: str, text: str) -> Any:
     """Return a number, or the text where it is none."""
     if key == "per_recording":
         return text

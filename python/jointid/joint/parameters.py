@@ -1,4 +1,4 @@
-"""Parameters of a joint: value, bounds, free or fixed; tables of them, and how tables are merged."""
+"""Parameters of a joint: value, bounds, free or fixed; tables of parameters, and merging of tables."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -8,6 +8,7 @@ from jointid import _core
 from jointid.base.errors import InputError
 from jointid.joint.checks import (
     check_flag,
+    check_mapping,
     check_parameter_name,
     finite_number,
     is_number,
@@ -18,17 +19,17 @@ from jointid.joint.checks import (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Parameter:
-    """One parameter: what is known of it before an identification, or was found by one.
+    """One parameter: its known value and bounds before an identification, or its identified value.
 
     Parameters
     ----------
     name : str
-        One of `inertia`, `coulomb`, `static`, `stribeck`, `viscous`, `torque_offset`,
-        `gravity_cos`, `gravity_sin`, `sensor_gain`, `sensor_offset`.
+        E.g. "inertia", "coulomb", "static", "stribeck", "viscous", "torque_offset", "gravity_cos",
+        "gravity_sin", "sensor_gain", "sensor_offset".
     value : float, optional
         In SI units, on the output side of the gear. Default: not known.
     min, max : float, optional
-        Bounds of the search, both included. Default: taken from the recording.
+        Bounds of the search, both included. Default: computed from the recording.
     vary : bool
         False fixes the parameter at its value. Default True.
 
@@ -52,7 +53,7 @@ class Parameter:
         check_flag(owner, "vary", self.vary)
         if self.min is not None and self.max is not None and self.min > self.max:
             raise InputError(
-                f"this is above max {self.max!r}",
+                f"it is above max {self.max!r}",
                 argument="min",
                 value=self.min,
                 place=owner,
@@ -64,7 +65,7 @@ class Parameter:
                 continue
             if self.value < limit if bound == "min" else self.value > limit:
                 raise InputError(
-                    f"this is {outside} {bound} {limit!r}",
+                    f"it is {outside} {bound} {limit!r}",
                     argument="value",
                     value=self.value,
                     place=owner,
@@ -94,7 +95,7 @@ def parameter_table(
     Raises
     ------
     InputError
-        An unknown name or field (with the nearest known one), or values that cannot be.
+        An unknown name or field (with the nearest known one), or values that cannot be used.
     """
     return merge({}, entries)
 
@@ -103,29 +104,28 @@ def merge(
     base: Mapping[str, Parameter],
     changes: Mapping[str, float | Mapping[str, object] | Parameter],
 ) -> dict[str, Parameter]:
-    """Return a parameter table with changes laid over it, field by field.
+    """Return a parameter table with some fields changed.
 
     Parameters
     ----------
     base : mapping of str to Parameter
-        Stays as it is.
+        It is not changed.
     changes : mapping
         As in `parameter_table`. A number changes value and vary; a mapping changes the fields it
-        names (None takes one away); a `Parameter` changes vary and all that is not None in it.
+        names (None removes one); a `Parameter` changes vary and its fields that are not None.
 
     Raises
     ------
     InputError
-        As in `parameter_table`; also when a change does not fit what it is laid over.
+        As in `parameter_table`; also if a change contradicts the other fields.
     """
-    if not isinstance(changes, Mapping):
-        raise InputError("a mapping from names is expected", argument="parameters", value=changes)
+    check_mapping("", "parameters", changes)
     table = dict(base)
     for name, entry in changes.items():
         check_parameter_name(name)
         known = {} if name not in table else _fields(table[name])
         table[name] = Parameter(**{"name": name, **known, **_stated(name, entry)})
-    # Harmonics stand behind the others, as they came.
+    # Harmonics follow the others, in the order of the tables.
     order = {name: place for place, name in enumerate(_core.parameter_names())}
     return {name: table[name] for name in sorted(table, key=lambda n: order.get(n, len(order)))}
 

@@ -9,7 +9,7 @@ from jointid.joint.parameters import Parameter
 def thesis_joint() -> Joint:
     """Return the joint of the 2007 thesis: a strain-wave drive with a built-in torque sensor.
 
-    Facts of the drive and the domain of the search; no values of friction or sensor.
+    It has the drive's data and the bounds of the search, but no values of friction or sensor.
     """
     domain = {
         "coulomb": (0.0, 50.0),

@@ -1,4 +1,4 @@
-"""Changing a TOML document where it differs: comments, order and layout stay."""
+"""Edits of a TOML document that keep its comments, order and layout."""
 
 from collections.abc import Collection, Mapping
 from typing import Any
@@ -7,18 +7,32 @@ from typing import Any
 def update_table(
     parts: list[Any],
     wanted: Mapping[str, Any],
-    unsaid: Mapping[str, Any],
+    defaults: Mapping[str, Any],
     *,
     kept: Collection[str] = (),
     inline: bool,
 ) -> None:
-    """Change a tomlkit table, in one or several parts, where it differs; leave the rest."""
+    """Change a tomlkit table where it differs from the wanted values.
+
+    Parameters
+    ----------
+    parts : list
+        Parts of the table; other tables may lie between them.
+    wanted : mapping
+        Its new keys and values.
+    defaults : mapping
+        Values that are not added.
+    kept : collection of str
+        Other keys that are not removed. Default: none.
+    inline : bool
+        Whether new tables are inline.
+    """
     for part in parts:
         for key in [key for key in part if key not in wanted and key not in kept]:
             _remove(part, key)
     for key, value in wanted.items():
         part = next((part for part in parts if key in part), None)
-        usual = unsaid.get(key, {})
+        usual = defaults.get(key, {})
         if part is None:
             if value != usual:
                 _add(parts[-1], key, _entries(value, usual, inline))
@@ -28,26 +42,26 @@ def update_table(
         else:
             fixed = isinstance(value, Mapping) and not value.keys() - {"value", "vary"}
             if fixed and value["vary"] is False:
-                value = value["value"]  # as it was: by a number alone
+                value = value["value"]  # a number alone fixes a parameter
             if part[key] != value:
                 part[key] = _entries(value, usual, inline)
 
 
-def _entries(value: Any, unsaid: Any, inline: bool) -> Any:
-    """Return a value as it is put into a tomlkit table."""
+def _entries(value: Any, defaults: Any, inline: bool) -> Any:
+    """Return a value for a tomlkit table, without its defaults."""
     import tomlkit
 
     if not isinstance(value, Mapping):
         return value
-    said = {
-        key: _entries(entry, unsaid.get(key, {}), inline)
+    written = {
+        key: _entries(entry, defaults.get(key, {}), inline)
         for key, entry in value.items()
-        if entry != unsaid.get(key, {})
+        if entry != defaults.get(key, {})
     }
     if not inline:
-        return said
+        return written
     table = tomlkit.inline_table()
-    table.update(said)
+    table.update(written)
     return table
 
 
@@ -60,7 +74,7 @@ def _body(table: Any) -> list[Any]:
 
 
 def _parts(table: Any, key: str) -> list[Any]:
-    """Return the parts of an inner table, which other tables may lie between."""
+    """Return the parts of an inner table; other tables may lie between them."""
     from tomlkit.items import Table
 
     found = [item for name, item in _body(table) if name is not None and name.key == key]
@@ -69,7 +83,7 @@ def _parts(table: Any, key: str) -> list[Any]:
 
 
 def _add(table: Any, key: str, value: Any) -> None:
-    """Put a new key behind the last one, in front of the comments that lead to what follows."""
+    """Add a new key after the last one, before the comments that belong to the following table."""
     from tomlkit.items import Table
 
     if isinstance(table, Table):
@@ -85,7 +99,7 @@ def _add(table: Any, key: str, value: Any) -> None:
     table[key] = value
     if first is None or isinstance(value, Mapping):
         return
-    # tomlkit puts it right before the first table, and a blank line behind it.
+    # tomlkit adds it directly before the first table, with a blank line after it.
     first.trivia.indent = indent
     body = _body(table)
     at = [name and name.key for name, _ in body].index(key)
@@ -93,7 +107,7 @@ def _add(table: Any, key: str, value: Any) -> None:
 
 
 def _remove(table: Any, key: str) -> None:
-    """Remove a key, or a table but for the comments behind its last key: those lead to the next."""
+    """Remove a key or a table; comments after a table's last key stay, because they belong to the next."""
     from tomlkit.items import Table, Whitespace
 
     body = _body(table)
@@ -118,5 +132,5 @@ def _last_body(table: Any) -> list[Any]:
 
 
 def _tail_start(body: list[Any]) -> int:
-    """Return where the comments and blank lines behind the last key begin."""
+    """Return the index at which the comments and blank lines after the last key begin."""
     return max((index + 1 for index, (name, _) in enumerate(body) if name is not None), default=0)

@@ -1,4 +1,4 @@
-"""What an on-line identifier knows at one moment."""
+"""An estimate of the on-line identifier."""
 
 from __future__ import annotations
 
@@ -11,33 +11,34 @@ from jointid.joint.joint import Joint
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class OnlineEstimate:
-    """An estimate from the last seconds of a motion that goes on.
+    """An estimate from the last seconds of a motion that continues.
 
-    Its intervals are of chance alone: how the values move with the choice of windows, and the checks of
-    the signals, take `identify` on a recording.
+    Its intervals contain random errors only. `identify` on a recording also checks the signals, and
+    includes the effect of the choice of windows.
 
     Attributes
     ----------
     parameters : mapping of str to ParameterEstimate
         By name; fixed ones too.
     undetermined : tuple of str
-        Free parameters whose standard error exceeds 5 % of the value: the last seconds do not tell them.
+        Free parameters whose standard error exceeds 5 % of the value: the last seconds do not determine
+        them.
     at_bound : tuple of str
         Parameters that a bound holds.
     begin, end : float
-        What was used, on the samples' clock [s].
+        First and last instant of the samples used, on their clock [s].
     windows : int
-        Windows with motion.
+        Number of integration windows with motion.
     penalty : float
         Sum of squared window residuals, by the direct sum.
     joint : Joint
-        With the values found, ready for a controller.
+        With the estimated values, ready for a controller.
     update : int
-        How many estimates there were, this one included.
+        Number of estimates so far, this one included.
     seconds : float
-        What this update took [s].
+        Computing time of this update [s].
     dropped : int
-        Samples that came faster than they could be digested, and were left out so far.
+        Number of samples that arrived faster than they could be processed and were left out so far.
     """
 
     parameters: Mapping[str, ParameterEstimate]

@@ -1,4 +1,4 @@
-"""`OnlineIdentifier`: feed samples, get fresh estimates, off the caller's thread."""
+"""`OnlineIdentifier`: estimates from samples as they arrive, computed on a thread of its own."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from jointid.base.errors import InputError
 from jointid.estimate.student import quantile
+from jointid.joint.checks import suggestion
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
@@ -29,40 +30,39 @@ _OPTIONAL = ("velocity", "sensor", "motor_torque", "current")
 class OnlineIdentifier:
     """Identify a joint while it runs, from the last seconds of its motion.
 
-    Samples are handed over by `feed`, which returns at once; a thread of the identifier's own digests
-    them a stretch at a time, forgets what is older than `window`, and finds the estimate anew. Time
-    and memory are bounded: an update costs a few milliseconds whatever the rate of sampling was, and
-    nothing older than the window is kept. Windows and bounds are chosen as `identify` would choose
-    them; they are looked at again as the window fills, and once a window from then on. A window of
-    integration has five samples or more: below some 50 samples a second the default half minute
-    holds few of them, and reversals blur.
+    `feed` takes samples and returns at once. A thread of the identifier processes them piece by piece,
+    removes those older than `window`, and computes a new estimate. Time and memory are bounded: an update
+    takes a few milliseconds at any sample rate, and nothing older than the window is kept. Windows of
+    integration and bounds are chosen as in `identify`; they are checked while the window fills, and then
+    once per window. A window of integration has at least five samples: below about 50 samples per second
+    the default window of 30 s has few of them, and the estimate is less accurate near reversals.
 
-    `close`, or the end of a `with` block, ends the thread; so does dropping the identifier, unless
-    its callback holds it.
+    `close`, or the end of a `with` block, ends the thread; so does deleting the identifier, unless its
+    callback refers to it.
 
     Parameters
     ----------
     joint : Joint, optional
-        Known facts, bounds and the model, as for `identify`. Bounds that it does not give are taken
-        from the first seconds, and anew when one of them holds a value.
+        Known values, bounds and the model, as for `identify`. Bounds that it does not state are computed
+        from the first seconds, and again if one of them holds a parameter.
     window : float
-        How much of the past counts [s]; default 30.
+        Duration of the past that estimates use [s]; default 30.
     update : float
-        Time between estimates, and the stretch that is forgotten at once [s], rounded up to a whole
-        number of integration windows; default 0.5.
+        Time between estimates, and duration of a piece [s], rounded up to a whole number of integration
+        windows; default 0.5.
     model, residual, parameters, torque_hold, mask_standstill
-        As for `identify`; of the models those with at most one shape.
+        As for `identify`; only models with at most one shape parameter.
     windows : float, optional
-        Duration of an integration window [s]; more than two a parameter must fit into `window`.
-        Default: by the noise of what is remembered.
+        Duration of an integration window [s]; `window` must contain more than two per parameter.
+        Default: from the noise of the samples.
     callback : callable, optional
-        Called with each `OnlineEstimate`, on the identifier's thread. What it raises is raised by the
-        next call, or by the end of the `with` block.
+        Called with each `OnlineEstimate`, on the identifier's thread. The next call, or the end of the
+        `with` block, raises the exceptions of the callback.
 
     Raises
     ------
     InputError
-        Settings that cannot be, at once; samples that cannot be used, from the next call after them.
+        Settings that cannot be used, at once; samples that cannot be used, in the next call after them.
 
     Examples
     --------
@@ -113,7 +113,7 @@ class OnlineIdentifier:
         torque: ArrayLike | None = None,
         **others: ArrayLike | None,
     ) -> None:
-        """Hand over one sample, or several of equal length.
+        """Add one sample, or several.
 
         Parameters
         ----------
@@ -123,7 +123,7 @@ class OnlineIdentifier:
             Output side [rad, N·m] (or [m, N]).
         **others : float or array
             velocity, sensor; instead of the torque, motor_torque or current, which a joint with
-            gear_ratio (and torque_constant) turns into it. The same signals at every call.
+            gear_ratio (and torque_constant) converts. The same signals in every call.
 
         Raises
         ------
@@ -132,14 +132,21 @@ class OnlineIdentifier:
         """
         for name in others:
             if name not in _OPTIONAL:
+                known = ("time", "position", "torque", *_OPTIONAL)
                 raise InputError(
-                    f"feed: there is no signal '{name}'; there are time, position, torque, {', '.join(_OPTIONAL)}"
+                    f"there is no such signal; {suggestion(name, known)}",
+                    argument=name,
+                    place="samples",
                 )
         given = {"time": time, "position": position, "torque": torque, **others}
         here = tuple(name for name, value in given.items() if value is not None)
         signals = self._signals or here
         if "position" not in signals:
-            raise InputError("feed: samples need a position, of the output side")
+            raise InputError(
+                "it is missing; the position of the output is needed",
+                argument="position",
+                place="samples",
+            )
         samples = checked(given, signals)
         if self._signals is None:
             self._settings.check_signals(signals)
@@ -147,10 +154,15 @@ class OnlineIdentifier:
         if times.size == 0:
             return
         if not (times[0] > self._last_time and bool(np.all(np.diff(times) > 0.0))):
+            earlier, later = self._last_time, times[0]
+            if later > earlier:
+                first = int(np.flatnonzero(np.diff(times) <= 0.0)[0])
+                earlier, later = times[first], times[first + 1]
             raise InputError(
-                f"feed: time must increase from sample to sample, got {times[0]} s after {self._last_time} s"
-                if times[0] <= self._last_time
-                else "feed: time must increase from sample to sample"
+                f"time must increase from sample to sample, and the one before is {earlier} s",
+                argument="time",
+                value=float(later),
+                place="samples",
             )
         self._worker.put({name: values.copy() for name, values in samples.items()})
         self._signals = signals
@@ -158,23 +170,28 @@ class OnlineIdentifier:
 
     @property
     def estimate(self) -> OnlineEstimate | None:
-        """The latest, or None before the first."""
+        """The latest estimate, or None before the first."""
         return self._worker.latest()
 
     def wait(self, timeout: float | None = None) -> OnlineEstimate | None:
-        """Wait until all samples handed over have been looked at; the latest estimate.
+        """Wait until all samples are processed, and return the latest estimate.
+
+        Parameters
+        ----------
+        timeout : float, optional
+            [s]. Default: no limit.
 
         Raises
         ------
         TimeoutError
-            They have not within `timeout` seconds.
+            The samples were not processed in time.
         InputError
             Called from the callback, which would wait for itself.
         """
         return self._worker.wait(timeout)
 
     def close(self) -> None:
-        """End the thread; samples that wait are not looked at."""
+        """End the thread; samples in the queue are not processed."""
         self._worker.stop()
         self._worker.join()
 
@@ -189,4 +206,4 @@ class OnlineIdentifier:
     ) -> None:
         self.close()
         if error is None:
-            self._worker.tell()
+            self._worker.raise_failure()

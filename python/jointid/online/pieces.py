@@ -1,4 +1,4 @@
-"""Where the next stretch of samples begins and ends, and what is looked at around it."""
+"""The next piece of the samples to process, and its context on both sides."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from jointid.online.plan import Plan
 
 Array = NDArray[np.float64]
 
-SHORTEST = 8  # samples of a recording
-_LONG = 3.5  # sample periods: a gap, as in a recording
+SHORTEST = 8  # samples that a recording needs
+_LONG = 3.5  # sample periods; a longer interval is a gap, as in a recording
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -22,7 +22,7 @@ class Piece:
     Attributes
     ----------
     next : int
-        Where the following piece begins: at `end`, or behind a gap.
+        First sample of the following piece: `end`, or the first one after a gap.
     """
 
     begin: int
@@ -33,10 +33,10 @@ class Piece:
 
 
 def next_piece(times: Array, begin: int, plan: Plan) -> Piece | None:
-    """The piece that begins with sample `begin`, or None while it is not complete.
+    """Return the piece that begins with sample `begin`, or None while it is not complete.
 
-    It ends where a gap begins, or else after the plan's stretch: what is older than the window then
-    never hides behind a gap.
+    It ends where a gap begins, or else after the plan's duration: no piece contains a gap, and samples
+    older than the window are removed in time.
     """
     if begin + 1 >= len(times):
         return None

@@ -1,4 +1,4 @@
-"""What the samples seen so far decide: terms, bounds, windows, and what counts as standing still."""
+"""The plan that the samples so far define: terms, bounds, windows, and the threshold of standstill."""
 
 from __future__ import annotations
 
@@ -13,42 +13,48 @@ from jointid.problem.problem import Problem
 from jointid.problem.terms import choose_terms
 from jointid.recording.recording import Recording
 
-# Of the speed seen: room before the table of shapes has to be made anew.
+# The table of shapes covers this multiple of the largest speed so far.
 _FASTER = 1.5
-# Before and after a stretch, so that its ends know whether the joint stands still [s]; at the most, a
-# share of the window.
+# Context before and after a piece, which decides whether the joint stands still at its ends [s]; at most
+# a share of the window.
 _CONTEXT = 0.15
 _LONGEST_CONTEXT = 0.1
-# A plan is made anew when what it rests on has changed by these ratios: once when the window is full
+# A plan is replaced when noise, speed or rate have changed by these ratios: once when the window is full
 # for the first time, and later.
 _DIFFERS = 1.05
 _CHANGED = 1.3
-# Of the travel planned for: less is a pause, which tells nothing of windows.
+# As a share of the planned travel: less is a pause, which does not define windows.
 _RESTING = 0.01
 
 
 @dataclass(slots=True, kw_only=True)
 class Plan:
-    """How stretches are digested, and what follows from what was remembered when it was made.
+    """How samples are processed; computed from the samples in memory at one instant.
 
     Attributes
     ----------
+    problem : Problem
+    frame : Penalty
+        The direct sum over the samples of that instant, for the names of its parameters and its terms.
+    domain : SearchDomain
+    penalty : SlidingPenalty
+        The penalty to which pieces are added.
     scale : MotionScale
-        What the whole motion makes of slow.
+        Scale of the whole motion, with which slow motion is found.
     speed : float
-        The largest that the table of shapes serves.
+        Largest speed that the table of shapes covers [rad/s or m/s].
     period : float
         Between samples [s].
     duration : float
         Of a window of integration [s].
     stretch : float
-        Digested and forgotten at once: a whole number of windows [s].
+        Duration of a piece, a whole number of windows [s].
     context : float
-        Looked at on either side of a stretch [s].
+        Duration of the context on either side of a piece [s].
     made : float
-        On the samples' clock [s].
+        Instant of the plan, on the samples' clock [s].
     full : bool
-        Whether a whole window of samples was there.
+        Whether a whole window of samples was in memory.
     """
 
     problem: Problem
@@ -66,12 +72,20 @@ class Plan:
 
 
 def make_plan(settings: Settings, recording: Recording, fastest: float) -> Plan | None:
-    """Terms, bounds and windows from what is there; None while it does not suffice.
+    """Return a plan from the samples in memory; None while they do not suffice.
+
+    Parameters
+    ----------
+    settings : Settings
+    recording : Recording
+        The samples in memory.
+    fastest : float
+        A speed that the plan must cover [rad/s or m/s].
 
     Raises
     ------
     InputError
-        The signals cannot be what they are said to be, or a whole window does not suffice.
+        The signals contradict the settings, or a whole window does not suffice.
     """
     choice = choose_terms((recording,), settings.joint, settings.request)
     problem = settings.problem(recording, choice)
@@ -85,7 +99,7 @@ def make_plan(settings: Settings, recording: Recording, fastest: float) -> Plan 
         domain = domain_for(frame, settings.joint, settings.parameters, problem.peak_speed)
     except InputError:
         if full:
-            raise  # more of the same will not mend it
+            raise  # more samples of the same motion do not help
         return None
     duration = settings.windows
     if duration is None:
@@ -112,7 +126,7 @@ def make_plan(settings: Settings, recording: Recording, fastest: float) -> Plan 
         speed=speed,
         period=period,
         duration=duration,
-        # Windows that end with their stretch are as long as those of one long recording.
+        # A whole number of windows, so that they are as long as those of one long recording.
         stretch=duration * math.ceil(settings.update / duration - 1e-6),
         context=max(
             _CONTEXT,
@@ -125,7 +139,7 @@ def make_plan(settings: Settings, recording: Recording, fastest: float) -> Plan 
 
 
 def outdated(plan: Plan, settings: Settings, recording: Recording) -> bool:
-    """Whether what is remembered by now asks for another plan: by noise, speed or rate."""
+    """Return whether the samples in memory need another plan because of noise, speed or rate."""
     core = settings.problem(recording, plan.problem.choice).in_core[0]
     scale = _core.MotionScale(core)
     if not scale.moves or scale.travel < _RESTING * plan.scale.travel:
@@ -139,5 +153,5 @@ def outdated(plan: Plan, settings: Settings, recording: Recording) -> bool:
 
 
 def _wanted_duration(core: _core.Recording, domain: SearchDomain, settings: Settings) -> float:
-    """What the velocity's noise asks of a window; not the frame's, which divides the recording evenly."""
+    """Return the window duration for the velocity's noise; the frame's divides the recording evenly instead."""
     return _core.window_duration(core, len(domain.names), settings.mask_standstill)

@@ -1,4 +1,4 @@
-"""The raw samples of the last seconds, and those not yet digested."""
+"""The raw samples of the last seconds, and those not yet processed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 class Samples:
-    """Signals that grow at one end and are forgotten at the other.
+    """A buffer of signals: new samples are added at the end, old ones removed at the beginning.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class Samples:
         """Add samples; all signals are of one length."""
         count = given["time"].size
         if self._end + count > self._rows.shape[1]:
-            # Room for as many again: copying stays cheap against what arrives.
+            # Space for as many again, so that copying stays cheap.
             grown = np.empty((len(self.signals), max(1024, 2 * (len(self) + count))))
             grown[:, : len(self)] = self._rows[:, self._begin : self._end]
             self._rows, self._end, self._begin = grown, len(self), 0
@@ -48,11 +48,11 @@ class Samples:
         self._end += count
 
     def forget(self, count: int) -> None:
-        """Drop the oldest samples."""
+        """Remove the oldest samples."""
         self._begin += count
 
     def stretch(self, begin: int, end: int) -> dict[str, Array]:
-        """Copies of the signals from sample `begin` up to, not including, `end`."""
+        """Return copies of the signals from sample `begin` up to, not including, `end`."""
         part = slice(self._begin + begin, self._begin + end)
         return {
             signal: row[part].copy() for row, signal in zip(self._rows, self.signals, strict=True)
@@ -60,34 +60,56 @@ class Samples:
 
 
 def checked(given: Mapping[str, ArrayLike | None], signals: tuple[str, ...]) -> dict[str, Array]:
-    """Samples as arrays of one length, finite.
+    """Return samples as arrays of one length, all finite.
 
     Raises
     ------
     InputError
-        A signal that is missing, too many, of another length or not finite.
+        A signal that is missing, unexpected, of another length or not finite.
     """
     here = {name for name, value in given.items() if value is not None}
     for name in signals:
         if name not in here:
-            raise InputError(f"feed: '{name}' is missing; every sample needs {', '.join(signals)}")
+            raise InputError(
+                f"it is missing; every sample needs {', '.join(signals)}",
+                argument=name,
+                place="samples",
+            )
     for name in sorted(here - set(signals)):
         raise InputError(
-            f"feed: '{name}' came with these samples, but not with the first; they had {', '.join(signals)}"
+            f"the first samples did not have it; they had {', '.join(signals)}",
+            argument=name,
+            place="samples",
         )
-    try:
-        arrays = {
-            name: np.atleast_1d(np.asarray(given[name], dtype=np.float64)) for name in signals
-        }
-    except (TypeError, ValueError) as error:
-        raise InputError(f"feed: a sample is not a number: {error}") from error
+    arrays = {name: _array(name, given[name]) for name in signals}
     count = arrays["time"].size
     for name, values in arrays.items():
         if values.ndim != 1 or values.size != count:
             raise InputError(
-                f"feed: '{name}' has shape {values.shape}, 'time' has {count} sample(s); give one of each a sample"
+                f"its shape is {values.shape}, but time has {count} sample{'s' * (count != 1)}; one value per sample "
+                "is expected",
+                argument=name,
+                place="samples",
             )
         if not np.isfinite(values).all():
             number = int(np.flatnonzero(~np.isfinite(values))[0])
-            raise InputError(f"feed: '{name}' is {values[number]} at sample {number}, not a number")
+            raise InputError(
+                "a finite number is expected",
+                argument=name,
+                value=float(values[number]),
+                place=f"samples, number {number}",
+            )
     return arrays
+
+
+def _array(name: str, value: ArrayLike | None) -> Array:
+    """Return a signal's samples as an array, or refuse them."""
+    try:
+        return np.atleast_1d(np.asarray(value, dtype=np.float64))
+    except (TypeError, ValueError) as error:  # from NumPy, about the caller's value
+        raise InputError(
+            "a number or an array of numbers is expected",
+            argument=name,
+            value=value,
+            place="samples",
+        ) from error

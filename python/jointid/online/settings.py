@@ -11,7 +11,7 @@ import numpy as np
 
 from jointid.base.errors import InputError
 from jointid.identification.prepared import require_joint
-from jointid.identification.search.domain import parameter_bounds
+from jointid.identification.search.stated_bounds import parameter_bounds
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
 from jointid.problem.problem import Problem, output_torque
@@ -27,7 +27,7 @@ class Settings:
     Raises
     ------
     InputError
-        Values that cannot be, by themselves or for this joint.
+        Values that cannot be used, by themselves or for this joint.
     """
 
     joint: Joint | None
@@ -54,7 +54,7 @@ class Settings:
             )
         if isinstance(self.windows, numbers.Integral):
             raise InputError(
-                "on line it is the duration of a window in seconds, like 0.02",
+                "the duration of a window in seconds is expected, like 0.02",
                 argument="windows",
                 value=self.windows,
             )
@@ -66,7 +66,7 @@ class Settings:
         self._check_terms()
 
     def problem(self, recording: Recording, choice: TermChoice) -> Problem:
-        """What is identified from these samples."""
+        """Return the problem for these samples."""
         return Problem(
             recordings=(recording,),
             joint=self.joint,
@@ -76,49 +76,56 @@ class Settings:
         )
 
     def check_signals(self, signals: tuple[str, ...]) -> None:
-        """Refuse signals that lack one that the terms need.
+        """Refuse signals without one that the terms need.
 
         Raises
         ------
         InputError
-            No torque, or no sensor where the joint has one; parameters that these terms lack.
+            No torque, or no sensor although the joint has one; parameters that are not among these terms.
         """
         joint = self.joint
         if joint is not None and joint.sensor and "sensor" not in signals:
             raise InputError(
-                f"feed: joint '{joint.name}' has a torque sensor, but the samples have no 'sensor'; give its reading, "
-                "or drop [sensor] from the joint"
+                f"joint '{joint.name}' has a torque sensor, but the samples have no signal sensor",
+                argument="sensor",
+                place="samples",
+                remedy=("give its reading", "remove the sensor from the joint"),
             )
         if not {"torque", "motor_torque", "current"} & set(signals):
             raise InputError(
-                "feed: samples need a torque: 'torque' of the output, or 'motor_torque' or 'current' and a joint that "
-                "turns them into it"
+                "it is missing",
+                argument="torque",
+                place="samples",
+                remedy="give the torque at the output, or motor_torque or current and a joint that converts it",
             )
-        recording = _rehearsal(signals, joint.kind if joint is not None else "revolute")
+        recording = _example(signals, joint.kind if joint is not None else "revolute")
         output_torque(recording, joint)
         choice = choose_terms((recording,), joint, self.request)
         names = tuple(self.problem(recording, choice).penalty(None).names)
         parameter_bounds(names, joint, self.parameters)
         if self.windows is not None and self.window <= 2 * len(names) * self.windows:
             raise InputError(
-                f"windows of {self.windows:g} s are too few in a window of {self.window:g} s to tell "
-                f"{len(names)} parameters: more than {2 * len(names)} are needed"
+                f"{len(names)} parameters need more than {2 * len(names)} windows of integration within window, "
+                f"{self.window:g} s",
+                argument="windows",
+                value=self.windows,
+                remedy="give a shorter duration, or a longer window",
             )
 
     def _check_terms(self) -> None:
-        """Refuse what no samples could make right; whether there is a sensor is known only with them."""
+        """Refuse settings that are wrong for any samples; only the samples show whether there is a sensor."""
         model = self.request.model
         chosen = (model if self.joint is None else self.joint.model).resolved
         if chosen.name == "stribeck_general":
             raise InputError(
-                "its two shapes are too many to search between two samples",
+                "its two shape parameters take too long to search while samples arrive",
                 argument="model",
                 value=chosen.name,
-                remedy="use the model stribeck on line",
+                remedy="use the model stribeck",
             )
         if chosen.per_recording:
             raise InputError(
-                "there is one recording on line",
+                "there is only one recording on line",
                 argument="per_recording",
                 value=list(chosen.per_recording),
             )
@@ -143,8 +150,8 @@ def _check_duration(name: str, value: object, *, optional: bool) -> None:
         )
 
 
-def _rehearsal(signals: tuple[str, ...], kind: str) -> Recording:
-    """A second of some motion with these signals."""
+def _example(signals: tuple[str, ...], kind: str) -> Recording:
+    """Return one second of a motion with these signals, to check settings with."""
     time = np.arange(1000) * 1e-3
     motion = np.sin(2.0 * np.pi * time)
     signal: dict[str, Any] = {name: time if name == "time" else motion for name in signals}

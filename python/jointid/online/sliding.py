@@ -24,16 +24,16 @@ from jointid.recording.recording import Recording
 Array = NDArray[np.float64]
 
 _LARGE_ERROR = 0.05
-# Error of the compressed penalty, of the columns' squared size: the direct sum is not there to help.
+# Largest error of the compressed penalty, as a share of the columns' squared size: no direct sum can verify it.
 _ROUGH = 1e-11
-# What is remembered has grown by this share: time to look whether the plan still suits it.
+# The plan is checked each time the samples in memory have grown by this share.
 _GROWTH = 0.4
-# Room behind the window while there is no plan that says how much [s].
+# Samples kept in addition to the window while there is no plan [s].
 _ROOM = 0.3
 
 
 class Sliding:
-    """Digests samples a stretch at a time and estimates from the last `window` seconds.
+    """Processes samples piece by piece and estimates from the last `window` seconds.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class Sliding:
     signals : tuple of str
         "time" and others.
     closed : callable, optional
-        Whether nobody waits for the answer any more; asked once a stretch.
+        Whether to stop; called once per piece. Default: never.
     """
 
     def __init__(
@@ -54,8 +54,8 @@ class Sliding:
         self._closed = closed
         self._samples = Samples(signals)
         self._plan: Plan | None = None
-        self._look = -np.inf  # when to plan, or to look at the plan, again [s]
-        self._digested = 0  # samples before the first that is still to be digested
+        self._look = -np.inf  # instant of the next check of the plan, or attempt at one [s]
+        self._digested = 0  # index of the first sample that is not processed
         self._updates = 0
 
     def append(self, given: Mapping[str, Array]) -> None:
@@ -63,7 +63,7 @@ class Sliding:
         self._samples.append(given)
 
     def estimate(self, dropped: int) -> OnlineEstimate | None:
-        """Digest what is complete; the estimate after it, or None while there is nothing new or too little."""
+        """Process complete pieces, and return the estimate; None without a new piece or with too few windows."""
         began = time.perf_counter()
         self._trim()
         if self._plan is None:
@@ -76,7 +76,7 @@ class Sliding:
         found = self._solve(self._plan, began, dropped)
         if found is not None and self._outgrown(self._plan, found):
             self._plan.made = found.end
-            self._renew(self._remembered())  # the next stretch begins with bounds from all of it
+            self._renew(self._remembered())  # the next piece begins with bounds from all samples
         return found
 
     def _recording(self, begin: int, end: int) -> Recording:
@@ -88,7 +88,7 @@ class Sliding:
         return self._recording(0, len(self._samples))
 
     def _adopt(self, plan: Plan) -> None:
-        """Begin with a new plan: what is remembered is digested again."""
+        """Begin with a new plan: the samples in memory are processed again."""
         self._plan = plan
         self._digested = 0
         self._look_later()
@@ -103,14 +103,14 @@ class Sliding:
         times, update = self._samples.time, self._settings.update
         if len(times) < SHORTEST or times[-1] - times[0] < 2.0 * update or times[-1] < self._look:
             return
-        # A joint that rests would have its whole past looked at with every sample.
+        # Without a pause, a joint at rest would make every call look at all samples.
         self._look = float(times[-1]) + update
         plan = make_plan(self._settings, self._remembered(), 0.0)
         if plan is not None:
             self._adopt(plan)
 
     def _review(self, plan: Plan) -> None:
-        """Plan anew where what is remembered by now asks for it."""
+        """Replace the plan if the samples in memory need another one."""
         if self._samples.time[-1] < self._look:
             return
         self._look_later()
@@ -123,12 +123,12 @@ class Sliding:
         try:
             made = make_plan(self._settings, remembered, 0.0)
         except InputError:
-            return  # the motion has become too poor to plan from; the old plan still holds
+            return  # the motion is too poor for a new plan; the present one stays
         if made is not None:
             self._adopt(made)
 
     def _digest(self) -> bool:
-        """Digest every complete stretch; whether there was one."""
+        """Process every complete piece, and return whether there was one."""
         fresh = False
         while self._plan is not None and not self._closed():
             plan = self._plan
@@ -138,7 +138,7 @@ class Sliding:
             if piece.end > piece.begin:
                 recording = self._recording(piece.before, piece.after)
                 inside = slice(piece.begin - piece.before, piece.end - piece.before)
-                # Not of the context: a derived velocity's outermost values are several times as noisy.
+                # Without the context: a derived velocity is several times as noisy at the ends.
                 fastest = float(np.abs(recording.velocity[inside.start : inside.stop + 1]).max())
                 if fastest > plan.speed:
                     fresh = False
@@ -157,12 +157,12 @@ class Sliding:
             self._adopt(plan)
 
     def _outgrown(self, plan: Plan, found: OnlineEstimate) -> bool:
-        """Whether a bound that came from the first seconds holds a value that the rest would free."""
+        """Return whether a bound computed from earlier samples holds a parameter, and new ones may release it."""
         held = set(found.at_bound) & set(plan.domain.from_data)
         return bool(held) and found.end - plan.made >= 0.5 * self._settings.window
 
     def _trim(self) -> None:
-        """Forget samples that are older than the window and its context, digested or not."""
+        """Remove samples that are older than the window and its context, processed or not."""
         times, settings, plan = self._samples.time, self._settings, self._plan
         if len(times) == 0:
             return
@@ -177,7 +177,7 @@ class Sliding:
         if form is None or plan.penalty.window_count <= 2 * len(domain.names):
             return None
         if form.error > _ROUGH:
-            raise InputError(f"on-line: {form.reason}")
+            raise InputError(form.reason, place="on-line identification")
         best = _core.minimise_separable(form, domain.lower, domain.upper, threads=1).best
         penalty, residual, jacobian = plan.penalty.linearised(best)
         sizes = np.linalg.norm(jacobian, axis=0)

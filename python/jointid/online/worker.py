@@ -1,4 +1,4 @@
-"""The thread that digests samples, and what it shares with those that feed it."""
+"""The thread that processes samples, and the data that it shares with the caller's thread."""
 
 from __future__ import annotations
 
@@ -18,9 +18,10 @@ Array = NDArray[np.float64]
 
 
 class Worker:
-    """Takes samples over, and keeps the latest estimate.
+    """Accepts samples, processes them on a thread of its own, and keeps the latest estimate.
 
-    It knows nothing of the identifier that owns it: one that is dropped without a word ends it.
+    It has no reference to the identifier that owns it, so that an identifier that is garbage-collected
+    without `close` ends the thread.
     """
 
     def __init__(
@@ -38,11 +39,11 @@ class Worker:
         self.thread: threading.Thread | None = None
 
     def put(self, samples: dict[str, Array]) -> None:
-        """Hand samples over; of those that wait no more than a window is kept, the oldest go."""
+        """Add samples to the queue; samples older than a window are removed from it."""
         with self._condition:
             self._raise_failure()
             if self._closed:
-                raise InputError("feed: the identifier is closed")
+                raise InputError("the identifier is closed", place="feed")
             self._waiting.append(samples)
             last = samples["time"][-1]
             while (
@@ -58,38 +59,40 @@ class Worker:
             self._condition.notify_all()
 
     def latest(self) -> OnlineEstimate | None:
-        """The latest estimate, unless there is a failure to tell."""
+        """Return the latest estimate, or raise the failure that was not raised yet."""
         with self._condition:
             self._raise_failure()
             return self._estimate
 
     def wait(self, timeout: float | None) -> OnlineEstimate | None:
-        """Wait until all samples handed over have been looked at; the latest estimate."""
+        """Wait until all samples are processed, and return the latest estimate."""
         if self.thread is threading.current_thread():
-            raise InputError("wait: the callback cannot wait for the thread that it runs on")
+            raise InputError(
+                "the callback cannot wait for the thread that it runs on", place="wait"
+            )
         with self._condition:
             done = self._condition.wait_for(
                 lambda: self._failure is not None or (not self._waiting and not self._busy), timeout
             )
             self._raise_failure()
             if not done:
-                raise TimeoutError(f"the samples were not digested within {timeout} s")
+                raise TimeoutError(f"the samples were not processed within {timeout} s")
             return self._estimate
 
     def stop(self) -> None:
-        """Let the thread end, after the stretch that it digests."""
+        """Let the thread end after the present piece."""
         with self._condition:
             self._closed = True
             self._waiting.clear()
             self._condition.notify_all()
 
     def join(self) -> None:
-        """Wait for the thread's end, unless this is the thread."""
+        """Wait for the end of the thread, except on the thread itself."""
         if self.thread is not None and self.thread is not threading.current_thread():
             self.thread.join()
 
-    def tell(self) -> None:
-        """Raise what failed and was not told yet."""
+    def raise_failure(self) -> None:
+        """Raise the failure that was not raised yet."""
         with self._condition:
             self._raise_failure()
 
@@ -122,12 +125,12 @@ class Worker:
     def _digest(
         self, sliding: Sliding, taken: list[dict[str, Array]], dropped: int
     ) -> Sliding | None:
-        """What goes on with the next samples; None after an error, at which the past may be at fault."""
+        """Process samples; None after an error, which the samples in memory may have caused."""
         try:
             for samples in taken:
                 sliding.append(samples)
             found = sliding.estimate(dropped)
-        except BaseException as error:  # told by the next call
+        except BaseException as error:  # raised by the next call
             with self._condition:
                 self._failure = error
             return None
@@ -142,6 +145,6 @@ class Worker:
             return
         try:
             self._callback(found)
-        except BaseException as error:  # the user's own, told by the next call
+        except BaseException as error:  # of the user's callback, raised by the next call
             with self._condition:
                 self._failure = error

@@ -1,1 +1,1 @@
-"""What is identified from what: terms, windows, the penalty they define."""
+"""The identification problem: terms, windows, and the penalty that they define."""

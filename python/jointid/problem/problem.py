@@ -1,4 +1,4 @@
-"""Recordings, joint and terms put together: the penalty they define, and its windows in numbers."""
+"""A problem: recordings, joint and terms, the penalty that they define, and its table of windows."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
+from jointid.joint.checks import check_choice, finite_number
 from jointid.joint.joint import Joint
 from jointid.problem.terms import TermChoice
 from jointid.problem.window_table import WindowTable
@@ -24,14 +26,23 @@ Windows = int | float | str | _core.WindowOptions | None
 
 Made = TypeVar("Made", _core.Penalty, _core.PenaltyParts)
 
-_MOST_GAPS = 0.1  # of the intervals; beyond, the median period is not the period
+# Largest share of the intervals that may be gaps: above it the median interval is not the sample period.
+_MOST_GAPS = 0.1
+
+_WINDOWS_EXPECTED = (
+    "a number of windows (a whole number), their duration in seconds, or cumulative is expected"
+)
+
+_RECORDING_EXPECTED = "a Recording is expected, or several; load reads one from a file"
+
+_LARGEST = 1e15  # number or duration of windows that the core can represent
 
 _HOLDS = {"zoh": _core.Hold.zero_order, "linear": _core.Hold.linear}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Problem:
-    """What is identified from what; how finely it is cut into windows is left open.
+    """Recordings and the terms to identify from them; the windows are chosen later.
 
     Attributes
     ----------
@@ -39,8 +50,10 @@ class Problem:
     joint : Joint or None
     choice : TermChoice
     torque_hold : str or None
-        Overrides what recording and joint say.
+        Overrides that of the recording and of the joint.
     mask_standstill : bool
+    threads : int
+        0 (default): all.
     """
 
     recordings: tuple[Recording, ...]
@@ -51,7 +64,7 @@ class Problem:
     threads: int = 0
 
     def penalty(self, windows: Windows) -> _core.Penalty:
-        """The penalty over these windows: an int is their number, a float their duration [s].
+        """Return the penalty over these windows: an int is their number, a float their duration [s].
 
         Raises
         ------
@@ -61,7 +74,7 @@ class Problem:
         return self._cut(_core.Penalty, windows)
 
     def parts(self, windows: Windows) -> _core.PenaltyParts:
-        """The same, summed part by part: for what needs its windows once or twice.
+        """Return the same penalty, summed part by part: for a caller that evaluates it once or twice.
 
         Raises
         ------
@@ -72,9 +85,10 @@ class Problem:
 
     def _cut(self, made: type[Made], windows: Windows) -> Made:
         options = self.window_options(windows)
+        recordings = self.in_core  # its errors are values already
         try:
             return made(
-                recordings=self.in_core,
+                recordings=recordings,
                 terms=list(self.choice.terms),
                 windows=options,
                 residual=_core.Residual[self.choice.residual],
@@ -92,18 +106,16 @@ class Problem:
         return max(float(np.abs(recording.velocity).max()) for recording in self.recordings)
 
     def window_options(self, windows: Windows) -> _core.WindowOptions:
-        """The call's `windows=` as options for these recordings.
+        """Return the argument `windows` of a call as options for these recordings.
 
         Raises
         ------
         InputError
-            Not a positive number, nor "cumulative".
+            Neither a positive number nor "cumulative".
         """
         if isinstance(windows, str):
             if windows != "cumulative":
-                raise InputError(
-                    f"windows '{windows}' is not known; use a number, a duration or 'cumulative'"
-                )
+                raise InputError(_WINDOWS_EXPECTED, argument="windows", value=windows)
             period = min(recording.sample_period for recording in self.recordings)
             return _core.WindowOptions(duration=period, cumulative=True)
         return _options(windows)
@@ -114,9 +126,14 @@ class Problem:
         theta: Array,
         known: tuple[Array, Array] | None = None,
     ) -> WindowTable:
-        """The penalty's windows at a parameter vector; each for itself even if the penalty accumulates.
+        """Return the penalty's windows at a parameter vector; separate windows even if the penalty accumulates.
 
-        `known` are its residuals and columns there, if somebody has them.
+        Parameters
+        ----------
+        penalty : Penalty
+        theta : ndarray, shape (p,)
+        known : tuple of ndarray, optional
+            Residuals and columns of the penalty at `theta`. Default: computed here.
         """
         if penalty.cumulative:
             apart = _core.WindowOptions(duration=penalty.window_duration)
@@ -147,7 +164,7 @@ class Problem:
         for index, term in enumerate(penalty.terms):
             if term.friction and not term.needs_load:  # the friction map is drawn without load
                 friction += theta[index] * columns[:, index]
-        duration = penalty.usable_duration.copy()  # a view would keep the penalty for good
+        duration = penalty.usable_duration.copy()  # a view would keep the penalty in memory
         return WindowTable(
             recording=run,
             start=start,
@@ -161,15 +178,16 @@ class Problem:
 
     @functools.cached_property
     def in_core(self) -> list[_core.Recording]:
-        """The recordings as the core takes them: their arrays, not copies; each finds its mask once."""
+        """The recordings for the core; they share the arrays, and each computes its mask once."""
         return [self._in_core(recording) for recording in self.recordings]
 
     def _in_core(self, recording: Recording) -> _core.Recording:
-        hold = self.torque_hold or recording.torque_hold
+        hold = self.torque_hold
+        if hold is None:
+            hold = recording.torque_hold
         if hold is None:
             hold = (self.joint.torque_hold if self.joint is not None else None) or "linear"
-        if hold not in _HOLDS:
-            raise InputError(f"torque_hold '{hold}' is not known; known are {', '.join(_HOLDS)}")
+        check_choice("", "torque_hold", hold, _HOLDS)
         return _core.Recording(
             time=recording.time,
             position=recording.position,
@@ -182,12 +200,12 @@ class Problem:
 
 
 def output_torque(recording: Recording, joint: Joint | None) -> Array:
-    """The drive's torque at the output [N·m or N].
+    """Return the drive's torque at the output [N·m or N].
 
     Raises
     ------
     InputError
-        The recording has none, or only one on the motor side and no joint to turn it round.
+        The recording has no torque, or only one on the motor side and there is no joint to convert it.
     """
     if joint is not None:
         return joint.output_torque(recording)
@@ -199,9 +217,15 @@ def output_torque(recording: Recording, joint: Joint | None) -> Array:
     ):
         if getattr(recording, signal) is not None:
             raise InputError(
-                f"the recording has '{signal}' on the motor side; give a joint with {needs} to turn it into torque"
+                f"the recording has {signal}, on the motor side, and no torque at the output",
+                argument="joint",
+                remedy=f"give a joint with {needs}, which convert it",
             )
-    raise InputError("the recording has no signal 'torque'; map it with columns={'torque': ...}")
+    raise InputError(
+        "the recording has no signal torque",
+        argument="torque",
+        remedy=Action("call", {"columns": {"torque": ...}}, function="load"),
+    )
 
 
 def _options(windows: int | float | _core.WindowOptions | None) -> _core.WindowOptions:
@@ -210,46 +234,49 @@ def _options(windows: int | float | _core.WindowOptions | None) -> _core.WindowO
     if isinstance(windows, _core.WindowOptions):
         return windows
     if isinstance(windows, bool | str) or not isinstance(windows, numbers.Real):
+        raise InputError(_WINDOWS_EXPECTED, argument="windows", value=windows)
+    if not 0.0 < finite_number("", "windows", windows) < _LARGEST:
         raise InputError(
-            "windows must be a number (int), a duration in seconds (float), 'cumulative' or WindowOptions, got "
-            f"{windows!r}"
+            f"a value above 0 and below {_LARGEST:g} is expected", argument="windows", value=windows
         )
-    if not 0 < windows < 1e15:
-        raise InputError(f"windows must be positive and finite, got {windows!r}")
     if isinstance(windows, numbers.Integral):
         return _core.WindowOptions(count=int(windows))
     return _core.WindowOptions(duration=float(windows))
 
 
 def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]:
-    """One recording or several, checked.
+    """Return one recording or several as a checked tuple.
 
     Raises
     ------
     InputError
-        None, something else, or revolute and prismatic mixed.
+        No recording, something else, too many gaps, or revolute and prismatic recordings mixed.
     """
     if isinstance(recordings, Recording):
         recordings = (recordings,)
     if not isinstance(recordings, Iterable) or isinstance(recordings, str):
-        raise InputError(
-            f"recordings is a {type(recordings).__name__}, not a Recording; read a file with jointid.load"
-        )
+        raise InputError(_RECORDING_EXPECTED, argument="recordings", value=recordings)
     runs = tuple(recordings)
     if not runs:
-        raise InputError("identify needs at least one recording, got none")
+        raise InputError("at least one recording is expected", argument="recordings", value=[])
     for number, run in enumerate(runs):
+        place = f"recording {number}"
         if not isinstance(run, Recording):
-            raise InputError(
-                f"recording {number} is a {type(run).__name__}, not a Recording; read a file with jointid.load"
-            )
+            raise InputError(_RECORDING_EXPECTED, argument="recordings", value=run, place=place)
         if len(run.gaps) > _MOST_GAPS * len(run):
             raise InputError(
-                f"recording {number}: {100 * len(run.gaps) / len(run):.0f} % of its sample intervals are gaps, as when "
-                "a bus hands over samples in bursts; take the drive's time stamps, not the host's, or a uniform clock"
+                f"{100 * len(run.gaps) / len(run):.0f} % of its sample intervals are gaps, as when a bus delivers "
+                "samples in bursts",
+                argument="time",
+                place=place,
+                remedy="use the drive's time stamps instead of the host's, or a uniform clock",
             )
         if run.kind != runs[0].kind:
             raise InputError(
-                f"recording {number} is {run.kind}, recording 0 is {runs[0].kind}; identify them apart"
+                f"recording 0 is {runs[0].kind}",
+                argument="kind",
+                value=run.kind,
+                place=place,
+                remedy="identify them separately",
             )
     return runs

@@ -1,4 +1,4 @@
-"""Which terms the torque balance of a joint has: from the joint, the recordings and the call."""
+"""The terms of a joint's torque balance, chosen from the joint, the recordings and the call."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -17,14 +17,14 @@ _SENSOR = ("sensor_gain", "sensor_offset")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
-    """What a call asks of the torque balance.
+    """The terms and the residual that a call asks for.
 
     Attributes
     ----------
     model : Model
-        Goes over the joint's, field by field.
+        Its fields override those of the joint's model.
     residual : str or None
-        "sensor" or "torque"; None: the sensor where there is one.
+        "sensor" or "torque"; None: the sensor if there is one.
     """
 
     model: Model = field(default_factory=Model)
@@ -33,16 +33,21 @@ class Request:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TermChoice:
-    """The terms of one identification, in canonical order, and what the residual is compared with.
+    """The terms of one identification, in the core's order, and the signal that the residual compares.
 
     Attributes
     ----------
     terms : tuple of str
         Keys of the core's terms.
     model : Model
-        The call's over the joint's; its name is stated.
+        The call's fields, then the joint's; its name is never None.
+    residual : str
+        "sensor" or "torque".
+    sensor : bool
+        Whether the terms contain the sensor's gain and offset.
+    gear_ratio : float
     dropped : str
-        A term that another one makes superfluous, and why; empty if none.
+        A term that another one makes redundant, and why; empty if none.
     """
 
     terms: tuple[str, ...]
@@ -54,20 +59,20 @@ class TermChoice:
 
     @property
     def per_recording(self) -> tuple[str, ...]:
-        """Coefficients that each recording has for itself."""
+        """Coefficients with a separate value for each recording."""
         return self.model.resolved.per_recording
 
 
 def choose_terms(
     recordings: Sequence[Recording], joint: Joint | None, request: Request
 ) -> TermChoice:
-    """Terms of the torque balance: inertia, friction, then gravity, offset, harmonics and sensor.
+    """Return the terms of the torque balance: inertia, friction, then gravity, offset, harmonics and sensor.
 
     Raises
     ------
     InputError
-        A sensor residual without a sensor; terms that cannot be told apart; a coefficient of
-        `per_recording` that is not among the terms.
+        A sensor residual without a sensor; indistinguishable terms; a coefficient of `per_recording`
+        that is not among the terms.
     """
     base = joint if joint is not None else Joint()
     stated = request.model.over(base.model)
@@ -85,13 +90,17 @@ def choose_terms(
         )
     if model.ripple and joint is None:
         raise InputError(
-            "its orders count turns of the motor: give a joint with its gear_ratio",
+            "its orders count turns of the motor, and there is no joint that has a gear_ratio",
             argument="ripple",
             value=list(model.ripple),
+            remedy="give a joint with its gear_ratio",
         )
     if model.gravity != "none" and joint is None and model.gravity == "known":
         raise InputError(
-            "there is no joint whose link is known", argument="gravity", value=model.gravity
+            "there is no joint whose link is known",
+            argument="gravity",
+            value=model.gravity,
+            remedy="give a joint with a link, or set gravity to free",
         )
     offset, dropped = _offset(base, model.asymmetric, sensor)
     friction = next(entry for entry in _core.models() if entry.name == model.name)
@@ -118,8 +127,11 @@ def choose_terms(
 def _check_kind(recordings: Sequence[Recording], joint: Joint | None) -> None:
     if joint is not None and recordings[0].kind != joint.kind:
         raise InputError(
-            f"the recording is {recordings[0].kind}, joint '{joint.name}' is {joint.kind}; check the position's unit, "
-            "or the joint's kind"
+            f"joint '{joint.name}' is {joint.kind}",
+            argument="kind",
+            value=recordings[0].kind,
+            place="recording",
+            remedy="check the unit of the position, or the kind of the joint",
         )
 
 
@@ -130,10 +142,12 @@ def _has_sensor(recordings: Sequence[Recording], joint: Joint | None) -> bool:
         for number, recording in enumerate(recordings):
             if recording.sensor is None:
                 raise InputError(
-                    f"joint '{joint.name}' has a torque sensor, but recording {number} has no signal sensor",
+                    f"joint '{joint.name}' has a torque sensor, but the recording has no signal sensor",
+                    argument="sensor",
+                    place=f"recording {number}",
                     remedy=(
                         Action("call", {"columns": {"sensor": ...}}, function="load"),
-                        "drop [sensor] from the joint",
+                        "remove the sensor from the joint",
                     ),
                 )
     return joint.sensor
@@ -146,7 +160,7 @@ def _friction(terms: Sequence[str], asymmetric: bool) -> list[str]:
 
 
 def _offset(joint: Joint, asymmetric: bool, sensor: bool) -> tuple[bool, str]:
-    """Whether the torque has an offset of its own, and what is reported when it has not."""
+    """Return whether the torque has a separate offset, and the message if another term replaces it."""
     if sensor:
         if joint.torque_offset:
             raise InputError(
@@ -159,7 +173,7 @@ def _offset(joint: Joint, asymmetric: bool, sensor: bool) -> tuple[bool, str]:
     if asymmetric:
         if joint.torque_offset:
             raise InputError(
-                "torque_offset and asymmetric Coulomb friction are the same where the joint moves",
+                "torque_offset and asymmetric Coulomb friction are indistinguishable while the joint moves",
                 argument="torque_offset",
                 value=True,
                 remedy=(
@@ -167,14 +181,14 @@ def _offset(joint: Joint, asymmetric: bool, sensor: bool) -> tuple[bool, str]:
                     "leave out asymmetric",
                 ),
             )
-        return False, "torque_offset: asymmetric Coulomb friction holds it"
+        return False, "torque_offset: asymmetric Coulomb friction contains it"
     return joint.torque_offset is not False, ""
 
 
 def _ordered(
     wanted: set[str], ripple: tuple[float, ...], harmonics: tuple[float, ...]
 ) -> tuple[str, ...]:
-    """Keys in the core's order; a family's row gives way to its orders."""
+    """Return keys in the core's order; the orders of a family replace the family's row."""
     orders = {"ripple": ripple, "position": harmonics}
     keys: list[str] = []
     known = {term.key for term in _core.terms()}
@@ -193,7 +207,7 @@ def _check_per_recording(names: tuple[str, ...], terms: tuple[str, ...]) -> None
     for name in names:
         if name not in known and name not in terms:
             raise InputError(
-                f"{name} is not among the terms; there are {', '.join(known)}",
+                f"{name} is not among the terms; known are {', '.join(known)}",
                 argument="per_recording",
                 value=list(names),
             )

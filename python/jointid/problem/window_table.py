@@ -1,4 +1,4 @@
-"""The windows in numbers: what was measured, what the terms say, and how well the two agree."""
+"""The table of windows: measured and fitted integrals, and measures of their agreement."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class WindowTable:
-    """One row a window; integrals of the compared signal, and means for pictures.
+    """One row per window: integrals of the compared signal, and means for pictures.
 
     Attributes
     ----------
     recording : ndarray of int
-        Which recording.
+        Index of the recording.
     start, stop : ndarray
         [s], on the recording's clock.
     duration : ndarray
@@ -44,13 +44,13 @@ class WindowTable:
 
     @property
     def residual(self) -> Array:
-        """Measured less fitted."""
+        """Measured minus fitted integrals."""
         return self.measured - self.fitted
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Prediction:
-    """What an estimate says of a recording it may never have seen.
+    """An estimate's prediction of a recording, which need not be one that it was fitted to.
 
     Attributes
     ----------
@@ -66,9 +66,9 @@ class Prediction:
 
 
 def r_squared(table: WindowTable) -> float:
-    """Share of the variance of the measured window means that the model explains, weighted by duration.
+    """Return the share of the variance of the measured window means that the model explains, weighted by duration.
 
-    Means, because integrals of a constant signal vary with the windows' unequal durations.
+    Means are compared, because integrals of a constant signal vary with the windows' unequal durations.
     """
     mean = table.measured / table.duration
     level = float(np.average(mean, weights=table.duration))
@@ -78,6 +78,6 @@ def r_squared(table: WindowTable) -> float:
 
 
 def relative_residual(table: WindowTable) -> float:
-    """Norm of the residuals over the norm of the measured integrals; infinite when nothing was measured."""
+    """Return the norm of the residuals over that of the measured integrals; infinite if those are zero."""
     measured = size(table.measured)
     return size(table.residual) / measured if measured > 0.0 else float("inf")

@@ -1,1 +1,1 @@
-"""Many identifications: over options and seeds, here or on many machines, kept as they are done."""
+"""Studies: many identifications over settings and seeds, in this process or an executor, saved as they finish."""

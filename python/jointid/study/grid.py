@@ -1,9 +1,10 @@
-"""The settings that a study sweeps: their names, their values, and the cells they make."""
+"""The grid of a study: names and values of the swept settings, and the cells of their combinations."""
 
 from __future__ import annotations
 
 import inspect
 import itertools
+import numbers
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -11,15 +12,14 @@ from typing import Any
 import numpy as np
 
 from jointid import _core
-from jointid.base.argument_checks import require_mapping
-from jointid.base.errors import InputError
+from jointid.base.errors import InputError, shown
 from jointid.identification.prepared import prepare
 from jointid.identification.search.search import Search
-from jointid.joint.checks import suggestion
+from jointid.joint.checks import check_flag, check_mapping, finite_number, is_number, suggestion
 from jointid.joint.model import FIELDS, Model
 from jointid.simulation.scenario import Scenario
 
-# Arguments of `prepare` that a study passes on, alike for all cells or swept; and fields of the search.
+# Fields of the search, and arguments of `prepare` that a study passes on: the same for all cells, or swept.
 OPTIONS = (
     *("method", "ga"),
     *(
@@ -28,6 +28,8 @@ OPTIONS = (
         if n not in ("recordings", "joint", "threads")
     ),
 )
+
+_TOO_LARGE = 2**31  # for a whole number of the core
 
 Label = str | int | float | bool | None
 
@@ -39,20 +41,20 @@ class Cell:
     Attributes
     ----------
     labels : dict of str to str, int, float, bool or None
-        What the table shows for each.
+        The label of each value, for tables.
     values : dict of str to object
-        What they are.
+        The values.
     """
 
     labels: dict[str, Label]
     values: dict[str, Any]
 
     def scenario(self, base: Scenario) -> Scenario:
-        """The scenario with this cell's part of it."""
+        """Return the scenario with this cell's settings of it."""
         return base.changed({n: v for n, v in self.values.items() if not is_option(n)})
 
     def options(self, common: Mapping[str, Any]) -> dict[str, Any]:
-        """Arguments of `prepare`: the study's, with this cell's in their place."""
+        """Return arguments of `prepare`: the study's, overridden by this cell's."""
         chosen = dict(common)
         fixed: dict[str, Any] = _changes(common.get("parameters"))
         model = Model.of(self.values.get("model", common.get("model")))
@@ -69,29 +71,67 @@ class Cell:
         return chosen | {"model": model} | ({"parameters": fixed} if fixed else {})
 
     def search(self, base: Search, seed: int, threads: int) -> Search:
-        """The study's search with this cell's method and settings, for one trial."""
+        """Return the study's search with this cell's method and settings, for one trial.
+
+        Raises
+        ------
+        InputError
+            A value that the search refuses.
+        """
         ga = self.values.get("ga", base.ga)
         method = self.values.get("method", base.method)
+        search = Search(method, ga=ga, seed=seed, threads=threads)
         changes = {n.removeprefix("ga."): v for n, v in self.values.items() if n.startswith("ga.")}
-        found = Search(method, ga=ga, seed=seed, threads=threads)
-        try:
-            return replace(found, ga=found.genetic.replace(**changes))
-        except (ValueError, TypeError) as error:
-            raise InputError(str(error), argument="ga") from None
+        return replace(search, ga=_with_settings(search.genetic, changes))
 
 
-def _changes(parameters: object) -> dict[str, Any]:
-    example = "{'coulomb': {'max': 50.0}}"
-    return dict(require_mapping("parameters", {} if parameters is None else parameters, example))
+def _with_settings(options: _core.GaOptions, changes: Mapping[str, Any]) -> _core.GaOptions:
+    """Return settings of the genetic algorithm with some of them changed."""
+    present = options.asdict()
+    for name, value in changes.items():
+        _check_setting(f"ga.{name}", value, present[name])
+    try:
+        return options.replace(**changes)
+    except InputError as error:
+        raise error.at("grid") from None
+    except ValueError as error:
+        raise InputError(str(error), argument=", ".join(f"ga.{n}" for n in changes)) from None
+
+
+def _check_setting(name: str, value: object, present: object) -> None:
+    """Refuse a value whose kind is not that of the present value."""
+    if isinstance(present, bool):
+        check_flag("grid", name, value)
+    elif isinstance(present, str):
+        if not isinstance(value, str):
+            raise InputError("a text is expected", argument=name, value=value, place="grid")
+    elif not isinstance(present, int):
+        finite_number("grid", name, value)
+    elif not (
+        is_number(value) and isinstance(value, numbers.Integral) and abs(int(value)) < _TOO_LARGE
+    ):
+        raise InputError(
+            f"a whole number below {_TOO_LARGE} is expected",
+            argument=name,
+            value=value,
+            place="grid",
+        )
+
+
+def _changes(parameters: Any) -> dict[str, Any]:
+    if parameters is None:
+        return {}
+    check_mapping("", "parameters", parameters)
+    return dict(parameters)
 
 
 def is_option(name: str) -> bool:
-    """Whether a swept name is of the identification, not of the scenario."""
+    """Return whether a swept name belongs to the identification, not to the scenario."""
     return name in OPTIONS or name.startswith(("ga.", "model.", "parameters."))
 
 
 def cells_of(grid: Mapping[str, Any], scenario: Scenario | None) -> tuple[Cell, ...]:
-    """All combinations of a grid's values, the last name's values fastest.
+    """Return all combinations of a grid's values; those of the last name change fastest.
 
     Raises
     ------
@@ -100,7 +140,7 @@ def cells_of(grid: Mapping[str, Any], scenario: Scenario | None) -> tuple[Cell, 
     """
     if not isinstance(grid, Mapping):
         raise InputError(
-            f"grid is {grid!r}; a mapping from a setting's name to its values is expected"
+            "a mapping from a setting's name to its values is expected", argument="grid", value=grid
         )
     known = _known(scenario)
     axes = []
@@ -121,35 +161,40 @@ def _known(scenario: Scenario | None) -> list[str]:
 
 def _check_name(name: object, known: Sequence[str], scenario: Scenario | None) -> None:
     if not isinstance(name, str) or not name:
-        raise InputError(f"grid: {name!r} is no name of a setting")
+        raise InputError("the name of a setting is expected", argument="grid", value=name)
     part, _, inside = name.partition(".")
     free = inside and (part == "parameters" or (part in ("controller", "truth") and scenario))
     if name in known or free:
         return
     if part in ("sensors", "controller", "truth", "trajectory", "joint") and scenario is None:
         raise InputError(
-            f"grid: '{name}' is of a simulation; give a jointid.Scenario instead of recordings"
+            "it is a setting of a simulation, and recordings are given",
+            argument=name,
+            place="grid",
+            remedy="give a scenario instead of recordings",
         )
-    raise InputError(f"grid: '{name}' cannot be swept; {suggestion(name, known)}")
+    raise InputError(f"it cannot be swept; {suggestion(name, known)}", argument=name, place="grid")
 
 
 def _labelled(name: str, values: Any) -> list[tuple[Label, Any]]:
     if isinstance(values, Mapping):
         pairs = [(label, value) for label, value in values.items()]
     elif isinstance(values, str | bytes) or not hasattr(values, "__iter__"):
-        raise InputError(f"grid: '{name}' is {values!r}; a list of values is expected")
+        raise InputError("a list of values is expected", argument=name, value=values, place="grid")
     else:
         pairs = [(_label(name, value), _plain(value)) for value in values]
     if not pairs:
-        raise InputError(f"grid: '{name}' has no values; give at least one")
+        raise InputError("at least one value is expected", argument=name, value=[], place="grid")
     labels = [label for label, _ in pairs]
     for label in labels:
         if not isinstance(label, str | int | float | bool | None):
             raise InputError(
-                f"grid: '{name}' has the label {label!r}; a text or a number is expected"
+                f"{shown(label)} is no label; a text or a number is expected",
+                argument=name,
+                place="grid",
             )
     if len({(type(label), label) for label in labels}) < len(labels):
-        raise InputError(f"grid: '{name}' has a value twice: {', '.join(map(str, labels))}")
+        raise InputError("a value is given twice", argument=name, value=labels, place="grid")
     return pairs
 
 
@@ -164,6 +209,8 @@ def _label(name: str, value: Any) -> Label:
     if isinstance(value, tuple | list) and all(isinstance(v, str | int | float) for v in value):
         return ",".join(str(v) for v in value)
     raise InputError(
-        f"grid: '{name}' has the value {value!r}, which a table cannot show; give "
-        f"{{'{name}': {{'a label': value, ...}}}}"
+        f"it has the value {shown(value)}, which a table cannot show",
+        argument=name,
+        place="grid",
+        remedy="give a mapping from labels to values",
     )

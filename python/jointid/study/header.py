@@ -1,4 +1,4 @@
-"""What a study is of: the first line of its file, and the fingerprint that tells studies apart."""
+"""The header of a study: the first line of its file, with the fingerprint that identifies the study."""
 
 from __future__ import annotations
 
@@ -16,12 +16,20 @@ from jointid.study.work import Work
 
 
 def header_of_work(work: Work, trials: int, truth: Mapping[str, float] | None) -> dict[str, Any]:
-    """The first line of the study's file.
+    """Return the first line of the study's file.
+
+    Parameters
+    ----------
+    work : Work
+    trials : int
+        Of each cell.
+    truth : mapping of str to float or None
+        True parameters that the call states.
 
     Raises
     ------
     InputError
-        The truth is no mapping of names to numbers.
+        The truth is not a mapping of names to numbers.
     """
     subject = work.subject
     simulated = isinstance(subject, Scenario)
@@ -59,7 +67,7 @@ def header_of_work(work: Work, trials: int, truth: Mapping[str, float] | None) -
 
 
 def _truth(work: Work, given: Mapping[str, float] | None) -> dict[str, float]:
-    """What is known to be true of all recordings."""
+    """Return the true parameters: as stated, else those that are the same for all recordings."""
     if given is not None:
         if not isinstance(given, Mapping):
             raise InputError(
@@ -83,13 +91,13 @@ def _truth(work: Work, given: Mapping[str, float] | None) -> dict[str, float]:
 
 
 def _truths(work: Work, given: Mapping[str, float] | None) -> list[dict[str, float]]:
-    """What is true in each cell, where cells differ; else nothing."""
+    """Return the true parameters of each cell if cells differ, else an empty list."""
     if not isinstance(work.subject, Scenario) or given is not None:
         return []
     truths = []
     for cell in work.cells:
         try:
             truths.append(cell.scenario(work.subject).truth)
-        except InputError:  # its rows will say so
+        except InputError:  # the cell's rows are refused with this error
             truths.append({})
     return truths if any(truth != truths[0] for truth in truths) else []

@@ -1,4 +1,4 @@
-"""One trial of a study, as it stands in the study's file and in its table."""
+"""One trial of a study, as a row of the study's file and table."""
 
 from __future__ import annotations
 
@@ -11,26 +11,27 @@ REFUSED = "refused"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Row:
-    """What came of one identification; the same bits wherever it was done.
+    """The result of one identification; the same bits in any process and on any number of threads.
 
     Attributes
     ----------
     cell, trial : int
-        Which combination of settings, which repetition.
+        Index of the combination of settings, and of the repetition.
     seed : int
         Of the search, and of the noise of a simulated recording: `identify` with it gives this row.
     status : str
-        "converged", "stopped", or "refused" where these settings cannot be used here.
+        "converged", "stopped", or "refused" if these settings cannot be used here.
     message : str
+        How the search ended, or why the settings are refused.
     penalty : float
-        At the answer; not a number when refused.
+        At the result; not a number if refused.
     evaluations, generations : int
         Of the search.
     values, stderr : dict of str to float
-        Parameters, and their standard errors if they were asked for [SI].
+        Parameters, and their standard errors if requested [SI].
     tracking : dict of str to float
-        Root mean square of the tracking error [rad] with the scenario's estimates ("before"), the
-        identified ones ("after"), and the true ones ("true"), if they were asked for.
+        Root mean square of the tracking error [rad] with the scenario's parameters ("before"), the
+        identified ones ("after"), and the true ones ("true"), if requested.
     """
 
     cell: int
@@ -51,17 +52,17 @@ class Row:
         return self.cell, self.trial
 
     def asdict(self) -> dict[str, Any]:
-        """For a file; numbers keep all their bits."""
+        """Return the fields for a file; numbers keep all their bits."""
         return asdict(self)
 
     @classmethod
     def of(cls, record: dict[str, Any]) -> Row:
-        """The row of a record.
+        """Return the row of a record.
 
         Raises
         ------
-        KeyError, TypeError, ValueError
-            The record is not of a row.
+        KeyError, TypeError, ValueError, AttributeError
+            The record is not that of a row.
         """
         numbers = {"values", "stderr", "tracking"}
         known: dict[str, Any] = {item.name: record[item.name] for item in fields(cls)}

@@ -1,4 +1,4 @@
-"""Does the trials of a study: what trials have in common is made once."""
+"""Runs the trials of a study; trials with the same recording or penalty share it."""
 
 from __future__ import annotations
 
@@ -25,27 +25,32 @@ _Found = tuple[Row, Estimate | None]
 
 
 def run_chunk(work: Work, places: Sequence[Place]) -> list[Row]:
-    """The rows of some trials: what is sent to another process or machine."""
+    """Return the rows of some trials; an executor calls this in another process or on another machine."""
     return [row for rows in Runner(work).run(places) for row in rows]
 
 
 class Runner:
-    """Does trials one group after the other, and keeps the last penalty for the next group.
+    """Runs trials one group after the other, and keeps the last penalty for the next group.
 
     Parameters
     ----------
     work : Work
+    strict : bool
+        Whether settings that cannot be used raise an error, instead of giving refused rows. Default False.
     """
 
-    def __init__(self, work: Work) -> None:
+    def __init__(self, work: Work, *, strict: bool = False) -> None:
         self._work = work
+        self._strict = strict
         self._ready: tuple[object, Prepared, Engine] | None = None
 
     def run(self, places: Sequence[Place]) -> Iterator[list[Row]]:
-        """Rows of these trials, group by group as they are done.
+        """Yield the rows of these trials, group by group as they are done.
 
         Raises
         ------
+        InputError
+            Settings that cannot be used, if strict.
         KeyboardInterrupt
             Ctrl-C.
         """
@@ -59,7 +64,7 @@ class Runner:
             yield [row for row, _ in found]
 
     def _simulated(self, places: list[Place], subject: Scenario) -> Iterator[list[Row]]:
-        """Trials of one world: its recordings simulated side by side, then each identified."""
+        """Run the trials of one scenario: simulate its recordings together, then identify each."""
         work = self._work
         world = work.world(places[0][0])
         trials = sorted({trial for _, trial in places})
@@ -83,7 +88,7 @@ class Runner:
     def _recordings(
         self, scenario: Scenario, trials: list[int]
     ) -> dict[int, Recording | InputError]:
-        """A recording a trial; where a loop is not stable, why."""
+        """Return the recording of each trial, or the error where a loop is not stable."""
         work = self._work
         seeds = [work.seed + trial for trial in trials]
         try:
@@ -91,7 +96,7 @@ class Runner:
         except InputError as error:
             if len(trials) == 1:
                 return {trials[0]: error}
-            # One of them: each by itself, so that the others do not suffer.
+            # One of them failed: simulate each by itself to keep the others.
             alone = [self._recordings(scenario, [trial]) for trial in trials]
             return {trial: made for each in alone for trial, made in each.items()}
         return dict(zip(trials, batch.recordings, strict=True))
@@ -103,7 +108,7 @@ class Runner:
         key: object,
         scenario: Scenario | None = None,
     ) -> list[_Found]:
-        """Trials on one penalty, side by side."""
+        """Run trials on one penalty together."""
         work = self._work
         options = work.cells[places[0][0]].options(work.common)
         joint = scenario.joint if scenario is not None and work.joint is None else work.joint
@@ -114,7 +119,7 @@ class Runner:
                 for cell, trial in places
             ]
             if self._ready is None or self._ready[0] != key:
-                self._ready = None  # not two at a time
+                self._ready = None  # frees the memory of the last one first
                 prepared = prepare(recordings, joint, **options, threads=work.threads)
                 engine = Engine.of(
                     prepared.penalty, prepared.domain, work.threads, searches[0].method
@@ -153,7 +158,7 @@ class Runner:
         return row, estimate
 
     def _tracked(self, found: list[_Found], scenario: Scenario) -> list[Row]:
-        """Rows with the tracking error before, after, and with the true parameters."""
+        """Return rows with the tracking error before, after, and with the true parameters."""
         seed = found[0][0].seed
         errors = {
             "before": self._error(scenario, None, seed),
@@ -177,10 +182,10 @@ class Runner:
         return rows
 
     def _error(self, scenario: Scenario, believed: Joint | None, seed: int) -> float:
-        """Tracking error of the controller as it is, or believing in a joint."""
+        """Return the tracking error of the controller as it is, or with a joint's parameters."""
         try:
             law = scenario.controller if believed is None else scenario.believing(believed)
-        except InputError:  # a friction model that no controller has
+        except InputError:  # no controller compensates this friction model
             return math.nan
         try:
             batch = scenario.simulate(seed, controllers=law, recordings=False, threads=1)
@@ -189,12 +194,18 @@ class Runner:
         return float(batch.error[0])
 
     def _refused(self, place: Place, error: InputError) -> Row:
+        if self._strict:
+            raise error
+        # Without advice, which depends on the face: a row is read from any of them.
+        plain = InputError(
+            error.reason, argument=error.argument, value=error.value, place=error.place
+        )
         return Row(
             cell=place[0],
             trial=place[1],
             seed=self._work.seed + place[1],
             status=REFUSED,
-            message=str(error),
+            message=str(plain),
         )
 
 

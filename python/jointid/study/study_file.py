@@ -1,4 +1,4 @@
-"""A study's file: JSON lines that grow while trials are done, and from which a study goes on."""
+"""A study's file: JSON lines that grow with the finished trials, and from which a study continues."""
 
 from __future__ import annotations
 
@@ -10,30 +10,35 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.study.row import Row
 
 FORMAT = "jointid-study"
 SCHEMA = 1
 
-_SYNC = 1.0  # [s] of work that a loss of power may take, at most
+_SYNC = 1.0  # [s]; a loss of power costs at most this much work
+
+
+_EXPECTED = "a file that a sweep wrote is expected"
+_ANOTHER = Action("call", {"output": ...}, text="another file", function="sweep")
 
 
 class StudyFile:
-    """Rows on disk as they come; the first line says of which study.
+    """Rows on disk, written as trials finish; the first line identifies the study.
 
     Parameters
     ----------
     path : Path
     header : dict
-        What the rows belong to; its "fingerprint" decides whether a file may be gone on with.
+        The study that the rows belong to; an existing file is continued only with the same "fingerprint".
     resume : bool
-        Go on with an existing file; without it, an existing file is refused.
+        Whether to continue an existing file; otherwise an existing file is refused.
 
     Raises
     ------
     InputError
-        The file exists, or is of another study, or cannot be written.
+        The file exists, or belongs to another study, or its folder does not exist.
     """
 
     def __init__(self, path: Path, header: dict[str, Any], *, resume: bool) -> None:
@@ -43,12 +48,21 @@ class StudyFile:
         if path.exists() and path.stat().st_size > 0:
             if not resume:
                 raise InputError(
-                    f"{path} exists; go on with it by resume=True, or give another output="
+                    "the file exists",
+                    argument="output",
+                    value=str(path),
+                    remedy=(
+                        Action("call", {"resume": True}, text="to continue it", function="sweep"),
+                        _ANOTHER,
+                    ),
                 )
             known, self.rows, length = read(path)
             if known["fingerprint"] != header["fingerprint"]:
                 raise InputError(
-                    f"{path} is of another study ({_difference(known, header)}); give another output="
+                    f"the file belongs to another study: {_difference(known, header)}",
+                    argument="output",
+                    value=str(path),
+                    remedy=_ANOTHER,
                 )
             self._file = path.open("r+b")
             self._file.truncate(length)  # a line that a crash cut off
@@ -57,12 +71,17 @@ class StudyFile:
                 return
         else:
             if not path.parent.is_dir():
-                raise InputError(f"output {path}: the folder {path.parent} does not exist")
+                raise InputError(
+                    f"the folder {path.parent} does not exist",
+                    argument="output",
+                    value=str(path),
+                    remedy="create it first",
+                )
             self._file = path.open("w+b")
         self._write([header])
 
     def append(self, rows: Iterable[Row]) -> None:
-        """Keep rows; what was given is safe from a crash of this process at once."""
+        """Write rows; on return they are safe from a crash of this process."""
         rows = list(rows)
         self._write([row.asdict() for row in rows])
         self.rows += rows
@@ -77,7 +96,7 @@ class StudyFile:
             self._synced = time.monotonic()
 
     def __enter__(self) -> Self:
-        """The file."""
+        """Return the file."""
         return self
 
     def __exit__(
@@ -86,24 +105,24 @@ class StudyFile:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Close it, with everything on disk."""
+        """Write everything to the disk, and close the file."""
         self._file.flush()
         os.fsync(self._file.fileno())
         self._file.close()
 
 
 def read(path: Path) -> tuple[dict[str, Any], list[Row], int]:
-    """Header, rows and how many bytes of the file are whole lines.
+    """Return header, rows, and the number of bytes in whole lines.
 
     Raises
     ------
     InputError
-        The file cannot be read, or is no study.
+        The file cannot be read, or is not a study.
     """
     try:
         content = path.read_bytes()
     except OSError as error:
-        raise InputError(f"{path}: the study cannot be read: {error.strerror}") from error
+        raise InputError(f"the study cannot be read: {error.strerror}", place=str(path)) from error
     length = content.rfind(b"\n") + 1
     header: dict[str, Any] | None = None
     rows: dict[tuple[int, int], Row] = {}
@@ -119,29 +138,32 @@ def read(path: Path) -> tuple[dict[str, Any], list[Row], int]:
             if isinstance(error, InputError):
                 raise
             raise InputError(
-                f"{path}: line {number} is of no study; a file that sweep(output=...) wrote is expected"
+                f"this is not a line of a study; {_EXPECTED}", place=f"{path}, line {number}"
             ) from error
         if header is None:
             raise InputError(
-                f"{path}: line 1 is not a study's first; a file that sweep(output=...) wrote is expected"
+                f"this is not the first line of a study; {_EXPECTED}", place=f"{path}, line 1"
             )
     if header is None:
-        raise InputError(f"{path}: this holds no study, not even its first line")
+        raise InputError(f"the file has no whole line; {_EXPECTED}", place=str(path))
     return header, [rows[place] for place in sorted(rows)], length
 
 
 def _checked(path: Path, header: dict[str, Any]) -> dict[str, Any]:
     if header.get("schema") != SCHEMA:
         raise InputError(
-            f"{path}: its schema is {header.get('schema')!r}; this version of jointid reads {SCHEMA}"
+            f"this version of jointid reads {SCHEMA}",
+            argument="schema",
+            value=header.get("schema"),
+            place=str(path),
         )
     for name in ("fingerprint", "trials", "seed", "cells", "swept", "truth", "truths", "settings"):
-        header[name]
+        header[name]  # a KeyError refuses the line
     return header
 
 
 def _difference(known: dict[str, Any], wanted: dict[str, Any]) -> str:
-    """The first thing in which two headers differ."""
+    """Return the first difference between two headers."""
     for name, title in (
         ("version", "made by another version of jointid"),
         ("swept", "other swept settings"),

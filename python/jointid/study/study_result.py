@@ -1,4 +1,4 @@
-"""What a sweep gives: a row for every trial, as a table, a file, a summary."""
+"""The result of a sweep: a row for every trial, as a table, a file, a summary."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
+from jointid.joint.checks import suggestion
 from jointid.study import study_file, tables
 from jointid.study.row import Row
 from jointid.study.summary import Summary, summarise
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Study:
-    """Many identifications, a row each.
+    """Many identifications, one row each.
 
     Attributes
     ----------
@@ -31,19 +32,19 @@ class Study:
     cells : tuple of dict
         Their values, one combination each; long values by their labels.
     trials : int
-        Wanted of each cell.
+        Requested number in each cell.
     seed : int
         Trial t has the seed `seed` + t.
     truth : dict of str to float
-        True parameters, as far as they are known [SI].
+        Known true parameters [SI].
     truths : tuple of dict
-        The same for each cell, where they differ; else empty.
+        The same for each cell, if cells differ; else empty.
     rows : tuple of Row
         In the order of cells, then trials.
     settings : dict
-        What was identified, and how; for the record.
+        Recordings or scenario, joint, options and version, as a record.
     seconds : float
-        Wall time; of a study that went on, of the last part.
+        Wall time; of a resumed study, that of the last part.
     """
 
     swept: tuple[str, ...]
@@ -58,12 +59,12 @@ class Study:
 
     @property
     def complete(self) -> bool:
-        """Whether every trial is there."""
+        """Whether every trial is done."""
         return len(self.rows) >= len(self.cells) * self.trials
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """Names of all parameters that a row has."""
+        """Names of the parameters of all rows."""
         names = {name: None for row in self.rows for name in row.values}
         return tuple(names)
 
@@ -73,7 +74,7 @@ class Study:
         return tuple(tables.columns(self))
 
     def column(self, name: str) -> NDArray[Any]:
-        """One column of the table, shape (rows,).
+        """Return one column of the table, shape (rows,).
 
         Raises
         ------
@@ -82,36 +83,45 @@ class Study:
         """
         table = tables.columns(self)
         if name not in table:
-            raise InputError(f"the study has no column '{name}'; it has {', '.join(table)}")
+            raise InputError(
+                f"the study has no such column; {suggestion(name, table)}",
+                argument="name",
+                value=name,
+            )
         return np.array(table[name])
 
     def truth_of(self, cell: int) -> dict[str, float]:
-        """True parameters in a cell: where they are swept, they differ."""
+        """Return the true parameters in a cell; they differ between cells if they are swept."""
         return self.truths[cell] if self.truths else self.truth
 
     def summary(self, *, within: float = 0.05) -> Summary:
-        """Mean, spread and, where the truth is known, bias and success of each cell.
+        """Return mean, spread and, where the truth is known, bias and success of each cell.
 
         Parameters
         ----------
         within : float
-            A trial succeeds when each parameter is this near to the truth, relatively. Default 0.05,
-            the thesis's acceptance.
-        """
-        return summarise(self, within)
-
-    def to_pandas(self) -> pd.DataFrame:
-        """The table as a data frame, a row a trial.
+            A trial succeeds if the relative error of each parameter is at most this. Default 0.05, as in
+            the thesis.
 
         Raises
         ------
         InputError
-            pandas is not installed: it comes with the extra `jointid[pandas]`.
+            `within` is not above 0.
+        """
+        return summarise(self, within)
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the table as a data frame, one row per trial.
+
+        Raises
+        ------
+        InputError
+            pandas is not installed; the extra `jointid[pandas]` installs it.
         """
         return tables.data_frame(tables.columns(self))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the table to .csv or .parquet, or the study itself to .jsonl, whole or not at all.
+        """Write the table to .csv or .parquet, or the study itself to .jsonl; a failed write changes no file.
 
         Raises
         ------
@@ -122,12 +132,12 @@ class Study:
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Study:
-        """The study of a .jsonl file, whether it was finished or not.
+        """Return the study of a .jsonl file, finished or not.
 
         Raises
         ------
         InputError
-            The file cannot be read, or is no study.
+            The file cannot be read, or is not a study.
         """
         header, rows, _ = study_file.read(require_path("path", path))
         return study_of(header, rows)
@@ -149,7 +159,7 @@ class Study:
 
 
 def study_of(header: Mapping[str, Any], rows: list[Row], seconds: float = 0.0) -> Study:
-    """The study of a header and rows; of more trials than wanted, the first ones."""
+    """Return the study of a header and rows; of more trials than requested, the first ones."""
     wanted = sorted((r for r in rows if r.trial < header["trials"]), key=lambda row: row.place)
     return Study(
         swept=tuple(header["swept"]),
@@ -165,7 +175,7 @@ def study_of(header: Mapping[str, Any], rows: list[Row], seconds: float = 0.0) -
 
 
 def header_of(study: Study, fingerprint: str = "") -> dict[str, Any]:
-    """The first line of a study's file."""
+    """Return the first line of a study's file."""
     return {
         "format": study_file.FORMAT,
         "schema": study_file.SCHEMA,

@@ -1,4 +1,4 @@
-"""A study in a table of one line a cell: mean, spread, bias, success."""
+"""Summary of a study: a table with one line per cell of mean, spread, bias and success."""
 
 from __future__ import annotations
 
@@ -22,26 +22,27 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CellSummary:
-    """What the trials of a cell have in common, and how they differ.
+    """Statistics of the trials of a cell.
 
     Attributes
     ----------
     labels : dict
         The swept settings.
     trials, refused : int
-        Done, and of them refused.
+        Number of trials done, and of those refused.
     reason : str
-        Why the first of them was refused.
+        Why the first of them was refused; empty if none was.
     converged : float
-        Share of the trials that ended as converged.
+        Share of the trials with the status "converged".
     penalty : float
         Median.
     mean, spread : dict of str to float
         Of each parameter over the trials; the spread is the standard deviation [SI].
     bias, scatter : dict of str to float
-        Mean and spread against the truth, as shares of it; empty where it is not known.
+        Mean error and spread, relative to the truth; empty if it is not known.
     success : float or None
-        Share of all trials, refused ones too, with every parameter near enough to the truth.
+        Share of all trials, refused ones included, with every parameter within the relative error of the
+        truth; None if it is not known.
     tracking : dict of str to float
         Medians of the tracking errors [rad].
     """
@@ -68,24 +69,24 @@ class Summary:
     ----------
     cells : tuple of CellSummary
     within : float
-        What counts as success.
+        Largest relative error of a success.
     """
 
     cells: tuple[CellSummary, ...]
     within: float
 
     def asdict(self) -> dict[str, Any]:
-        """For a machine: what is not a number, or not known, is None."""
+        """Return the summary for JSON: None for values that are not finite or not known."""
         cells = [{n: _known(v) for n, v in _record(cell).items()} for cell in self.cells]
         return {"within": self.within, "cells": cells}
 
     def to_pandas(self) -> pd.DataFrame:
-        """One line a cell; a column `NAME_mean`, `NAME_spread`, `NAME_bias`, `NAME_scatter` a parameter.
+        """Return a row per cell; columns `NAME_mean`, `NAME_spread`, `NAME_bias`, `NAME_scatter` per parameter.
 
         Raises
         ------
         InputError
-            pandas is not installed: it comes with the extra `jointid[pandas]`.
+            pandas is not installed; the extra `jointid[pandas]` installs it.
         """
         return data_frame([_record(cell) for cell in self.cells])
 
@@ -98,12 +99,12 @@ class Summary:
         ]
         for cell in self.cells:
             if cell.refused:
-                told = ", ".join(f"{name} {label}" for name, label in cell.labels.items())
-                lines.append(f"{told}: {cell.refused} refused: {cell.reason}")
+                labels = ", ".join(f"{name} {label}" for name, label in cell.labels.items())
+                lines.append(f"{labels}: {cell.refused} refused: {cell.reason}")
         return "\n".join(line.rstrip() for line in lines)
 
     def to_html(self) -> str:
-        """The table of `print`, for a notebook."""
+        """Return the table that `print` shows, as HTML for a notebook."""
         header, body = _texts(self)
         head = "".join(f"<th>{escape(text)}</th>" for text in header)
         rows = (
@@ -121,7 +122,9 @@ def summarise(study: Study, within: float) -> Summary:
         `within` is not positive.
     """
     if isinstance(within, bool) or not isinstance(within, int | float) or not within > 0.0:
-        raise InputError(f"within is {within!r}; a share above 0, such as 0.05, is expected")
+        raise InputError(
+            "a share above 0, such as 0.05, is expected", argument="within", value=within
+        )
     mine: list[list[Row]] = [[] for _ in study.cells]
     for row in study.rows:
         mine[row.cell].append(row)
@@ -167,7 +170,7 @@ def _share(flags: Sequence[bool]) -> float:
 
 
 def _mean(values: np.ndarray[Any, np.dtype[np.float64]]) -> float:
-    """Of equal values, that value: a mean may round it."""
+    """Return the mean; of equal values exactly that value, which a mean may round."""
     return float(values[0] if np.ptp(values) == 0.0 else values.mean())
 
 
@@ -187,7 +190,7 @@ def _record(cell: CellSummary) -> dict[str, Any]:
 
 
 def _texts(summary: Summary) -> tuple[list[str], list[list[str]]]:
-    """Header and lines; a parameter as bias ± scatter [%] where its truth is known, else mean ± spread."""
+    """Return header and lines; a parameter as bias ± scatter [%] if its truth is known, else mean ± spread."""
     cells = summary.cells
     swept = list(cells[0].labels) if cells else []
     names = list(dict.fromkeys(name for cell in cells for name in cell.mean))
@@ -210,7 +213,7 @@ def _texts(summary: Summary) -> tuple[list[str], list[list[str]]]:
 
 
 def _fixed(cells: Sequence[CellSummary], name: str) -> bool:
-    """Whether a parameter has the same value, but for rounding, wherever it was."""
+    """Return whether a parameter has the same value, but for rounding, in all cells."""
     means = [cell.mean[name] for cell in cells if name in cell.mean]
     alike = max(means) - min(means) <= 1e-12 * abs(means[0])
     return alike and not any(cell.spread.get(name, 0.0) > 0.0 for cell in cells)

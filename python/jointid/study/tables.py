@@ -1,4 +1,4 @@
-"""A study as a tidy table: one row a trial, one column a quantity."""
+"""A study as a tidy table: one row per trial, one column per quantity."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def columns(study: Study) -> dict[str, list[Any]]:
-    """All columns: swept settings, the trial, how it ended, and every number it gave."""
+    """Return all columns: swept settings, the trial, its status, and all its numbers."""
     rows = study.rows
     table: dict[str, list[Any]] = {
         name: [study.cells[row.cell][name] for row in rows] for name in study.swept
@@ -41,7 +41,7 @@ def columns(study: Study) -> dict[str, list[Any]]:
 
 
 def data_frame(table: Mapping[str, list[Any]] | list[dict[str, Any]]) -> pd.DataFrame:
-    """A data frame of columns or records.
+    """Return a data frame of columns or records.
 
     Raises
     ------
@@ -52,7 +52,8 @@ def data_frame(table: Mapping[str, list[Any]] | list[dict[str, Any]]) -> pd.Data
         import pandas as pd
     except ModuleNotFoundError as error:
         raise InputError(
-            "a data frame needs pandas; install it with: pip install 'jointid[pandas]'"
+            "a data frame needs the package pandas",
+            remedy="install it with: pip install 'jointid[pandas]'",
         ) from error
     return pd.DataFrame(table)
 
@@ -66,10 +67,17 @@ def save(study: Study, path: Path) -> None:
         Another extension, or the folder does not exist.
     """
     if not path.parent.is_dir():
-        raise InputError(f"{path}: the folder {path.parent} does not exist")
+        raise InputError(
+            f"the folder {path.parent} does not exist",
+            argument="path",
+            value=str(path),
+            remedy="create it first",
+        )
     writers = {".csv": _csv, ".parquet": _parquet, ".jsonl": _lines}
     if path.suffix not in writers:
-        raise InputError(f"{path}: a study is saved as {', '.join(writers)}")
+        raise InputError(
+            f"a study is saved as {', '.join(writers)}", argument="path", value=str(path)
+        )
     write_whole(path, writers[path.suffix](study))
 
 
@@ -97,7 +105,8 @@ def _parquet(study: Study) -> bytes:
         import pyarrow.parquet as pq
     except ModuleNotFoundError as error:
         raise InputError(
-            "Parquet files need pyarrow; install it with: pip install 'jointid[parquet]'"
+            "Parquet files need the package pyarrow",
+            remedy="install it with: pip install 'jointid[parquet]'",
         ) from error
     sink = pa.BufferOutputStream()
     mixed = {name: _one_kind(values) for name, values in columns(study).items()}
@@ -106,7 +115,7 @@ def _parquet(study: Study) -> bytes:
 
 
 def _one_kind(values: list[Any]) -> list[Any]:
-    """Values of one type: a column of labels that mixes them becomes text."""
+    """Return values of one type: a column of labels of several types becomes text."""
     kinds = {type(value) for value in values if value is not None}
     if kinds <= {int, float} or len(kinds) < 2:
         return values

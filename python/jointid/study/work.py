@@ -1,4 +1,4 @@
-"""The work of a study: which trials there are, in which order, in which parts."""
+"""The work of a study: its trials, their order, and the chunks in which an executor gets them."""
 
 from __future__ import annotations
 
@@ -15,27 +15,31 @@ from jointid.study.grid import Cell, is_option
 
 Place = tuple[int, int]  # cell and trial
 
-# What a chunk costs beside the candidates of its searches, in candidates (0.1 µs each).
+# Cost of a trial besides the candidates of its search, in candidates (0.1 µs each).
 _TRIAL, _SIMULATION = 10_000, 100_000
 _CHUNK = 2_000_000
-_PER_SAMPLE = 13  # a long recording is not sent, or prepared, for a little work
+_PER_SAMPLE = (
+    13  # chunks are larger for long recordings, because sending and preparing them takes longer
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Work:
-    """What is to be done, but for which trials: it goes to the machine that does them.
+    """Everything that trials need; it is sent to the process that runs them.
 
     Attributes
     ----------
     subject : tuple of Recording, or Scenario
     joint : Joint or None
     common : dict of str to object
-        Arguments of `prepare`, alike in all cells.
-    cells : tuple of Cell
+        Arguments of `prepare`, the same in all cells.
     search : Search
-        Trial t has the seed of it + t.
+        Trial t adds t to its seed.
+    cells : tuple of Cell
     standard_errors, tracking : bool
+        Whether rows have them.
     threads : int
+        0: all.
     """
 
     subject: tuple[Recording, ...] | Scenario
@@ -49,11 +53,11 @@ class Work:
 
     @property
     def seed(self) -> int:
-        """Of the first trial."""
+        """Seed of the first trial."""
         return self.search.seed
 
     def ordered(self, trials: int, done: Iterable[Place]) -> list[Place]:
-        """What is left to do, with what can share a recording or a penalty side by side."""
+        """Return the remaining trials; those that share a recording or a penalty follow each other."""
         left = set(itertools.product(range(len(self.cells)), range(trials))) - set(done)
         simulated = isinstance(self.subject, Scenario)
 
@@ -65,18 +69,18 @@ class Work:
         return sorted(left, key=key)
 
     def world(self, cell: int) -> str:
-        """What the cell changes in the scenario, as a key."""
+        """Return the cell's settings of the scenario, as a key."""
         labels = self.cells[cell].labels
         return repr([(n, label) for n, label in labels.items() if not is_option(n)])
 
     def analysis(self, cell: int) -> str:
-        """What the cell changes in the penalty or the method, as a key."""
+        """Return the cell's settings of the penalty and the method, as a key."""
         labels = self.cells[cell].labels
         mine = [n for n in labels if is_option(n) and n.partition(".")[0] != "ga"]
         return repr([(n, labels[n]) for n in mine])
 
     def chunks(self, places: Sequence[Place]) -> Iterator[tuple[Place, ...]]:
-        """Parts of the work that each take some tenths of a second, and at least a trial."""
+        """Yield parts of the work that each take some tenths of a second, and at least one trial."""
         limit = _CHUNK
         if not isinstance(self.subject, Scenario):
             limit = max(limit, _PER_SAMPLE * sum(len(run) for run in self.subject))

@@ -1,4 +1,4 @@
-"""How sure a least-squares answer is: covariance, correlations and the direction the data know least about."""
+"""Uncertainty of a least-squares estimate: covariance, correlations and the least determined direction."""
 
 from dataclasses import dataclass, replace
 
@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Covariance:
-    """Second-order picture of the penalty at its minimum.
+    """Covariance and related numbers of an estimate.
 
     Attributes
     ----------
@@ -22,12 +22,12 @@ class Covariance:
     stderr : ndarray, shape (p,)
         Standard errors.
     correlation : ndarray, shape (p, p)
-        Correlations after centring: an offset is taken where the signal that its gain multiplies has
-        its mean, because the raw correlation depends on the sensor's arbitrary zero.
+        Correlations after centring: the offset is referred to the mean of the signal that the gain
+        multiplies, because the raw correlation depends on the sensor's arbitrary zero.
     condition : float
         Condition number of the centred Jacobian with columns of unit norm.
     weakest : ndarray, shape (p,)
-        Unit vector, in those scaled columns, along which the data say least.
+        Unit vector, in those scaled columns, of the least determined direction.
     """
 
     matrix: Array
@@ -38,7 +38,7 @@ class Covariance:
 
 
 class Triangle:
-    """All that least squares asks of a tall matrix: R of its QR decomposition, at the cost of one pass.
+    """R of the QR decomposition of a tall matrix, computed in one pass: all that least squares needs.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class Triangle:
         self.matrix: Array = _core.triangle(matrix, threads=threads)
 
     def solve(self, columns: list[int], target: int, rcond: float) -> tuple[Array, float]:
-        """Coefficients of some columns, each scaled to unit norm, for another one; the norm of what is left."""
+        """Return the least-squares coefficients of some columns for another one, and the norm of the residual."""
         regressors, wanted = self.matrix[:, columns], self.matrix[:, target]
         norms = np.linalg.norm(regressors, axis=0)
         scale = np.where(norms > 0.0, norms, 1.0)
@@ -66,7 +66,7 @@ def parameter_covariance(
     triangle: Array | None = None,
     threads: int = 0,
 ) -> Covariance:
-    """Covariance of a least-squares estimate, robust to autocorrelated residuals.
+    """Return the covariance of a least-squares estimate, robust to autocorrelated residuals.
 
     Parameters
     ----------
@@ -77,14 +77,14 @@ def parameter_covariance(
     centre : (gain, offset, mean) or None
         Columns of a gain and of its offset, and the mean of the signal that the gain multiplies.
     triangle : ndarray, shape (rows, p), optional
-        A triangle of the Jacobian, if it is known.
+        Triangle of the Jacobian. Default: computed here.
 
     Notes
     -----
-    The variance of each parameter is the larger of the classical one and of Newey and West's
-    sandwich, prewhitened: residuals of a model that is not perfect drift slowly, and the classical one
-    flatters the estimate then. Coverage is tested in
-    tests/identification/test_covariance.py. Directions the data leave free get an infinite variance.
+    The variance of each parameter is the larger of the classical one and the prewhitened sandwich
+    estimate of Newey and West: the residuals of an imperfect model drift slowly, and the classical
+    variance is too small then. tests/identification/test_covariance.py tests the coverage. Directions
+    that the data do not determine get an infinite variance.
     """
     rows, count = jacobian.shape
     if count == 0:  # every parameter is fixed or ended on a bound
@@ -110,12 +110,12 @@ def parameter_covariance(
     robust = _core.robust_variance(jacobian, residual, 1.0 / scale, pseudo, threads=threads)
     robust *= rows / freedom
     chance = np.diag(classical)
-    # No variance by chance, as of a column that is nothing: there is nothing to stretch either.
+    # A column of zeros has no variance by chance, and nothing to stretch.
     ratio = np.divide(robust, chance, out=np.ones_like(robust), where=chance > 1e-300)
     stretch = np.sqrt(np.maximum(ratio, 1.0))
     matrix = classical * np.outer(stretch, stretch) / np.outer(scale, scale)
     unknown = (norms == 0.0) | (np.abs(directions[~known]).max(axis=0, initial=0.0) > 1e-3)
-    if rows <= count:  # nothing is left to tell noise from model
+    if rows <= count:  # no degree of freedom is left to estimate the noise
         unknown[:] = True
     matrix[unknown, unknown] = np.inf
 
@@ -126,7 +126,7 @@ def parameter_covariance(
     centred_norms = np.linalg.norm(centred, axis=0)
     centred /= np.where(centred_norms > 0.0, centred_norms, 1.0)
     _, values, vectors = np.linalg.svd(centred, full_matrices=False)
-    # A floor, so that two columns that are one come out as fully correlated.
+    # A floor, so that two identical columns are fully correlated.
     inverse = 1.0 / np.maximum(values, 1e-12 * values[0] + 1e-300)
     spread = (vectors.T * inverse**2) @ vectors
     deviation = np.sqrt(np.diag(spread))
@@ -142,12 +142,12 @@ def parameter_covariance(
 
 
 def widened(spread: Covariance, systematic: Array) -> Covariance:
-    """The covariance with errors that are not of chance added to each parameter's own; correlations stay.
+    """Return the covariance with systematic errors added to each parameter's own; correlations stay.
 
     Parameters
     ----------
     systematic : ndarray, shape (p,)
-        Their sizes, as standard errors.
+        Sizes of the systematic errors, as standard errors.
     """
     known = np.isfinite(spread.stderr) & (spread.stderr > 0.0)
     chance = np.where(known, spread.stderr, 1.0)

@@ -1,4 +1,4 @@
-"""What follows from the minimum of the penalty: what was free, parameters with errors, statistics, the joint."""
+"""Results at the minimum of the penalty: free parameters, errors, statistics of the residuals, the joint."""
 
 from __future__ import annotations
 
@@ -23,17 +23,25 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Freedom:
-    """Which parameters were really free, and which ended on a bound."""
+    """Free parameters, and those that ended on a bound.
+
+    Attributes
+    ----------
+    indices : tuple of int
+        Of the parameters that vary and that no bound holds.
+    at_bound : tuple of str or None
+        "min" or "max" for each parameter that a bound holds.
+    """
 
     indices: tuple[int, ...]
     at_bound: tuple[str | None, ...]
 
 
 def freedom_of(domain: SearchDomain, best: Array, gradient: Array, alone: Array) -> Freedom:
-    """Which parameters a bound holds: they lie on it, and the penalty would fall beyond it.
+    """Find the parameters that a bound holds: they lie on it, and the penalty decreases beyond it.
 
-    On it means nearer than a thousandth of what the parameter could move by noise alone, not a share
-    of the domain: under very wide bounds a small right value is no bound.
+    A parameter lies on a bound if it is nearer than a thousandth of its error by noise alone; a share of
+    the domain would take a small, correct value under very wide bounds for one on its bound.
     """
     at_bound: list[str | None] = []
     free = []
@@ -46,7 +54,7 @@ def freedom_of(domain: SearchDomain, best: Array, gradient: Array, alone: Array)
         elif high > low and high - best[index] <= near and gradient[index] <= 0.0:
             bound = "max"
         at_bound.append(bound)
-        # On its bound a parameter is not free to vary: an error would not be a standard error.
+        # A parameter on its bound cannot vary both ways: it has no standard error.
         if high > low and bound is None:
             free.append(index)
     return Freedom(indices=tuple(free), at_bound=tuple(at_bound))
@@ -55,7 +63,7 @@ def freedom_of(domain: SearchDomain, best: Array, gradient: Array, alone: Array)
 def statistics_of(
     problem: Problem, penalty: _core.Penalty, table: WindowTable
 ) -> ResidualStatistics:
-    """The window residuals in numbers."""
+    """Return statistics of the window residuals."""
     residual = table.residual
     intervals = penalty.total_samples - len(problem.recordings)
     return ResidualStatistics(
@@ -72,14 +80,14 @@ def statistics_of(
     )
 
 
-def _facts(penalty: _core.Penalty) -> dict[str, _core.Term | _core.Shape]:
-    """Name to term or shape, a shape behind the first term that it bends."""
+def _terms_and_shapes(penalty: _core.Penalty) -> dict[str, _core.Term | _core.Shape]:
+    """Return terms and shapes by name; a shape follows the first term that contains it."""
     shapes = {shape.name: shape for shape in _core.shapes()}
-    facts: dict[str, _core.Term | _core.Shape] = {}
+    known: dict[str, _core.Term | _core.Shape] = {}
     for name, term in zip(penalty.names, penalty.terms, strict=False):
-        facts[name] = term
-        facts.update({shape: shapes[shape] for shape in term.shapes if shape not in facts})
-    return facts
+        known[name] = term
+        known.update({shape: shapes[shape] for shape in term.shapes if shape not in known})
+    return known
 
 
 def parameters_of(
@@ -92,19 +100,19 @@ def parameters_of(
     windows: int,
     shifts: tuple[Array | None, Array | None],
 ) -> dict[str, ParameterEstimate]:
-    """Every parameter of the penalty by name, with its error, interval and bounds."""
+    """Return every parameter of the penalty by name, with its error, interval and bounds."""
     factor = quantile(0.975, max(1, windows - len(freedom.indices)))
     errors = dict(zip(freedom.indices, spread.stderr.tolist(), strict=True))
     prismatic = problem.recordings[0].kind == "prismatic"
     result = {}
-    for name, fact in _facts(penalty).items():
+    for name, described in _terms_and_shapes(penalty).items():
         i = domain.names.index(name)
         value, error, vary = float(best[i]), errors.get(i), not domain.fixed(name)
         halved, doubled = (None if s is None or not vary else float(s[i]) for s in shifts)
         result[name] = ParameterEstimate(
             name=name,
-            meaning=fact.meaning,
-            unit=fact.unit_prismatic if prismatic else fact.unit,
+            meaning=described.meaning,
+            unit=described.unit_prismatic if prismatic else described.unit,
             value=value,
             stderr=error,
             interval=None if error is None else (value - factor * error, value + factor * error),
@@ -119,7 +127,7 @@ def parameters_of(
 
 
 def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Joint:
-    """The joint with the estimated values in its parameter table; what it knew for a fact stays a fact."""
+    """Return the joint with the estimated values in its parameter table; its known values stay as they are."""
     choice, recording = problem.choice, problem.recordings[0]
     base = problem.joint
     if base is None:
@@ -142,6 +150,6 @@ def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Join
         table[name] = Parameter(name=name, value=found.value, min=low, max=high, vary=vary)
     inertia = parameters.get("inertia")
     if inertia is not None and inertia.vary and base.reflected_inertia is not None:
-        # What was found takes the place of what was believed.
+        # The estimate replaces the joint's own value.
         base = base.replace(inertia=inertia.value, rotor_inertia=None)
     return base.replace(parameters=table, model=choice.model)

@@ -1,4 +1,4 @@
-"""What chance does not explain of an error: the choice of windows, and the instant at which a sensor is sampled."""
+"""Systematic errors: of the choice of windows, and of the instant at which a sensor is sampled."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ def systematic_errors(
     columns: Array,
     shifts: tuple[Array | None, Array | None],
 ) -> Array:
-    """Size of the errors that remain however long the recording is, as standard errors.
+    """Return the size of errors that do not decrease with the recording's length, as standard errors.
 
     Parameters
     ----------
     free : list of int
-        The parameters that were free, and the columns of `jacobian`.
+        Free parameters: the columns of `jacobian`.
     jacobian : ndarray, shape (windows, p)
         Derivatives of the residuals at `best`.
     columns : ndarray, shape (windows, coefficients)
         The penalty's columns at `best`.
     shifts : tuple of ndarray or None
-        How each parameter moves when the windows are halved and doubled.
+        Change of each parameter when the windows are halved and doubled.
 
     Returns
     -------
@@ -48,11 +48,11 @@ def systematic_errors(
 def _of_sampling(
     problem: Problem, penalty: _core.Penalty, best: Array, jacobian: Array, columns: Array
 ) -> Array:
-    """Effect of not knowing on which side of a command's step the sensor was sampled.
+    """Return the effect of the unknown instant of the sensor's sample: before or after a command's step.
 
     A held torque steps at the samples. Its step accelerates the drive and the link together, and the
-    link's share of it steps in the sensor. Sampled before the step rather than in its middle, the
-    reading lacks half of that share at every sample; what is smooth is not concerned.
+    link's share of it is a step in the sensor's reading. A reading sampled before the step, not in its
+    middle, lacks half of that share at every sample. Smooth signals are not affected.
     """
     nothing = np.zeros(jacobian.shape[1])
     names = list(penalty.names)

@@ -1,1 +1,1 @@
-"""Where a search may look, and the searches."""
+"""Search domains and the searches in them."""

@@ -1,4 +1,4 @@
-"""Which form of the penalty a search works on, and the direct sum's word on its answer."""
+"""The form of the penalty that a search evaluates, and the check of its result against the direct sum."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from jointid.problem.inner_products import inner
 
 Array = NDArray[np.float64]
 
-# Beyond, the compressed penalty is not what it says: of the penalty, and of the target's square.
+# Largest error of the compressed penalty: as a share of the penalty, and of the target's square.
 _RELATIVE, _ABSOLUTE = 1e-9, 1e-13
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
-    """Where a search ended, and how; generations and evaluations are those before a polish."""
+    """The result of a search; generations and evaluations are those before the polish."""
 
     best: Array
     convergence: Convergence | None
@@ -32,14 +32,14 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Engine:
-    """The penalty to search on: compressed where that is exact, else the direct sum.
+    """The penalty that a search evaluates: compressed if that is exact, else the direct sum.
 
     Attributes
     ----------
     direct : Penalty
-        The sum over all samples, which has the last word.
+        The sum over all samples; every result is verified against it.
     form : PenaltyFunction
-        What the search evaluates.
+        The penalty that the search evaluates.
     reason : str
         Why compression failed; empty otherwise.
     threads : int
@@ -53,9 +53,9 @@ class Engine:
 
     @classmethod
     def of(cls, penalty: _core.Penalty, domain: SearchDomain, threads: int, method: str) -> Engine:
-        """Compress the penalty within the domain's shapes, if that pays and can be done to rounding."""
+        """Return an engine; it compresses the penalty if that saves time and is exact but for rounding."""
         if method == "separable" and _free_shapes(penalty, domain) > 1:
-            # A few hundred sums over the samples; the table of two shapes takes thousands.
+            # The search takes a few hundred sums over the samples, the table of two shapes thousands.
             return cls(direct=penalty, form=penalty, reason="", threads=threads)
         compressed = _core.CompressedPenalty(penalty, domain.lower, domain.upper, threads=threads)
         if compressed.exact:
@@ -63,9 +63,9 @@ class Engine:
         return cls(direct=penalty, form=penalty, reason=compressed.reason, threads=threads)
 
     def polished(self, domain: SearchDomain, start: Array) -> tuple[Array, int, bool]:
-        """The optimum over the shapes' whole ranges and near a start, the steps it took, and whether it settled.
+        """Return the optimum over the shapes' ranges and near a start, the number of steps, and whether it converged.
 
-        Where one shape is left to the direct sum, near the start only.
+        With one free shape and the direct sum: near the start only.
         """
         shapes = _free_shapes(self.direct, domain)
         if self.form is self.direct and shapes < 2:
@@ -76,12 +76,12 @@ class Engine:
         )
         if shapes < 2:
             return near.best, near.evaluations, True
-        # In several shapes the compressed residuals bend too much for the last digits.
+        # With several shapes the compressed residuals are too nonlinear for the last digits.
         last = _core.polish(self.direct, domain.lower, domain.upper, near.best)
         return last.best, near.evaluations + last.iterations, last.converged
 
     def verified(self, outcome: Outcome, domain: SearchDomain) -> Outcome:
-        """The outcome if the direct sum agrees with it, else a polish by the direct sum that says so."""
+        """Verify an outcome against the direct sum; where they disagree, return a polish by the direct sum."""
         if self.form is self.direct:
             because = f", by the direct sum because {self.reason}" if self.reason else ""
             return replace(outcome, message=outcome.message + because)
@@ -94,8 +94,8 @@ class Engine:
         if abs(self.form(best) - expected) <= _RELATIVE * expected + _ABSOLUTE * size:
             return outcome
         found = _core.polish(direct, domain.lower, domain.upper, best)
-        told = f"{outcome.message}, and a polish by the direct sum, which did not agree"
-        return replace(outcome, best=found.best, message=told)
+        message = f"{outcome.message}, and a polish by the direct sum, which did not agree"
+        return replace(outcome, best=found.best, message=message)
 
 
 def _free_shapes(penalty: _core.Penalty, domain: SearchDomain) -> int:

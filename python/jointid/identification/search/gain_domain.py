@@ -1,4 +1,4 @@
-"""Where to look for a sensor's gain that nobody bounds: its sign and size, by least squares with either sign."""
+"""Bounds of a sensor's gain without stated bounds: its sign and size, by least squares with either sign."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.errors import InputError
 
-# A gain lies within this factor of what least squares finds: in a motion that is mostly friction, with
-# none of its shapes quite right, that may be far off ...
+# A gain lies within this factor of the least-squares value, which may be far off in a motion that is
+# mostly friction, where no shape is quite right ...
 _ROOM = 100.0
-# ... or between these shares of the gain at which the sensor would make up all of the torque's swing.
+# ... or between these multiples of the gain at which the sensor's swing equals the torque's.
 _LEAST, _MOST = 0.001, 10.0
-# Wrong signs were seen up to a contrast of 1.023 (motions of 2 and 5 degrees, mostly friction).
+# Wrong signs occurred up to a contrast of 1.023 (motions of 2 and 5 degrees, mostly friction).
 _CLEAR = 1.03
 
 Array = NDArray[np.float64]
@@ -29,14 +29,14 @@ class GainGuess:
     Attributes
     ----------
     value : float
-        With its sign; 0 when no gain of either sign explains anything.
+        With its sign; 0 if no gain of either sign improves the fit.
     sign : float
         1 or -1.
     swing : float
-        The gain at which the sensor's swing would be the torque's.
+        The gain at which the sensor's swing equals the torque's.
     contrast : float
-        How much worse the best gain of the other sign fits: the ratio of the misfits; infinite where
-        only one sign is allowed.
+        Misfit of the best gain of the other sign over the misfit of this one; infinite if only one sign
+        is allowed.
     """
 
     value: float
@@ -46,12 +46,12 @@ class GainGuess:
 
     @property
     def clear(self) -> bool:
-        """Whether the recording tells the sign."""
+        """Whether the recording determines the sign."""
         return self.contrast > _CLEAR
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """Lower and upper bound; of one sign."""
+        """Lower and upper bound, both of the same sign."""
         size = abs(self.value) if self.value != 0.0 else self.swing
         low = min(size / _ROOM, _LEAST * self.swing)
         high = max(size * _ROOM, _MOST * self.swing)
@@ -59,7 +59,7 @@ class GainGuess:
 
 
 def around(value: float) -> tuple[float, float]:
-    """Bounds about a gain that the joint file states without any."""
+    """Return bounds around a gain that is stated without bounds."""
     ends = sorted((value / _ROOM, value * _ROOM))
     return ends[0], ends[1]
 
@@ -70,11 +70,11 @@ def guess_gain(
     fixed: Mapping[str, float],
     signs: tuple[float, ...] = (1.0, -1.0),
 ) -> GainGuess:
-    """The gain that fits best, of either sign, with all that rubs rubbing.
+    """Return the gain of either sign that fits best with friction coefficients of 0 or more.
 
     A sensor's zero and polarity are arbitrary, so neither the raw product of reading and torque nor the
-    size of the reading says anything; and a small motion hides a gain of the right sign behind friction
-    of the wrong one, unless friction is kept from being negative.
+    size of the reading determines the gain. In a small motion a gain of the wrong sign fits with negative
+    friction, which is therefore excluded.
 
     Parameters
     ----------
@@ -83,9 +83,9 @@ def guess_gain(
     columns : iterable of ndarray, shape (windows, coefficients)
         The terms' integrals, for some shapes of the Stribeck term.
     fixed : mapping of str to float
-        Coefficients that are known.
+        Values of the fixed coefficients.
     signs : tuple of float
-        That a bound allows. Default: both.
+        Signs that the stated bounds allow. Default: both.
 
     Raises
     ------
@@ -116,7 +116,10 @@ def _swing(penalty: _core.Penalty, columns: Array) -> float:
     spread = float(np.std(reading))
     if spread <= 1e-9 * max(abs(mean), 1e-300):
         raise InputError(
-            "the sensor's reading does not vary: its gain cannot be identified; check the column, or drop the sensor"
+            "its reading does not vary, so its gain cannot be identified",
+            argument="sensor",
+            place="recording",
+            remedy="check the column, or leave the sensor out",
         )
     return float(np.std(penalty.target / penalty.usable_duration)) / spread
 
@@ -124,7 +127,7 @@ def _swing(penalty: _core.Penalty, columns: Array) -> float:
 def _fitted(
     penalty: _core.Penalty, columns: Array, fixed: Mapping[str, float], sign: float
 ) -> tuple[float, float]:
-    """Misfit and gain, friction not negative, the gain of this sign (0: of none)."""
+    """Return misfit and gain; friction is not negative, the gain has this sign or is 0."""
     from scipy.optimize import nnls
 
     names = penalty.names[: penalty.coefficients]
@@ -151,7 +154,7 @@ def _fitted(
     sizes = np.linalg.norm(whole, axis=0)
     sizes[sizes == 0.0] = 1.0
     triangle: Array = np.asarray(np.linalg.qr(whole / sizes, mode="r"))
-    rest = triangle[len(free) :, len(free) :]  # what the terms of any sign leave
+    rest = triangle[len(free) :, len(free) :]  # without the terms of either sign
     solution, misfit = nnls(rest[:, :-1], rest[:, -1])
     lead = float(sign * solution[0] * sizes[-1] / sizes[len(free)])
     if lead == 0.0:

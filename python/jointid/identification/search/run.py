@@ -1,4 +1,4 @@
-"""Running a search over the penalty: genetic, random or separable; checkpoints of a long one."""
+"""Run a search for the minimum of the penalty: genetic, random or separable; checkpoints of long searches."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ Array = NDArray[np.float64]
 
 
 def run_search(search: Search, penalty: _core.Penalty, domain: SearchDomain) -> Outcome:
-    """Search.
+    """Search for the minimum of a penalty in a domain.
 
     Raises
     ------
     InputError
-        A checkpoint that does not fit.
+        A checkpoint that cannot be read, or of another search.
     KeyboardInterrupt
         Ctrl-C.
     """
@@ -40,16 +40,16 @@ def run_search(search: Search, penalty: _core.Penalty, domain: SearchDomain) -> 
 
 
 def separable(search: Search, engine: Engine, domain: SearchDomain) -> Outcome:
-    """The outcome of the search by elimination."""
+    """Search by elimination of the linear parameters, and return the verified outcome."""
     found = _core.minimise_separable(
         engine.form, domain.lower, domain.upper, threads=search.threads
     )
-    told = f"separable optimum after {found.evaluations} shapes"
+
     outcome = Outcome(
         best=found.best,
         convergence=None,
         status="converged",
-        message=told,
+        message=f"separable optimum after {found.evaluations} shapes",
         evaluations=found.evaluations,
     )
     return engine.verified(outcome, domain)
@@ -62,13 +62,13 @@ def concluded(
     result: _core.GaResult | _core.TrialResult,
     generations: int,
 ) -> Outcome:
-    """Where a search by populations ended: polished if it is to be, and verified."""
-    best, status, told = _finished(search, engine, domain, result, generations)
+    """Return the verified outcome of a genetic or random search, polished if the settings ask for it."""
+    best, status, message = _finished(search, engine, domain, result, generations)
     outcome = Outcome(
         best=best,
         convergence=None,
         status=status,
-        message=told,
+        message=message,
         generations=generations,
         evaluations=result.evaluations,
     )
@@ -88,6 +88,13 @@ def _random(search: Search, engine: Engine, domain: SearchDomain) -> _core.GaRes
 
 
 def _genetic(search: Search, engine: Engine, domain: SearchDomain) -> _core.GaResult:
+    if search.checkpoint is not None and not Path(search.checkpoint).parent.is_dir():
+        raise InputError(
+            f"the folder {Path(search.checkpoint).parent} does not exist",
+            argument="checkpoint",
+            value=str(search.checkpoint),
+            remedy="create it first",
+        )
     state = None if search.resume is None else _read_state(Path(search.resume))
     try:
         result = _core.minimise_genetic(
@@ -104,7 +111,9 @@ def _genetic(search: Search, engine: Engine, domain: SearchDomain) -> _core.GaRe
             else functools.partial(_write_state, search),
         )
     except ValueError as error:
-        raise InputError(str(error)) from error
+        if state is None or isinstance(error, InputError):
+            raise
+        raise InputError(str(error), place=str(search.resume)) from error
     if search.checkpoint is not None and result.state is not None:
         _write_state(search, result.state)
     return result
@@ -122,20 +131,20 @@ def _finished(
     result: _core.GaResult | _core.TrialResult,
     generations: int,
 ) -> tuple[Array, str, str]:
-    """Best parameters, status and message after the polish, if there is one."""
-    told = f"{generations} generations, {result.evaluations} penalties"
+    """Return best parameters, status and message after the polish, if there is one."""
+    effort = f"{generations} generations, {result.evaluations} penalties"
     polish = search.genetic.polish and search.method == "ga"
     if result.stop == _core.Stop.observer:
-        return result.best, "stopped", f"stopped by the callback after {told}"
+        return result.best, "stopped", f"stopped by the callback after {effort}"
     if polish:
-        best, steps, settled = engine.polished(domain, result.best)
-        told = f"{told}, then {steps} polish steps"
-        if not settled:
-            return best, "stopped", f"the polish did not settle after {told}"
-        return best, "converged", told
+        best, steps, converged = engine.polished(domain, result.best)
+        effort = f"{effort}, then {steps} polish steps"
+        if not converged:
+            return best, "stopped", f"the polish did not converge after {effort}"
+        return best, "converged", effort
     if result.stop == _core.Stop.generations:
-        return result.best, "stopped", f"used up its {told} without a polish"
-    return result.best, "converged", told
+        return result.best, "stopped", f"reached its limit of {effort} without a polish"
+    return result.best, "converged", effort
 
 
 def _convergence(result: _core.GaResult) -> Convergence:
@@ -157,6 +166,8 @@ def _read_state(path: Path) -> _core.GaState:
     try:
         return _core.GaState.from_bytes(path.read_bytes())
     except OSError as error:
-        raise InputError(f"{path}: the checkpoint cannot be read: {error.strerror}") from error
+        raise InputError(
+            f"the checkpoint cannot be read: {error.strerror}", argument="resume", place=str(path)
+        ) from error
     except ValueError as error:
-        raise InputError(f"{path}: {error}") from error
+        raise InputError(str(error), argument="resume", place=str(path)) from error

@@ -1,4 +1,4 @@
-"""How to search: method, budget, seed, and where a long search keeps its state."""
+"""The settings of a search: method, budget, seed, checkpoint."""
 
 from __future__ import annotations
 
@@ -27,24 +27,24 @@ PRESETS: Mapping[str, Callable[[], _core.GaOptions]] = MappingProxyType(
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """How to search for the minimum of the penalty.
+    """Settings of the search for the minimum of the penalty.
 
     Parameters
     ----------
     method : {"ga", "separable", "random"}
-        "ga" (default): genetic algorithm, then a local polish. "separable": linear parameters eliminated
-        exactly, a search over the shapes alone. "random": random search with the genetic algorithm's
-        budget and no polish, for comparison.
+        "ga" (default): genetic algorithm, then a local polish. "separable": the linear parameters are
+        eliminated exactly and only the shapes are searched. "random": random search with the genetic
+        algorithm's budget and no polish, for comparison.
     ga : GaOptions or {"default", "thesis", "thesis_code"}
         Settings of the genetic algorithm. Default "default".
     seed : int
-        Same seed, same bits, whatever `threads` is. Default 0.
+        The same seed gives the same bits for any number of threads. Default 0.
     threads : int
         0 (default): all.
     callback : callable, optional
-        Called with each `Generation`; returning True stops the search. Not with "separable".
+        Called with each `Generation`; returning True stops the search. "separable" does not call it.
     checkpoint : path, optional
-        The genetic search's state is kept in this file, written whole, every 50 generations and at the end.
+        File for the state of the genetic search; it is replaced every 50 generations and at the end.
     resume : path, optional
         A checkpoint to continue from; the result has the same bits as an uninterrupted search.
 
@@ -86,7 +86,7 @@ class Search:
                 require_path(name, getattr(self, name))
                 if self.method != "ga":
                     raise InputError(
-                        "checkpoint and resume go with the method ga",
+                        "only the method ga has a checkpoint to write or to resume",
                         argument="method",
                         value=self.method,
                     )
@@ -95,13 +95,13 @@ class Search:
 
     @classmethod
     def of(cls, value: object, *, method: str = "ga") -> Search:
-        """Return a search from whatever states one: a search, its method's name, None.
+        """Return a search from a search, a method's name, or None.
 
         Parameters
         ----------
         value : Search, str or None
         method : str
-            Where nothing is stated. Default "ga".
+            The method for None. Default "ga".
 
         Raises
         ------
@@ -120,5 +120,5 @@ class Search:
 
     @property
     def genetic(self) -> _core.GaOptions:
-        """Settings of the genetic algorithm, a preset's name resolved."""
+        """Settings of the genetic algorithm; a preset's settings if `ga` is its name."""
         return PRESETS[self.ga]() if isinstance(self.ga, str) else self.ga

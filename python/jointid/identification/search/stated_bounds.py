@@ -1,0 +1,73 @@
+"""Bounds and fixed values of parameters that the joint or the call states."""
+
+from collections.abc import Mapping
+
+from jointid.base.errors import InputError
+from jointid.joint.checks import check_mapping
+from jointid.joint.joint import Joint
+from jointid.joint.parameters import Parameter, merge
+
+
+def parameter_bounds(
+    names: tuple[str, ...],
+    joint: Joint | None,
+    changes: Mapping[str, float | Mapping[str, object] | Parameter] | None,
+) -> dict[str, Parameter]:
+    """Return what joint and call state of the parameters `names`, and of others that the joint has.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Parameters of the identification.
+    joint : Joint or None
+    changes : mapping or None
+        Argument `parameters` of the call; it overrides the joint.
+
+    Raises
+    ------
+    InputError
+        The call names a parameter that is not among them, or bounds that contradict each other.
+    """
+    if changes is not None:
+        check_mapping("", "parameters", changes)
+    table = merge(_known_values(joint), joint.parameters if joint is not None else {})
+    table = merge(
+        table, {name: _freed(table, name, entry) for name, entry in (changes or {}).items()}
+    )
+    for name in changes or {}:
+        if name not in names and not any(other.startswith(f"{name}[") for other in names):
+            raise InputError(
+                f"it is not part of this identification; its parameters are {', '.join(names)}",
+                argument=name,
+                place="parameters",
+            )
+    return table
+
+
+def _known_values(joint: Joint | None) -> dict[str, Parameter]:
+    """Return parameters that the joint's data fix: reflected inertia, and gravity when it is known."""
+    values: dict[str, Parameter] = {}
+    if joint is None:
+        return values
+    if joint.reflected_inertia is not None:
+        values["inertia"] = Parameter(name="inertia", value=joint.reflected_inertia, vary=False)
+    if joint.model.resolved.gravity == "known":
+        gravity = joint.gravity_coefficients
+        values["gravity_cos"] = Parameter(name="gravity_cos", value=gravity.cos, vary=False)
+        values["gravity_sin"] = Parameter(name="gravity_sin", value=gravity.sin, vary=False)
+    return values
+
+
+def _freed(
+    table: Mapping[str, Parameter], name: str, entry: float | Mapping[str, object] | Parameter
+) -> float | Mapping[str, object] | Parameter:
+    """Return a call's entry; bounds for a parameter that the joint fixes make it free."""
+    fixed = name in table and not table[name].vary
+    if (
+        fixed
+        and isinstance(entry, Mapping)
+        and {"min", "max"} & entry.keys()
+        and "vary" not in entry
+    ):
+        return {"value": None, **entry, "vary": True}
+    return entry

@@ -1,0 +1,83 @@
+"""Checks of a sweep's arguments, and the work that they define."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from jointid.base.errors import InputError
+from jointid.identification.prepared import require_joint
+from jointid.identification.search.search import Search
+from jointid.joint.joint import Joint
+from jointid.joint.model import Model
+from jointid.problem.problem import listed
+from jointid.recording.recording import Recording
+from jointid.simulation.scenario import Scenario
+from jointid.study.grid import cells_of
+from jointid.study.work import Work
+
+
+def _checked(search: Search) -> Search:
+    """Return the search of a sweep; fields that belong to a single run are refused."""
+    for name in ("callback", "checkpoint", "resume"):
+        if getattr(search, name) is not None:
+            raise InputError(
+                "a sweep has its own callback and its own file",
+                argument=f"search.{name}",
+                remedy="leave it out of the search",
+            )
+    return search
+
+
+def work_of(
+    subject: Recording | Sequence[Recording] | Scenario,
+    joint: Joint | None,
+    grid: Mapping[str, Any] | None,
+    search: Search,
+    common: dict[str, Any],
+    standard_errors: bool,
+    tracking: bool,
+) -> Work:
+    """Return the work of a sweep's arguments.
+
+    Parameters
+    ----------
+    common : dict of str to object
+        Arguments of `prepare` for all cells.
+
+    Others are those of `sweep`.
+
+    Raises
+    ------
+    InputError
+        An argument, or a value of the grid, that cannot be used with any recording.
+    """
+    search = _checked(search)
+    for name, flag in (("standard_errors", standard_errors), ("tracking", tracking)):
+        if not isinstance(flag, bool):
+            raise InputError("true or false is expected", argument=name, value=flag)
+    require_joint(joint)
+    scenario = subject if isinstance(subject, Scenario) else None
+    if tracking:
+        if scenario is None:
+            raise InputError(
+                "the tracking error after identification needs a simulation, and recordings are given",
+                argument="tracking",
+                value=True,
+                remedy="give a scenario instead of recordings",
+            )
+        scenario.believing(scenario.joint)
+    work = Work(
+        subject=scenario if scenario is not None else listed(subject),  # type: ignore[arg-type]
+        joint=joint,
+        common=common | {"model": Model.of(common["model"])},
+        search=search,
+        cells=cells_of(grid or {}, scenario),
+        standard_errors=standard_errors,
+        tracking=tracking,
+        threads=search.threads,
+    )
+    for cell in work.cells:  # errors of the settings themselves are raised before the work
+        cell.search(search, search.seed, search.threads)
+        cell.options(work.common)
+    return work
