@@ -9,10 +9,21 @@ import pytest
 import jointid as jid
 from jointid import _core
 
+
+def make(kind: Any, **fields: Any) -> Any:
+    """Call with fields that the type checker would refuse."""
+    return kind(**fields)
+
+
 BAD: list[tuple[Any, str, Any, str]] = [
     (lambda: jid.GaOptions(population=1), "GaOptions.population", 1, "must be 4 to 1000000"),
-    (lambda: jid.GaOptions(elite=2.5), "GaOptions.elite", 2.5, "a whole number is expected"),
-    (lambda: jid.GaOptions(polish="no"), "GaOptions.polish", "no", "True or False is expected"),
+    (lambda: make(jid.GaOptions, elite=2.5), "GaOptions.elite", 2.5, "a whole number is expected"),
+    (
+        lambda: make(jid.GaOptions, polish="no"),
+        "GaOptions.polish",
+        "no",
+        "True or False is expected",
+    ),
     (lambda: jid.GaOptions(tolerance=True), "GaOptions.tolerance", True, "a number is expected"),
     (
         lambda: jid.GaOptions(selection="best"),
@@ -21,7 +32,12 @@ BAD: list[tuple[Any, str, Any, str]] = [
         "known are tournament, roulette",
     ),
     (lambda: jid.Sensors(torque_noise=-1.0), "Sensors.torque_noise", -1.0, "must be finite and"),
-    (lambda: jid.Pd(stifness=1.0), "Pd.stifness", None, "no such field; fields are stiffness"),
+    (
+        lambda: make(jid.Pd, stifness=1.0),
+        "Pd.stifness",
+        None,
+        "no such field; fields are stiffness",
+    ),
     (lambda: _core.WindowOptions(count=-1), "windows.count", -1, "must be positive"),
     (lambda: _core.term("colomb"), "term", "colomb", "known are inertia, coulomb"),
     (lambda: _core.GaState.from_bytes(b"x"), "checkpoint of a genetic search", None, "bytes"),
@@ -51,7 +67,7 @@ def test_bad_input_has_its_parts(call: Any, argument: str, value: Any, reason: s
 def test_not_a_number_stays_one() -> None:
     with pytest.raises(jid.InputError) as caught:
         jid.Sensors(torque_noise=math.nan)
-    assert math.isnan(caught.value.value)
+    assert repr(caught.value.value) == "nan"
 
 
 def test_a_bug_of_a_caller_is_not_bad_input() -> None:

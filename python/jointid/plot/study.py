@@ -108,10 +108,9 @@ def _title(study: Study, value: str) -> str:
     if value == "penalty":
         sensor = "sensor_gain" in study.parameters
         return "penalty [(sensor units·s)²]" if sensor else "penalty [(N·m·s)²]"
-    rows = (*_core.shapes(), *_core.terms())
-    units = {"evaluations": "[–]", "generations": "[–]"} | {
-        row.name: f"[{row.unit}]" for row in rows
-    }
+    units = {"evaluations": "[–]", "generations": "[–]"}
+    units |= {shape.name: f"[{shape.unit}]" for shape in _core.shapes()}
+    units |= {term.name: f"[{term.unit}]" for term in _core.terms()}
     base = value.removesuffix("_stderr")
     unit = "[rad]" if value.startswith("tracking_") else units.get(base, "")
     return f"{value} {unit}".strip()
