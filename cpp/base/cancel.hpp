@@ -1,5 +1,5 @@
 #pragma once
-// A flag that workers read once a block, so that long work ends soon after somebody asks.
+// A flag that workers read once a block, so that long work ends soon after a request.
 
 #include <atomic>
 

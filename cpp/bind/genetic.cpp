@@ -54,8 +54,7 @@ GaState state_of(const py::bytes& bytes) {
 
 void bind_options(py::module_& m) {
   value(
-      m, "GaOptions",
-      "Settings of the genetic algorithm. Choices are given, and told, by their words.",
+      m, "GaOptions", "Settings of the genetic algorithm. Choices are given and shown as words.",
       Field{"population", &GaOptions::population, "Individuals of an island, at least 4."},
       Field{"generations", &GaOptions::generations,
             "Generations at most, after the first population."},
@@ -87,7 +86,8 @@ void bind_options(py::module_& m) {
       Field{"blx_alpha", &GaOptions::blx_alpha,
             "How far BLX reaches beyond the parents, in units of their distance."},
       Field{"uncrossed", &GaOptions::uncrossed,
-            "Who goes on when a pair does not cross: the selected \"mates\", or whoever had the "
+            "Which individuals survive when a pair does not cross: the selected \"mates\", or "
+            "those at the "
             "same \"places\" in the last generation, selected or not."},
       Field{"mutation", &GaOptions::mutation,
             "\"non_uniform\" (3-4, 3-5), \"shrinking\" (a uniform share of the way to a bound, "

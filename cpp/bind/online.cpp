@@ -8,7 +8,8 @@ using identify::MotionScale;
 using identify::SlidingPenalty;
 
 void bind_online(py::module_& m) {
-  py::class_<MotionScale>(m, "MotionScale", "What the mask measures a motion against.")
+  py::class_<MotionScale>(m, "MotionScale",
+                          "Scale of a motion, which the mask compares speeds with.")
       .def(py::init([](SharedRecording& recording) {
              const py::gil_scoped_release nogil;
              return identify::motion_scale(recording.view());
@@ -17,8 +18,9 @@ void bind_online(py::module_& m) {
       .def_readonly("peak", &MotionScale::peak, "Largest speed.")
       .def_readonly("travel", &MotionScale::travel, "From the lowest position to the highest.")
       .def_property_readonly("moves", &MotionScale::moves)
-      .def_property_readonly("memory", &MotionScale::memory,
-                             "How long a joint must hold still to be told from a slow one [s].");
+      .def_property_readonly(
+          "memory", &MotionScale::memory,
+          "Time at rest that distinguishes a standing joint from a slow one [s].");
   m.def(
       "window_duration",
       [](SharedRecording& recording, std::int64_t parameters, bool mask_standstill) {

@@ -52,7 +52,7 @@ std::shared_ptr<const MaskedRecording> SharedRecording::masked(bool mask_standst
 }
 
 void bind_recording(py::module_& m) {
-  py::native_enum<Hold>(m, "Hold", "enum.Enum", "How the torque signal lives between samples.")
+  py::native_enum<Hold>(m, "Hold", "enum.Enum", "The torque signal between samples.")
       .value("zero_order", Hold::zero_order)
       .value("linear", Hold::linear)
       .finalize();

@@ -94,12 +94,12 @@ void bind_joint(py::module_& m) {
 void bind_scenario(py::module_& m) {
   value(m, "Scenario", "What all simulations of a batch share.",
         Field{"duration", &Scenario::duration, "[s]"},
-        Field{"control_period", &Scenario::control_period, "A command is held so long [s]."},
+        Field{"control_period", &Scenario::control_period, "Time for which a command is held [s]."},
         Field{"integration_step", &Scenario::integration_step,
               "[s]; a whole number of them is a control period."},
         Field{"sample_every", &Scenario::sample_every, "Control periods a recorded sample."},
         Field{"settling", &Scenario::settling, "Left out of the tracking error [s]."},
-        Field{"sensors", &Scenario::sensors, "What is seen of the joint."});
+        Field{"sensors", &Scenario::sensors, "The sensors."});
   value(m, "Setup", "One simulation of a batch.",
         Field{"joint", &Setup::joint, "What is simulated."},
         Field{"controller", &Setup::controller, "Any controller."},
@@ -109,7 +109,7 @@ void bind_scenario(py::module_& m) {
         Field{"position", &Setup::position, "At the start [rad]."},
         Field{"velocity", &Setup::velocity, "At the start [rad/s]."},
         Field{"seed", &Setup::seed, "Of the noise."});
-  py::class_<Outcome>(m, "Outcome", "What came of one simulation.")
+  py::class_<Outcome>(m, "Outcome", "The result of one simulation.")
       .def_property_readonly("signals", &signals_of, "Recorded and true signals by name.")
       .def_readonly("rms_error", &Outcome::rms_error, "Of tracking, after settling [rad].")
       .def_readonly("peak_error", &Outcome::peak_error, "Of tracking, after settling [rad].")

@@ -6,7 +6,7 @@ void bind_sensors(py::module_& m) {
   using simulate::Sensors;
   value(
       m, "Sensors",
-      R"(What is seen of a simulated joint. Everything is off by default: exact signals.
+      R"(The sensors of a simulated joint. All effects are off by default: exact signals.
 
 The torque sensor's gain and offset are the joint's: torque = gain · reading + offset. Its chain is
 ripple, non-linearity and noise as torques at its input, then the filter, then the converter.)",

@@ -1,5 +1,5 @@
 #pragma once
-// Whether position, velocity, time stamps and sensor tell the same motion.
+// Whether position, velocity, time stamps and sensor are consistent with one motion.
 
 #include <optional>
 
@@ -8,7 +8,7 @@
 namespace jointid::diagnose {
 
 /// position change = scale * integrated velocity + lag * velocity change, over blocks of eight
-/// samples, trimmed; none where there are too few blocks or the two cannot be told apart.
+/// samples, trimmed; none where there are too few blocks or the two are indistinguishable.
 struct Agreement {
   double scale;
   double lag;        ///< [s]
@@ -18,8 +18,9 @@ std::optional<Agreement> velocity_agreement(const Signal& time, const Signal& po
                                             const Signal& velocity, double period,
                                             const base::Cancel* cancel);
 
-/// How late the sensor reads the torque of a free link, which the motion alone tells (inertia and
-/// gravity, wherever friction is), and its error [s]; infinite where the link is not free.
+/// Delay of the sensor behind the torque of a free link, which follows from the motion alone
+/// (inertia and gravity, wherever friction is), and its error [s]; infinite where the link is not
+/// free.
 struct SensorLag {
   double lag = 0.0;
   double error;

@@ -131,9 +131,9 @@ SensorLag sensor_lag(const Signal& time, const Signal& position, const Signal& v
   double left = 0.0;
   double spread = 0.0;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const double told = motion(blocks[i]).dot(smooth.solution);
-    level[i] = told / blocks[i].motion[3];
-    left += (blocks[i].reading - told) * (blocks[i].reading - told);
+    const double explained = motion(blocks[i]).dot(smooth.solution);
+    level[i] = explained / blocks[i].motion[3];
+    left += (blocks[i].reading - explained) * (blocks[i].reading - explained);
     spread += (blocks[i].reading - mean) * (blocks[i].reading - mean);
   }
   if (left > kNotFree * spread) return none;

@@ -1,5 +1,5 @@
 #pragma once
-// What the genetic algorithm can be told: operators by name, probabilities, presets.
+// Options of the genetic algorithm: operators by name, probabilities, presets.
 
 #include <array>
 #include <string_view>

@@ -73,7 +73,7 @@ class Reader {
 
 /// Every kind of field (flag, count, choice, number) as a number, exactly.
 template <class Field>
-double told(const Field& field) {
+double number_of(const Field& field) {
   return static_cast<double>(field);
 }
 
@@ -132,7 +132,7 @@ std::string difference(const std::string& what, Number then, Number now) {
 
 std::string to_bytes(const GaState& s) {
   Writer write;
-  each_field(s.options, [&](const char*, const auto& field) { write(told(field)); });
+  each_field(s.options, [&](const char*, const auto& field) { write(number_of(field)); });
   write(s.seed);
   write(s.trial);
   write.all(s.domain.lower);
@@ -189,18 +189,19 @@ void require_same_run(const GaState& state, const GaOptions& options, const Doma
                       std::uint64_t seed, std::uint32_t trial) {
   require_whole(state);
   std::vector<std::pair<const char*, double>> now;
-  each_field(options,
-             [&](const char* name, const auto& field) { now.emplace_back(name, told(field)); });
+  each_field(options, [&](const char* name, const auto& field) {
+    now.emplace_back(name, number_of(field));
+  });
   std::size_t next = 0;
   each_field(state.options, [&](const char* name, const auto& field) {
     const double other = now[next++].second;
-    if (told(field) == other) return;
+    if (number_of(field) == other) return;
     using Field = std::remove_cvref_t<decltype(field)>;
     if constexpr (std::is_enum_v<Field>) {
       const auto given = static_cast<Field>(static_cast<int>(other));
       throw base::InputError(difference(name, base::word(field), base::word(given)));
     } else {
-      throw base::InputError(difference(name, told(field), other));
+      throw base::InputError(difference(name, number_of(field), other));
     }
   });
   if (state.seed != seed) throw base::InputError(difference("seed", state.seed, seed));

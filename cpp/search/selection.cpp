@@ -28,7 +28,7 @@ void each_sum_minus(const Penalties& penalties, Take take) {
     return std::isfinite(p) ? std::max(0.0, sum - std::max(0.0, p) * unit) : 0.0;
   };
   for (const double p : penalties) best = std::max(best, of(p));
-  // All penalties zero, or a single finite one: whoever is finite.
+  // All penalties zero, or a single finite one: any finite individual.
   for (const double p : penalties) take(best > 0.0 ? of(p) : (std::isfinite(p) ? 1.0 : 0.0));
 }
 

@@ -36,7 +36,8 @@ class ControlRun {
     return std::clamp(asked, -torque_limit_, torque_limit_);
   }
 
-  /// The same for input from outside, which may be no number: no joint is to be told of such.
+  /// The same for input from outside, which is checked: a value that is not finite never reaches a
+  /// joint.
   double checked_step(const ControlInput& input) {
     const base::Requirement require("step");
     require.finite("time", input.time);

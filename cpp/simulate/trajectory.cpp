@@ -16,9 +16,9 @@ constexpr double kPi = 0x1.921fb54442d18p+1;
 constexpr base::Requirement require("Trajectory");
 
 /// Second derivatives at the knots of the natural cubic spline (tridiagonal elimination).
-Eigen::VectorXd bends(const Eigen::VectorXd& time, const Eigen::VectorXd& position) {
+Eigen::VectorXd curvatures(const Eigen::VectorXd& time, const Eigen::VectorXd& position) {
   const Eigen::Index n = time.size();
-  Eigen::VectorXd bend = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd curvature = Eigen::VectorXd::Zero(n);
   Eigen::VectorXd upper = Eigen::VectorXd::Zero(n);
   for (Eigen::Index i = 1; i + 1 < n; ++i) {
     const double before = time[i] - time[i - 1];
@@ -27,10 +27,10 @@ Eigen::VectorXd bends(const Eigen::VectorXd& time, const Eigen::VectorXd& positi
         (position[i + 1] - position[i]) / after - (position[i] - position[i - 1]) / before;
     const double pivot = 2.0 * (before + after) - before * upper[i - 1];
     upper[i] = after / pivot;
-    bend[i] = (6.0 * turn - before * bend[i - 1]) / pivot;
+    curvature[i] = (6.0 * turn - before * curvature[i - 1]) / pivot;
   }
-  for (Eigen::Index i = n - 2; i > 0; --i) bend[i] -= upper[i] * bend[i + 1];
-  return bend;
+  for (Eigen::Index i = n - 2; i > 0; --i) curvature[i] -= upper[i] * curvature[i + 1];
+  return curvature;
 }
 
 }  // namespace
@@ -104,15 +104,15 @@ Trajectory Trajectory::samples(const Eigen::VectorXd& time, const Eigen::VectorX
     require.finite("position", position[i]);
     if (i > 0) require.that(time[i] > time[i - 1], "time", time[i], "strictly increasing");
   }
-  const Eigen::VectorXd bend = bends(time, position);
+  const Eigen::VectorXd curvature = curvatures(time, position);
   Pieces pieces;
   pieces.reserve(static_cast<std::size_t>(n));
   for (Eigen::Index i = 0; i + 1 < n; ++i) {
     const double length = time[i + 1] - time[i];
-    const double slope =
-        (position[i + 1] - position[i]) / length - length * (2.0 * bend[i] + bend[i + 1]) / 6.0;
-    pieces.push_back(
-        {time[i] - time[0], position[i], slope, bend[i], (bend[i + 1] - bend[i]) / length});
+    const double slope = (position[i + 1] - position[i]) / length -
+                         length * (2.0 * curvature[i] + curvature[i + 1]) / 6.0;
+    pieces.push_back({time[i] - time[0], position[i], slope, curvature[i],
+                      (curvature[i + 1] - curvature[i]) / length});
   }
   pieces.push_back({time[n - 1] - time[0], position[n - 1], 0.0, 0.0, 0.0});
   return {std::move(pieces), time[n - 1] - time[0]};

@@ -198,7 +198,7 @@ class Model:
 
 class Hold(enum.Enum):
     """
-    How the torque signal lives between samples.
+    The torque signal between samples.
     """
 
     linear = ...
@@ -497,7 +497,7 @@ class Stop(enum.Enum):
 
 class GaOptions:
     """
-    Settings of the genetic algorithm. Choices are given, and told, by their words.
+    Settings of the genetic algorithm. Choices are given and shown as words.
 
     Parameters
     ----------
@@ -532,7 +532,7 @@ class GaOptions:
     blx_alpha : default 0.5
         How far BLX reaches beyond the parents, in units of their distance.
     uncrossed : default 'mates'
-        Who goes on when a pair does not cross: the selected "mates", or whoever had the same "places" in the last generation, selected or not.
+        Which individuals survive when a pair does not cross: the selected "mates", or those at the same "places" in the last generation, selected or not.
     mutation : default 'non_uniform'
         "non_uniform" (3-4, 3-5), "shrinking" (a uniform share of the way to a bound, that shrinks), "uniform" or "polynomial"; binary coding flips bits instead.
     mutation_probability : default 0.1
@@ -821,7 +821,7 @@ class GaOptions:
     @property
     def uncrossed(self) -> str:
         """
-        Who goes on when a pair does not cross: the selected "mates", or whoever had the same "places" in the last generation, selected or not.
+        Which individuals survive when a pair does not cross: the selected "mates", or those at the same "places" in the last generation, selected or not.
         """
 
 class Generation:
@@ -972,13 +972,13 @@ class PolishResult:
 
 class MotionScale:
     """
-    What the mask measures a motion against.
+    Scale of a motion, which the mask compares speeds with.
     """
     def __init__(self, recording: Recording) -> None: ...
     @property
     def memory(self) -> float:
         """
-        How long a joint must hold still to be told from a slow one [s].
+        Time at rest that distinguishes a standing joint from a slow one [s].
         """
     @property
     def moves(self) -> bool: ...
@@ -1468,7 +1468,7 @@ class SimulatedJoint:
 
 class Sensors:
     """
-    What is seen of a simulated joint. Everything is off by default: exact signals.
+    The sensors of a simulated joint. All effects are off by default: exact signals.
 
     The torque sensor's gain and offset are the joint's: torque = gain · reading + offset. Its chain is
     ripple, non-linearity and noise as torques at its input, then the filter, then the converter.
@@ -2393,7 +2393,7 @@ class Scenario:
     duration : default 1.0
         [s]
     control_period : default 0.001
-        A command is held so long [s].
+        Time for which a command is held [s].
     integration_step : default 0.0005
         [s]; a whole number of them is a control period.
     sample_every : default 1
@@ -2401,7 +2401,7 @@ class Scenario:
     settling : default 0.0
         Left out of the tracking error [s].
     sensors : default Sensors(encoder_counts=0.0, velocity='exact', velocity_counts=5, velocity_time=0.01, torque_noise=0.0, ripple=0.0, ripple_order=2.0, ripple_phase=0.0, nonlinearity=0.0, full_scale=650.0, filter_order=0, filter_frequency=5000.0, converter_bits=0, converter_range=1.0, converter_noise=0.0, converter_samples=1)
-        What is seen of the joint.
+        The sensors.
     """
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> dict[str, typing.Any]: ...
@@ -2438,7 +2438,7 @@ class Scenario:
     @property
     def control_period(self) -> float:
         """
-        A command is held so long [s].
+        Time for which a command is held [s].
         """
     @property
     def duration(self) -> float:
@@ -2458,7 +2458,7 @@ class Scenario:
     @property
     def sensors(self) -> Sensors:
         """
-        What is seen of the joint.
+        The sensors.
         """
     @property
     def settling(self) -> float:
@@ -2568,7 +2568,7 @@ class Setup:
 
 class Outcome:
     """
-    What came of one simulation.
+    The result of one simulation.
     """
     @property
     def peak_error(self) -> float:

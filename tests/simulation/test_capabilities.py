@@ -116,11 +116,16 @@ def test_a_controller_refuses_friction_that_it_does_not_have() -> None:
         assert jid.control_estimates(joint(option))["coulomb"] == 4.0
 
 
-def test_a_friction_term_that_nobody_decided_about_is_refused() -> None:
-    """The flags of today, so that a change of one is a decision."""
-    refused = {t.key for t in _core.terms() if t.control == _core.Control.refused}
+def test_the_capabilities_of_the_terms_of_today() -> None:
+    """A change of one is a decision; a term of tomorrow needs no line here."""
     general = {f"static_general{side}" for side in ("", "_positive", "_negative")}
-    assert refused == {"load_friction", *general}
-    left = {t.option for t in _core.terms() if t.control == _core.Control.feedback}
-    assert left == {"torque_offset", "gravity", "harmonics", "ripple"}
-    assert all(term.simulated for term in _core.terms())
+    sides = [f"{name}{side}" for name in FRICTION for side in ("", "_positive", "_negative")]
+    decided = {
+        _core.Control.refused: {"load_friction", *general},
+        _core.Control.compensated: {"inertia", *sides, "sensor_gain", "sensor_offset"},
+    }
+    for control, keys in decided.items():
+        assert {_core.term(key).control for key in keys} == {control}
+        assert all(_core.term(key).simulated for key in keys)
+    left = [t for t in _core.terms() if t.option in {*OPTIONS} - {"load_friction", "sensor"}]
+    assert {(t.control, t.simulated) for t in left} == {(_core.Control.feedback, True)}

@@ -31,7 +31,7 @@ enum class Integral {
 enum class Harmonic { none, joint, motor };
 
 /// What a model-based controller does about a term. Refused unless the row says otherwise: a
-/// controller must not omit a term that nobody decided about.
+/// controller must not omit a term without a decision.
 enum class Control {
   refused,      ///< no controller has it, and it must not be omitted
   feedback,     ///< omitted: the controller's feedback corrects it

@@ -40,7 +40,7 @@ class CompressedPenalty final : public PenaltyFunction {
   [[nodiscard]] Eigen::Index coefficients() const override { return coefficients_; }
   [[nodiscard]] Residual residual() const override { return residual_; }
   [[nodiscard]] Eigen::Index gain_index() const override { return gain_index_; }
-  [[nodiscard]] bool brief() const override { return true; }
+  [[nodiscard]] bool is_cheap() const override { return true; }
   [[nodiscard]] const Eigen::VectorXd& target() const override { return target_; }
 
   /// As few rows as there are coefficients and a target; equal to the direct ones in every inner

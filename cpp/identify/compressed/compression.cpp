@@ -153,7 +153,7 @@ std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Doma
   const auto rate = [](double velocity, double exponent) {
     return base::exp(-exponent * base::log(velocity));
   };
-  // The decay is felt through exponent * log(speed / velocity).
+  // The decay depends on exponent * log(speed / velocity).
   const double reach = base::log(std::max(2.0, speed / velocities.shape(-1.0)));
   const auto outer = chebyshev_points(count_for(1.2 * exponents.length() * reach, 0.6 * density));
   const auto inner_count = [&](double exponent) {

@@ -1,5 +1,5 @@
 #pragma once
-// A shape parameter's range, seen on the scale on which the columns change evenly.
+// A shape parameter's range on the scale on which the columns change evenly.
 //
 // A decay exp(-s v^2) turns over where s v^2 is near 1, whatever the speed: it is even in log s,
 // but for s so small that no speed feels it. So the coordinate is log z, z affine in the shape.

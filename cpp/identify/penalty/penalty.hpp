@@ -54,7 +54,7 @@ class Penalty final : public PenaltyFunction {
   [[nodiscard]] Eigen::Index window_count() const { return target_.size(); }
   [[nodiscard]] Residual residual() const override { return residual_; }
   [[nodiscard]] Eigen::Index gain_index() const override { return gain_index_; }
-  [[nodiscard]] bool brief() const override { return false; }
+  [[nodiscard]] bool is_cheap() const override { return false; }
 
   double operator()(const Eigen::VectorXd& theta,
                     const base::Cancel* cancel = nullptr) const override;

@@ -33,7 +33,7 @@ class PenaltyFunction {
   }
 
   /// Whether an evaluation takes so little that waking another thread for it would take longer.
-  [[nodiscard]] virtual bool brief() const = 0;
+  [[nodiscard]] virtual bool is_cheap() const = 0;
 
   /// Columns of all coefficients for these shapes (rows x coefficients).
   virtual void columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,

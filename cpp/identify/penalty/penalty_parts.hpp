@@ -25,7 +25,7 @@ class PenaltyParts {
   [[nodiscard]] Eigen::Index parameters() const { return names_; }
   [[nodiscard]] std::int64_t samples() const { return frame_.total_samples(); }
   /// Whether the residuals are not linear in this parameter: a shape, or a gain that divides them.
-  [[nodiscard]] bool bends(Eigen::Index parameter) const {
+  [[nodiscard]] bool is_nonlinear(Eigen::Index parameter) const {
     return parameter >= coefficients_ || parameter == divisor_;
   }
   /// The penalty over the windows of one part.

@@ -16,11 +16,11 @@ constexpr double kShortestStanding = 0.1;  // [s]
 constexpr double kStandingOfPeriod =
     0.01;  // a reversal of a slow motion is slow, too: allow for its period
 constexpr double kJolt =
-    0.05;  // of the largest torque: such a jump bends the motion within a sample
-constexpr Eigen::Index kRarest = 5;  // one interval in five may go for that, at most
+    0.05;  // of the largest torque: such a jump changes the acceleration within a sample
+constexpr Eigen::Index kRarest = 5;  // at most one interval in five is left out for that
 constexpr Eigen::Index kReach = 2;   // intervals left out on either side of what is not smooth
 constexpr double kResolved =
-    0.005;  // of the peak speed: a motion slower than this per quantum looks stuck
+    0.005;  // of the peak speed: a motion slower than this per quantum seems to stick
 
 template <class Value>
 double smallest_positive(Eigen::Index from, Eigen::Index to, Value value) {
@@ -63,7 +63,7 @@ void mark_sticking(const RecordingView& r, const MotionScale& scale,
                    const std::vector<std::uint8_t>& after_gap,
                    std::vector<std::uint8_t>& standing) {
   bool any = false;
-  const auto unchanged = [&](Eigen::Index k) {  // the interval k-1 -> k, told by its end
+  const auto unchanged = [&](Eigen::Index k) {  // the interval k-1 -> k, named by its end
     return k > 0 && after_gap[static_cast<std::size_t>(k)] == 0 &&
            r.position[k] == r.position[k - 1];
   };
@@ -85,8 +85,8 @@ void mark_sticking(const RecordingView& r, const MotionScale& scale,
   }
 }
 
-/// Twice the duration over the number of direction changes: the motion's period, as far as one can
-/// tell.
+/// Twice the duration over the number of direction changes: an estimate of the motion's
+/// period.
 double motion_period(const RecordingView& r, double reach) {
   const double hysteresis = 0.01 * reach;
   int changes = 0;
@@ -153,7 +153,7 @@ void mark_standing(const RecordingView& r, const MotionScale& scale,
     highest.clear();
     lowest.clear();
     for (Eigen::Index k = region.begin; k < region.end; ++k) {
-      if (after_gap[static_cast<std::size_t>(k)] != 0) {  // nobody saw what happened meanwhile
+      if (after_gap[static_cast<std::size_t>(k)] != 0) {  // the motion during the gap is unknown
         first = k;
         highest.clear();
         lowest.clear();
@@ -180,8 +180,8 @@ void mark_standing(const RecordingView& r, const MotionScale& scale,
   }
 }
 
-/// Reversals at which a held command jumps: the joint turns, sticks or breaks away at an instant
-/// that the samples do not tell, which is worth friction times a sample's time.
+/// Reversals at which a held command jumps: the instant at which the joint reverses, sticks or
+/// breaks away lies between samples and is unknown. The error is friction times a sample period.
 void mark_jolts(const RecordingView& r, const MotionScale& scale,
                 std::vector<std::uint8_t>& usable) {
   const double least = kJolt * scale.push;
@@ -202,7 +202,7 @@ void mark_jolts(const RecordingView& r, const MotionScale& scale,
         (here > 0.0 && next <= 0.0) || (here < 0.0 && next >= 0.0) || (here == 0.0 && next != 0.0);
     if (turning && jumps(k)) turns.push_back(k);
   }
-  // A motion of few samples a reversal jumps everywhere: better a bias there than nothing left.
+  // With few samples per reversal every reversal jumps: a bias is better than no data.
   constexpr Eigen::Index width = 2 * kReach + 1;
   if (kRarest * width * static_cast<Eigen::Index>(turns.size()) > n) return;
   for (const auto k : turns) {

@@ -9,18 +9,18 @@
 
 namespace jointid::identify {
 
-/// What the mask measures a motion against: slow is slow beside the whole motion's peak, which a
-/// fragment of it does not know.
+/// Scale of a motion, which the mask compares speeds with: that of the whole motion, also for a
+/// fragment of it.
 struct MotionScale {
   double peak = 0.0;     ///< largest speed
   double travel = 0.0;   ///< from the lowest position to the highest
-  double period = 0.0;   ///< of the motion, as far as one can tell [s]
+  double period = 0.0;   ///< of the motion, estimated [s]
   double quantum = 0.0;  ///< smallest change of position between samples; infinite without one
   double finest = 0.0;   ///< smallest speed but 0; infinite without one
   double push = 0.0;     ///< largest torque
 
   [[nodiscard]] bool moves() const { return peak > 0.0 && travel > 0.0; }
-  /// How long a joint must hold still to be told from one that moves slowly [s].
+  /// Time at rest that distinguishes a standing joint from a slow one [s].
   [[nodiscard]] double memory() const;
 };
 MotionScale motion_scale(const RecordingView& recording);
@@ -29,11 +29,12 @@ MotionScale motion_scale(const RecordingView& recording);
 ///
 /// Left out are, narrowly: gaps; runs in which the joint truly sticks (position unchanged, or
 /// velocity exactly zero, for longer than the resolution explains) with two intervals either side,
-/// where friction is set-valued and the model says nothing; and standing still (creeping below 0.3
-/// % of the peak speed for 0.1 s or longer; at slow motion 1 % of its period). A mere reversal is
-/// kept: dropping all that is slow biases viscous friction. But where a held command jumps by 5 %
-/// of the largest torque at a reversal, as when friction is compensated by the sign of a velocity,
-/// two intervals either side are left out: where within the interval the joint turned, nobody saw.
+/// where friction is set-valued and the model gives no value; and standing still (creeping below
+/// 0.3 % of the peak speed for 0.1 s or longer; at slow motion 1 % of its period). A reversal alone
+/// is kept: dropping all slow samples biases viscous friction. But where a held command jumps by 5
+/// % of the largest torque at a reversal, as when friction is compensated by the sign of a
+/// velocity, two intervals either side are left out: the instant of the reversal within the
+/// interval is unknown.
 struct UsableIntervals {
   std::vector<std::uint8_t> usable;
   std::int64_t standing = 0;  ///< samples found sticking or standing still

@@ -1,5 +1,5 @@
 #pragma once
-// A recording with its mask, and what every cut into windows asks of it: found once, used by all.
+// A recording with its mask and the statistics that every cut into windows needs, computed once.
 
 #include <cstdint>
 #include <map>
@@ -13,7 +13,7 @@ namespace jointid::identify {
 
 class MaskedRecording {
  public:
-  /// Whoever owns the signals must outlive this.
+  /// The owner of the signals must outlive this.
   MaskedRecording(const RecordingView& recording, UsableIntervals usable,
                   const base::Cancel* cancel = nullptr);
   MaskedRecording(const MaskedRecording&) = delete;

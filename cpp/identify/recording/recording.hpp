@@ -8,8 +8,7 @@
 
 namespace jointid::identify {
 
-/// How the torque signal lives between samples: a command is held, a measured signal is
-/// interpolated.
+/// The torque signal between samples: a command is held, a measured signal is interpolated.
 enum class Hold { zero_order, linear };
 
 struct Recording {
@@ -28,7 +27,7 @@ struct Recording {
   void validate() const;
 };
 
-/// The same signals where they lie: nothing is copied, and whoever owns them outlives the view.
+/// A view of the same signals: nothing is copied; their owner must outlive the view.
 struct RecordingView {
   using Signal = Eigen::Map<const Eigen::VectorXd>;
   Signal time;

@@ -78,7 +78,7 @@ WindowChoice choose_window(const MaskedRecording& r, std::int64_t parameters,
     choice.duration = static_cast<double>(lag) * r.period();
   }
   choice.duration *= options.factor;
-  // What the windows used leave of the noise, whoever chose them.
+  // Share of noise in these windows, whether chosen here or given.
   const double lag = std::round(choice.duration / r.period());
   choice.noise_share = share(static_cast<Eigen::Index>(
       std::clamp(lag, 1.0, static_cast<double>(r.recording().samples() - 1))));

@@ -39,7 +39,7 @@ struct WindowChoice {
 /// noise comes from the structure function D(L) = mean (v[k+L] - v[k])^2, which is noise plus a
 /// term in L^2 for small L. The window is the shortest of at least 10 samples with noise / D <=
 /// 0.001 that leaves at least 20 windows a parameter (on a record too short for that, at least 5
-/// samples). A given duration is kept, and its noise told all the same.
+/// samples). A given duration is kept, and its noise is reported, too.
 WindowChoice choose_window(const MaskedRecording& recording, std::int64_t parameters,
                            const WindowOptions& options = {});
 WindowChoice choose_window(const RecordingView& recording, const std::vector<std::uint8_t>& usable,

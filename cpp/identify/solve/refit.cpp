@@ -94,10 +94,11 @@ Eigen::VectorXd step_from(const Sums& sums, const search::Domain& domain,
 }
 
 /// The largest relative change of what the residuals are not linear in.
-double bend(const PenaltyParts& parts, const Eigen::VectorXd& at, const Eigen::VectorXd& moved) {
+double nonlinearity(const PenaltyParts& parts, const Eigen::VectorXd& at,
+                    const Eigen::VectorXd& moved) {
   double largest = 0.0;
   for (Eigen::Index i = 0; i < at.size(); ++i) {
-    if (!parts.bends(i) || moved[i] == 0.0) continue;
+    if (!parts.is_nonlinear(i) || moved[i] == 0.0) continue;
     largest = std::max(largest, std::fabs(moved[i]) /
                                     std::max(std::fabs(at[i]), std::numeric_limits<double>::min()));
   }
@@ -125,8 +126,8 @@ Eigen::VectorXd refit(const PenaltyParts& parts, const search::Domain& domain,
     const double way = std::sqrt(std::max(0.0, moved.dot(sums.square * moved)) * freedom /
                                  std::max(sums.penalty, std::numeric_limits<double>::min()));
     // Each step is shorter by about as much as the one before was; the first one misses by what the
-    // residuals bend over it.
-    const double shrunk = std::isfinite(before) ? way / before : bend(parts, best, moved);
+    // residuals are nonlinear over it.
+    const double shrunk = std::isfinite(before) ? way / before : nonlinearity(parts, best, moved);
     const double left = way * std::min(1.0, shrunk);
     if (way < kNear || (damping == kFloor && !cut && left < 0.1 * kEnough)) return trial;
     const Sums there = windows.at(trial);

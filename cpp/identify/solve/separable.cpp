@@ -54,7 +54,7 @@ class Eliminated {
   /// Penalties at many points, over the threads.
   [[nodiscard]] std::vector<double> values(const std::vector<std::vector<double>>& points) const {
     std::vector<double> result(points.size());
-    if (penalty_.brief()) {
+    if (penalty_.is_cheap()) {
       for (std::size_t i = 0; i < points.size(); ++i) result[i] = penalty_(full(points[i]));
       return result;
     }
@@ -73,8 +73,8 @@ class Eliminated {
   std::vector<Eigen::Index> free_;
 };
 
-/// Steps over a shape's domain that matter equally: the Gaussian decay is felt through s v^2, so
-/// its shape takes a square-root scale; speeds and exponents are felt as they are.
+/// Steps over a shape's domain that matter equally: the Gaussian decay depends on s v^2, so
+/// its shape takes a square-root scale; speeds and exponents take a linear scale.
 class Scale {
  public:
   Scale(double lower, double upper, bool root)

@@ -121,7 +121,7 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 def _term(key: str) -> _core.Term | None:
     try:
         return _core.term(key)
-    except ValueError:  # the core's answer to an unknown key
+    except InputError:  # the core's answer to an unknown key
         return None
 
 

@@ -86,19 +86,16 @@ class Problem:
     def _cut(self, made: type[Made], windows: Windows) -> Made:
         options = self.window_options(windows)
         recordings = self.in_core  # its errors are values already
-        try:
-            return made(
-                recordings=recordings,
-                terms=list(self.choice.terms),
-                windows=options,
-                residual=_core.Residual[self.choice.residual],
-                mask_standstill=self.mask_standstill,
-                gear_ratio=self.choice.gear_ratio,
-                per_recording=list(self.choice.per_recording),
-                threads=self.threads,
-            )
-        except ValueError as error:
-            raise InputError(str(error)) from error
+        return made(
+            recordings=recordings,
+            terms=list(self.choice.terms),
+            windows=options,
+            residual=_core.Residual[self.choice.residual],
+            mask_standstill=self.mask_standstill,
+            gear_ratio=self.choice.gear_ratio,
+            per_recording=list(self.choice.per_recording),
+            threads=self.threads,
+        )
 
     @property
     def peak_speed(self) -> float:

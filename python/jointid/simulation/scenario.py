@@ -121,7 +121,7 @@ class Scenario:
     def changed(self, changes: Mapping[str, Any]) -> Self:
         """Return the scenario with other fields, ``sensors.FIELD``, ``controller.FIELD`` or ``truth.PARAMETER``.
 
-        Whole fields are changed first, then what is inside them.
+        Whole fields are changed first, then the fields inside them.
 
         Raises
         ------

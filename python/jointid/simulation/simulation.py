@@ -53,7 +53,7 @@ def simulate(
     sensors : Sensors, optional
         Default: exact signals.
     payload : Link or float
-        What hangs on the joint besides its own link, behind the sensor; a number is a constant
+        A payload on the joint in addition to its own link, behind the sensor; a number is a constant
         torque [N·m] against positive motion. Default 0.
     bristle : Bristle, optional
         Makes friction dynamic (Dahl, LuGre). Default: static.
@@ -67,7 +67,7 @@ def simulate(
     Returns
     -------
     SimulatedRecording
-        Signals as the sensors saw them, the held torque, the reference; `truth` has the true
+        Signals as the sensors measured them, the held torque, the reference; `truth` has the true
         parameters, `truth.signals` the true signals. Unless the sensors show an exact velocity,
         it is derived from the position, and what the controller had is in
         ``truth.signals["control_velocity"]``. ``metadata["saturations"]`` counts the control
@@ -76,7 +76,8 @@ def simulate(
     Raises
     ------
     InputError
-        Anything that cannot be used, or a loop that is not stable, in one sentence.
+        An argument that cannot be used, a term of the model that a simulation does not have, or a loop
+        that is not stable.
     KeyboardInterrupt
         Ctrl-C, within 0.1 s.
     """

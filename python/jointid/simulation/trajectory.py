@@ -33,9 +33,9 @@ class Trajectory:
     Parameters
     ----------
     form : str
-        What the class methods are named after.
+        Name of the class method.
     arguments : tuple
-        Names and values that the core builds it from.
+        Names and values of the core's arguments.
     """
 
     form: str
@@ -233,7 +233,7 @@ class Trajectory:
             if not isinstance(value, tuple):
                 arguments[name] = _number(name, value)
         trajectory = cls(form, tuple(arguments.items()))
-        _ = trajectory.core  # raises what is wrong now, not at first use
+        _ = trajectory.core  # wrong arguments raise here, not at first use
         return trajectory
 
     def __reduce__(self) -> tuple[Any, ...]:

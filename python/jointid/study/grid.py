@@ -94,8 +94,6 @@ def _with_settings(options: _core.GaOptions, changes: Mapping[str, Any]) -> _cor
         return options.replace(**changes)
     except InputError as error:
         raise error.at("grid") from None
-    except ValueError as error:
-        raise InputError(str(error), argument=", ".join(f"ga.{n}" for n in changes)) from None
 
 
 def _check_setting(name: str, value: object, present: object) -> None:

@@ -106,12 +106,7 @@ class Table:
         """
         defaults: Mapping[str, object] = kind().asdict()  # type: ignore[attr-defined]
         known = {n: type(v).__name__ for n, v in defaults.items() if n not in unknown}
-        try:
-            return self.call(kind, known)
-        except InputError:
-            raise
-        except ValueError as error:  # the core's own refusal of a number
-            raise InputError(str(error), place=self.place) from error
+        return self.call(kind, known)
 
     def call(self, kind: Callable[..., Made], known: Mapping[str, str], **fixed: Any) -> Made:
         """Return what `kind` makes of the entries.

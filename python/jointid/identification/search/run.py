@@ -110,10 +110,10 @@ def _genetic(search: Search, engine: Engine, domain: SearchDomain) -> _core.GaRe
             if search.checkpoint is None
             else functools.partial(_write_state, search),
         )
-    except ValueError as error:
-        if state is None or isinstance(error, InputError):
+    except InputError as error:
+        if state is None:
             raise
-        raise InputError(str(error), place=str(search.resume)) from error
+        raise error.at(str(search.resume)) from error
     if search.checkpoint is not None and result.state is not None:
         _write_state(search, result.state)
     return result
@@ -169,5 +169,5 @@ def _read_state(path: Path) -> _core.GaState:
         raise InputError(
             f"the checkpoint cannot be read: {error.strerror}", argument="resume", place=str(path)
         ) from error
-    except ValueError as error:
-        raise InputError(str(error), argument="resume", place=str(path)) from error
+    except InputError as error:
+        raise error.at(str(path)) from error
