@@ -97,6 +97,8 @@ class Problem:
                 per_recording=list(self.choice.per_recording),
                 threads=self.threads,
             )
+        except InputError:
+            raise
         except ValueError as error:
             raise InputError(str(error)) from error
 

@@ -169,5 +169,7 @@ def _read_state(path: Path) -> _core.GaState:
         raise InputError(
             f"the checkpoint cannot be read: {error.strerror}", argument="resume", place=str(path)
         ) from error
+    except InputError as error:
+        raise error.at(str(path)) from error
     except ValueError as error:
         raise InputError(str(error), argument="resume", place=str(path)) from error
