@@ -9,7 +9,8 @@ import numpy as np
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.joint.model import Model
-from jointid.problem.problem import Problem, listed
+from jointid.problem.problem import Problem
+from jointid.problem.recordings import listed
 from jointid.problem.terms import TermChoice
 from jointid.problem.window_table import Prediction, r_squared, relative_residual
 from jointid.recording.recording import Recording
