@@ -19,7 +19,8 @@ from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
-from jointid.problem.problem import Windows, listed
+from jointid.problem.recordings import listed
+from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
 
 _MODELS = ("coulomb_viscous", "stribeck")

@@ -10,7 +10,8 @@ from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.estimate.friction_map import shared_value
 from jointid.estimate.settings import model_of
-from jointid.problem.problem import Problem, listed
+from jointid.problem.problem import Problem
+from jointid.problem.recordings import listed
 from jointid.problem.terms import TermChoice
 from jointid.problem.window_table import Prediction, r_squared, relative_residual
 from jointid.recording.recording import Recording

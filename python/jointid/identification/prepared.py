@@ -21,8 +21,10 @@ from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
-from jointid.problem.problem import Problem, Windows, listed
+from jointid.problem.problem import Problem
+from jointid.problem.recordings import listed
 from jointid.problem.terms import Request, choose_terms
+from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]

@@ -14,7 +14,8 @@ from jointid.identification.prepared import require_joint
 from jointid.identification.search.stated_bounds import parameter_bounds
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
-from jointid.problem.problem import Problem, output_torque
+from jointid.problem.problem import Problem
+from jointid.problem.recordings import output_torque
 from jointid.problem.terms import Request, TermChoice, choose_terms
 from jointid.recording.attributes import check_torque_hold
 from jointid.recording.recording import Recording

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import functools
-import numbers
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -12,30 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.base.advice import Action
-from jointid.base.errors import InputError
-from jointid.joint.checks import check_choice, finite_number
+from jointid.joint.checks import check_choice
 from jointid.joint.joint import Joint
+from jointid.problem.recordings import output_torque
 from jointid.problem.terms import TermChoice
 from jointid.problem.window_table import WindowTable
+from jointid.problem.windows import Windows, window_options
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-Windows = int | float | str | _core.WindowOptions | None
-
 Made = TypeVar("Made", _core.Penalty, _core.PenaltyParts)
-
-# Largest share of the intervals that may be gaps: above it the median interval is not the sample period.
-_MOST_GAPS = 0.1
-
-_WINDOWS_EXPECTED = (
-    "a number of windows (a whole number), their duration in seconds, or cumulative is expected"
-)
-
-_RECORDING_EXPECTED = "a Recording is expected, or several; load reads one from a file"
-
-_LARGEST = 1e15  # number or duration of windows that the core can represent
 
 _HOLDS = {"zoh": _core.Hold.zero_order, "linear": _core.Hold.linear}
 
@@ -110,12 +95,7 @@ class Problem:
         InputError
             Neither a positive number nor "cumulative".
         """
-        if isinstance(windows, str):
-            if windows != "cumulative":
-                raise InputError(_WINDOWS_EXPECTED, argument="windows", value=windows)
-            period = min(recording.sample_period for recording in self.recordings)
-            return _core.WindowOptions(duration=period, cumulative=True)
-        return _options(windows)
+        return window_options(windows, self.recordings)
 
     def table(
         self,
@@ -194,86 +174,3 @@ class Problem:
             torque_hold=_HOLDS[hold],
             gap_after=[gap.index for gap in recording.gaps],
         )
-
-
-def output_torque(recording: Recording, joint: Joint | None) -> Array:
-    """Return the drive's torque at the output [N·m or N].
-
-    Raises
-    ------
-    InputError
-        The recording has no torque, or only one on the motor side and there is no joint to convert it.
-    """
-    if joint is not None:
-        return joint.output_torque(recording)
-    if recording.torque is not None:
-        return recording.torque
-    for signal, needs in (
-        ("motor_torque", "gear_ratio"),
-        ("current", "torque_constant and gear_ratio"),
-    ):
-        if getattr(recording, signal) is not None:
-            raise InputError(
-                f"the recording has {signal}, on the motor side, and no torque at the output",
-                argument="joint",
-                remedy=f"give a joint with {needs}, which convert it",
-            )
-    raise InputError(
-        "the recording has no signal torque",
-        argument="torque",
-        remedy=Action("call", {"columns": {"torque": ...}}, function="load"),
-    )
-
-
-def _options(windows: int | float | _core.WindowOptions | None) -> _core.WindowOptions:
-    if windows is None:
-        return _core.WindowOptions()
-    if isinstance(windows, _core.WindowOptions):
-        return windows
-    if isinstance(windows, bool | str) or not isinstance(windows, numbers.Real):
-        raise InputError(_WINDOWS_EXPECTED, argument="windows", value=windows)
-    if not 0.0 < finite_number("", "windows", windows) < _LARGEST:
-        raise InputError(
-            f"a value above 0 and below {_LARGEST:g} is expected", argument="windows", value=windows
-        )
-    if isinstance(windows, numbers.Integral):
-        return _core.WindowOptions(count=int(windows))
-    return _core.WindowOptions(duration=float(windows))
-
-
-def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]:
-    """Return one recording or several as a checked tuple.
-
-    Raises
-    ------
-    InputError
-        No recording, something else, too many gaps, or revolute and prismatic recordings mixed.
-    """
-    if isinstance(recordings, Recording):
-        recordings = (recordings,)
-    if not isinstance(recordings, Iterable) or isinstance(recordings, str):
-        raise InputError(_RECORDING_EXPECTED, argument="recordings", value=recordings)
-    runs = tuple(recordings)
-    if not runs:
-        raise InputError("at least one recording is expected", argument="recordings", value=[])
-    for number, run in enumerate(runs):
-        place = f"recording {number}"
-        if not isinstance(run, Recording):
-            raise InputError(_RECORDING_EXPECTED, argument="recordings", value=run, place=place)
-        if len(run.gaps) > _MOST_GAPS * len(run):
-            raise InputError(
-                f"{100 * len(run.gaps) / len(run):.0f} % of its sample intervals are gaps, as when a bus delivers "
-                "samples in bursts",
-                argument="time",
-                place=place,
-                remedy="use the drive's time stamps instead of the host's, or a uniform clock",
-            )
-        if run.kind != runs[0].kind:
-            raise InputError(
-                f"recording 0 is {runs[0].kind}",
-                argument="kind",
-                value=run.kind,
-                place=place,
-                remedy="identify them separately",
-            )
-    return runs

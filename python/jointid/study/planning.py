@@ -10,7 +10,7 @@ from jointid.identification.prepared import require_joint
 from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
-from jointid.problem.problem import listed
+from jointid.problem.recordings import listed
 from jointid.recording.recording import Recording
 from jointid.simulation.scenario import Scenario
 from jointid.study.grid import cells_of

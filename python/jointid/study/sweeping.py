@@ -16,7 +16,7 @@ from jointid.base.errors import InputError
 from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
-from jointid.problem.problem import Windows
+from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
 from jointid.simulation.scenario import Scenario
 from jointid.study.execution import finished_rows

@@ -11,7 +11,7 @@ from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
 from jointid.simulation.scenario import Scenario
-from jointid.study.grid import Cell, is_option
+from jointid.study.cell import Cell, is_option
 
 Place = tuple[int, int]  # cell and trial
 

@@ -1,0 +1,87 @@
+"""Checks of the recordings of a problem, and their torque at the output."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
+from jointid.joint.joint import Joint
+from jointid.recording.recording import Recording
+
+Array = NDArray[np.float64]
+
+# Largest share of the intervals that may be gaps: above it the median interval is not the sample period.
+_MOST_GAPS = 0.1
+
+_RECORDING_EXPECTED = "a Recording is expected, or several; load reads one from a file"
+
+
+def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]:
+    """Return one recording or several as a checked tuple.
+
+    Raises
+    ------
+    InputError
+        No recording, something else, too many gaps, or revolute and prismatic recordings mixed.
+    """
+    if isinstance(recordings, Recording):
+        recordings = (recordings,)
+    if not isinstance(recordings, Iterable) or isinstance(recordings, str):
+        raise InputError(_RECORDING_EXPECTED, argument="recordings", value=recordings)
+    runs = tuple(recordings)
+    if not runs:
+        raise InputError("at least one recording is expected", argument="recordings", value=[])
+    for number, run in enumerate(runs):
+        place = f"recording {number}"
+        if not isinstance(run, Recording):
+            raise InputError(_RECORDING_EXPECTED, argument="recordings", value=run, place=place)
+        if len(run.gaps) > _MOST_GAPS * len(run):
+            raise InputError(
+                f"{100 * len(run.gaps) / len(run):.0f} % of its sample intervals are gaps, as when a bus delivers "
+                "samples in bursts",
+                argument="time",
+                place=place,
+                remedy="use the drive's time stamps instead of the host's, or a uniform clock",
+            )
+        if run.kind != runs[0].kind:
+            raise InputError(
+                f"recording 0 is {runs[0].kind}",
+                argument="kind",
+                value=run.kind,
+                place=place,
+                remedy="identify them separately",
+            )
+    return runs
+
+
+def output_torque(recording: Recording, joint: Joint | None) -> Array:
+    """Return the drive's torque at the output [N·m or N].
+
+    Raises
+    ------
+    InputError
+        The recording has no torque, or only one on the motor side and there is no joint to convert it.
+    """
+    if joint is not None:
+        return joint.output_torque(recording)
+    if recording.torque is not None:
+        return recording.torque
+    for signal, needs in (
+        ("motor_torque", "gear_ratio"),
+        ("current", "torque_constant and gear_ratio"),
+    ):
+        if getattr(recording, signal) is not None:
+            raise InputError(
+                f"the recording has {signal}, on the motor side, and no torque at the output",
+                argument="joint",
+                remedy=f"give a joint with {needs}, which convert it",
+            )
+    raise InputError(
+        "the recording has no signal torque",
+        argument="torque",
+        remedy=Action("call", {"columns": {"torque": ...}}, function="load"),
+    )
