@@ -1,4 +1,4 @@
-"""A session in a program of its own, which waits in one of its phases until it is told to go on.
+"""A session in a program of its own, which waits in one of its phases until it is asked to continue.
 
 Run with the name of the phase; prints "ready" there, waits for a line, and prints as JSON how it ended.
 """
@@ -34,16 +34,16 @@ def main(phase: str) -> None:
     bench.observer = watch
     if phase == "check":
         bench.bus.at(0.005, wait)
-    told: dict[str, object] = {"stop": None}
+    wording: dict[str, object] = {"stop": None}
     try:
         bench.session().run()
     except SessionStoppedError as error:
-        told = {"stop": error.stop.to_dict(), "rows": len(error.recording or ())}
-    told["last"] = [data.hex() for _, data in bench.bus.assignments()[-2:]]
-    told["after"] = bench.bus.now()
-    told["switchings"] = bench.elmo.switchings
+        wording = {"stop": error.stop.to_dict(), "rows": len(error.recording or ())}
+    wording["last"] = [data.hex() for _, data in bench.bus.assignments()[-2:]]
+    wording["after"] = bench.bus.now()
+    wording["switchings"] = bench.elmo.switchings
     bench.bus.shutdown()
-    print(json.dumps(told), flush=True)  # noqa: T201
+    print(json.dumps(wording), flush=True)  # noqa: T201
 
 
 if __name__ == "__main__":

@@ -216,7 +216,7 @@ CHECK_CASE("genetic: options are refused by name, value and limit") {
   refused([](GaOptions& o) { o.islands = 50000; }, "islands", "50000", "1 to 1000000 / population");
   refused([](GaOptions& o) { o.migration_interval = 0; }, "migration_interval", "0", "at least 1");
   refused([](GaOptions& o) { o.tolerance = 1.0 / 0.0; }, "tolerance", "inf", "at least 0");
-  // A tiny value must not be told as 0.
+  // A tiny value must not be reported as 0.
   refused([](GaOptions& o) { o.tolerance = -1e-10; }, "tolerance", "-1e-10", "at least 0");
   refused([](GaOptions& o) { o.generations = -10; }, "generations", "-10", "1 to 10000000");
   GaOptions().validate();

@@ -121,7 +121,7 @@ CHECK_CASE("least squares: random half-spaces") {
   CHECK_WITH(active > 200, std::to_string(active) + " trials met a constraint");
 }
 
-CHECK_CASE("least squares: what no x satisfies is told") {
+CHECK_CASE("least squares: unsatisfiable constraints are reported") {
   base::Random random(4, 0, 0, 0);
   const Eigen::MatrixXd a = drawn(random, 8, 2);
   const Eigen::VectorXd b = drawn(random, 8, 1);

@@ -52,7 +52,7 @@ CHECK_CASE("pool: covers every index exactly once") {
 
 CHECK_CASE("pool: many short calls in a row") {
   Pool pool(3);
-  std::vector<int> values(17, 0);  // plain ints: whoever reads them unsynchronised is a race
+  std::vector<int> values(17, 0);  // plain ints: an unsynchronised read is a race
   for (int round = 0; round < 3000; ++round) {
     pool.for_each(values.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) ++values[i];

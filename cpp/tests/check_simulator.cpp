@@ -120,7 +120,7 @@ CHECK_CASE("simulator: the poll ends a long run") {
   CHECK(message == "enough");
 }
 
-CHECK_CASE("simulator: an unstable loop is told, not returned") {
+CHECK_CASE("simulator: an unstable loop is reported, not returned") {
   Setup setup = thesis_setup();
   setup.joint.torque_limit = 1e200;
   setup.controller = simulate::Pd{1e9, 0.0};

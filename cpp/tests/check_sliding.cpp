@@ -88,7 +88,7 @@ CHECK_CASE("sliding: context tells a stretch's end whether the joint stands stil
   CHECK_CLOSE(parts.usable_duration(), whole.usable_duration().sum(), 1e-12);
 }
 
-CHECK_CASE("sliding: a pause of many stretches, exact or noisy, is told by the whole motion") {
+CHECK_CASE("sliding: a pause of many stretches, exact or noisy, is judged by the whole motion") {
   for (const double noise : {0.0, 1e-6}) {
     auto r = recorded(6001);
     for (Eigen::Index k = 1900; k < 4600; ++k) {

@@ -59,7 +59,7 @@ CHECK_CASE("windows: a moving joint is used throughout, plain reversals too") {
   CHECK(all.standing == 0);
   CHECK_CLOSE(unusable(all.usable), 0, 0.0);
   // The same seen by an encoder: at each of the four reversals its count stands for up to 9 ms,
-  // which cannot be told from sticking; no more than that may be lost.
+  // which looks the same as sticking; no more than that may be lost.
   for (const double quantum : {1e-6, 7.8e-6, 1e-4}) {
     Recording r = swinging();
     r.position = (r.position / quantum).array().round() * quantum;

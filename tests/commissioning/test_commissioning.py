@@ -82,8 +82,8 @@ def test_the_command_writes_runs_and_saves_the_bench(
     runs, saved = tmp_path / "runs", tmp_path / "found.toml"
     words = ["run", str(EXAMPLE), "--emulate", "--cycles", "1", "--output", str(runs)]
     assert main([*words, "--save", str(saved), "--json", "--quiet"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["improvement"] >= 3.0
+    wording = json.loads(capsys.readouterr().out)
+    assert wording["improvement"] >= 3.0
     found = Bench.load(saved)
     assert found.joint.parameters["coulomb"].value == pytest.approx(25.0, rel=0.02)
     assert "docs/hardware.md first" in saved.read_text(encoding="utf-8")
@@ -96,7 +96,7 @@ def test_the_command_writes_runs_and_saves_the_bench(
 
 
 @pytest.mark.parametrize(
-    ("words", "code", "told"),
+    ("words", "code", "wording"),
     [
         (["--emulate", "--cycles", "0"], 2, "--cycles 0: at least 1"),
         (["--emulate", "--save", "x.csv"], 2, "a joint file ends in .toml"),
@@ -106,10 +106,10 @@ def test_the_command_writes_runs_and_saves_the_bench(
     ],
 )
 def test_the_command_refuses_before_it_moves(
-    words: list[str], code: int, told: str, capsys: pytest.CaptureFixture[str]
+    words: list[str], code: int, wording: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["run", str(EXAMPLE), *words]) == code
-    assert told in capsys.readouterr().err
+    assert wording in capsys.readouterr().err
 
 
 def test_a_stop_is_exit_code_three(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -120,7 +120,7 @@ def test_a_stop_is_exit_code_three(tmp_path: Path, capsys: pytest.CaptureFixture
     )
     output = tmp_path / "runs"
     assert main(["run", str(path), "--emulate", "--output", str(output), "--quiet"]) == 3
-    told = capsys.readouterr().err
-    assert "tracking_error" in told
-    assert told.count("\n") == 1
+    wording = capsys.readouterr().err
+    assert "tracking_error" in wording
+    assert wording.count("\n") == 1
     assert (output / "initial.csv").exists()

@@ -122,14 +122,14 @@ def test_a_model_on_its_bound_cannot_win() -> None:
     assert not any(entry.eligible for entry in found.rows)
     assert "viscous at its upper bound" in row(found, "coulomb_viscous").reason
     assert "support none of the models" in found.reason
-    assert found.winner == "stribeck"  # still told: what predicts best
+    assert found.winner == "stribeck"  # still reported: what predicts best
 
 
 # --- The rule, on made-up scores ---
 
 
 def made_up(
-    model: str, parameters: int, score: float, stderr: float, told: str = ""
+    model: str, parameters: int, score: float, stderr: float, wording: str = ""
 ) -> ComparedModel:
     return ComparedModel(
         model=model,
@@ -139,8 +139,8 @@ def made_up(
         stderr=stderr,
         fold_scores=(score,),
         penalty=1.0,
-        eligible=not told,
-        reason=told,
+        eligible=not wording,
+        reason=wording,
     )
 
 
@@ -324,7 +324,7 @@ def compare(**options: object) -> Callable[[], object]:
 
 
 @pytest.mark.parametrize(
-    ("call", "told"),
+    ("call", "wording"),
     [
         (compare(models=()), "at least one"),
         (compare(models=("stribeck", "stribeck")), "it is given twice"),
@@ -349,8 +349,8 @@ def compare(**options: object) -> Callable[[], object]:
         ),
     ],
 )
-def test_bad_input_is_told_in_a_sentence(call: Callable[[], object], told: str) -> None:
-    with pytest.raises(InputError, match=told) as caught:
+def test_bad_input_is_reported_in_a_sentence(call: Callable[[], object], wording: str) -> None:
+    with pytest.raises(InputError, match=wording) as caught:
         call()
     assert "\n" not in str(caught.value)
 

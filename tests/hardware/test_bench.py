@@ -1,4 +1,4 @@
-"""Bench files: what is read, and how what is wrong is told."""
+"""Bench files: what is read, and how errors are worded."""
 
 import math
 from pathlib import Path
@@ -79,7 +79,7 @@ def driven(path: Path) -> ElmoDrive:
 
 
 @pytest.mark.parametrize(
-    ("before", "after", "told"),
+    ("before", "after", "wording"),
     [
         (
             "period = 0.002",
@@ -145,9 +145,9 @@ def driven(path: Path) -> ElmoDrive:
         ("torque_constant = 0.198", "", "torque_constant"),
     ],
 )
-def test_an_error_names_its_place(tmp_path: Path, before: str, after: str, told: str) -> None:
+def test_an_error_names_its_place(tmp_path: Path, before: str, after: str, wording: str) -> None:
     path = written(tmp_path, before, after)
-    with pytest.raises(jid.InputError, match=told) as caught:
+    with pytest.raises(jid.InputError, match=wording) as caught:
         driven(path)
     assert "\n" not in str(caught.value)
 

@@ -89,7 +89,7 @@ def test_socketcan_gets_a_filter_for_each_identifier(
 
 
 @pytest.mark.parametrize(
-    ("settings", "told"),
+    ("settings", "wording"),
     [
         (
             {"interface": "emulated"},
@@ -109,9 +109,9 @@ def test_socketcan_gets_a_filter_for_each_identifier(
     ],
 )
 def test_what_cannot_be_opened_is_refused_in_one_sentence(
-    settings: dict[str, object], told: str
+    settings: dict[str, object], wording: str
 ) -> None:
-    with pytest.raises(InputError, match=told) as refused, open_bus(**settings):  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=wording) as refused, open_bus(**settings):  # type: ignore[arg-type]
         pass
     assert "\n" not in str(refused.value)
 
@@ -133,7 +133,7 @@ def test_a_network_that_is_not_there_or_down_is_refused(
 
 
 @pytest.mark.parametrize(
-    ("error", "told"),
+    ("error", "wording"),
     [
         (
             OSError(97, "Address family not supported by protocol"),
@@ -145,7 +145,7 @@ def test_a_network_that_is_not_there_or_down_is_refused(
     ],
 )
 def test_the_systems_words_become_a_sentence(
-    error: Exception, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    error: Exception, wording: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     network(tmp_path, "0x1\n")
     monkeypatch.setattr(bus_module, "_NETWORKS", tmp_path)
@@ -154,7 +154,7 @@ def test_the_systems_words_become_a_sentence(
         raise error
 
     monkeypatch.setattr(can, "Bus", refuse)
-    with pytest.raises(InputError, match=told) as refused, open_bus():
+    with pytest.raises(InputError, match=wording) as refused, open_bus():
         pass
     assert "\n" not in str(refused.value)
     assert refused.value.__cause__ is error

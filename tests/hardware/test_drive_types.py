@@ -91,7 +91,7 @@ def test_an_installed_type_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize(
-    ("entries", "name", "told"),
+    ("entries", "name", "wording"),
     [
         ((), "elmos", "drive type is 'elmos': did you mean 'elmo'?"),
         ((("wheel", "no.such.module:X"),), "wheel", "no.such.module:X cannot be imported"),
@@ -100,12 +100,12 @@ def test_an_installed_type_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     ],
 )
 def test_a_type_that_cannot_be_had_is_refused(
-    monkeypatch: pytest.MonkeyPatch, entries: tuple[tuple[str, str], ...], name: str, told: str
+    monkeypatch: pytest.MonkeyPatch, entries: tuple[tuple[str, str], ...], name: str, wording: str
 ) -> None:
     installed(monkeypatch, *entries)
     with pytest.raises(jid.InputError) as refused:
         drive_type(name)
-    assert told in str(refused.value)
+    assert wording in str(refused.value)
     assert refused.value.value == name
 
 

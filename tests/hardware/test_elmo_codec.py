@@ -74,9 +74,13 @@ def test_refusals_of_the_manual_both_ways(
     text: str, letters: str, index: int, code: int, meaning: str
 ) -> None:
     assert refusal(letters, index, code) == bytes.fromhex(text)
-    with pytest.raises(DriveError, match=meaning) as told:
+    with pytest.raises(DriveError, match=meaning) as wording:
         Reply.of(bytes.fromhex(text))
-    assert (told.value.letters, told.value.index, told.value.code) == (letters, index, code)
+    assert (wording.value.letters, wording.value.index, wording.value.code) == (
+        letters,
+        index,
+        code,
+    )
 
 
 @given(
@@ -122,7 +126,7 @@ def test_every_command_comes_back(letters: str, index: int, value: int | float |
 
 
 @pytest.mark.parametrize(
-    ("fields", "told"),
+    ("fields", "wording"),
     [
         ({"letters": "tc"}, "two capital letters"),
         ({"letters": "TCX"}, "two capital letters"),
@@ -135,8 +139,8 @@ def test_every_command_comes_back(letters: str, index: int, value: int | float |
         ({"letters": "MO", "value": True}, "an int or a float"),
     ],
 )
-def test_what_no_frame_can_hold_is_refused(fields: dict[str, object], told: str) -> None:
-    with pytest.raises(jid.InputError, match=told):
+def test_what_no_frame_can_hold_is_refused(fields: dict[str, object], wording: str) -> None:
+    with pytest.raises(jid.InputError, match=wording):
         Command(**fields)  # type: ignore[arg-type]
 
 

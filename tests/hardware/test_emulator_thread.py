@@ -145,7 +145,7 @@ def test_an_exception_in_the_thread_is_not_lost(buses: tuple[can.BusABC, can.Bus
     assert isinstance(emulator.failure, ZeroDivisionError)
     with pytest.raises(ZeroDivisionError, match="the device has failed"):
         emulator.close()
-    emulator.close()  # told once
+    emulator.close()  # reported once
 
 
 def test_what_the_host_saw_names_the_emulators_failure(

@@ -40,7 +40,7 @@ def test_fault_stops_the_session_and_the_motor(case: Case, tmp_path: Path) -> No
     assert case.says in stop.message
     assert stop.phase == "run"
     assert 0.0 <= found.detected <= case.detected
-    # The last that the drive is told: no torque, then motor off; soon, and asked for.
+    # The last commands to the drive: no torque, then motor off; soon, and asked for.
     sent = bench.bus.assignments()
     assert [data for _, data in sent[-2:]] == [ZERO, OFF]
     assert {data for when, data in sent if when > stop.moment} <= {ZERO, OFF}
@@ -69,8 +69,8 @@ def test_every_limit_has_a_case_and_a_line_in_the_documentation(repo: Path) -> N
         *("bus", "sensor", "user", "error"),
     }
     lines = (repo / "docs" / "hardware_limits.md").read_text(encoding="utf-8").splitlines()
-    told = {line.split("`")[1] for line in lines if line.startswith("| `")}
-    assert told - {"stop.limit"} == stops | {"recording"}
+    wording = {line.split("`")[1] for line in lines if line.startswith("| `")}
+    assert wording - {"stop.limit"} == stops | {"recording"}
 
 
 @pytest.mark.parametrize("kind", sorted(set(DRIVE_FAILURES) - {"host heartbeat lost"}))

@@ -63,15 +63,15 @@ def test_what_is_no_number_is_beyond_every_limit() -> None:
         (0.0, math.nan, 0.0, "velocity"),
         (0.0, 0.0, math.nan, "tracking_error"),
     ):
-        told = stopped(lambda p=position, v=velocity, e=error: guard().measured(sample(p), v, e))
-        assert told.limit == limit
+        wording = stopped(lambda p=position, v=velocity, e=error: guard().measured(sample(p), v, e))
+        assert wording.limit == limit
     for reading in (math.nan, math.inf):
-        told = stopped(lambda r=reading: guard().measured(sample(reading=r), 0.0, 0.0))
-        assert told.limit == "sensor"
+        wording = stopped(lambda r=reading: guard().measured(sample(reading=r), 0.0, 0.0))
+        assert wording.limit == "sensor"
     for torque in (math.nan, -math.inf):
-        told = stopped(lambda t=torque: guard().commanded(t, 0))
-        assert told.limit == "torque"
-        assert "not finite" in str(told)
+        wording = stopped(lambda t=torque: guard().commanded(t, 0))
+        assert wording.limit == "torque"
+        assert "not finite" in str(wording)
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
@@ -84,11 +84,11 @@ def test_torque_is_held_but_for_rounding(sign: float) -> None:
 def test_the_torque_accepted_by_the_drive_is_checked_too() -> None:
     watched = guard()
     watched.accepted(100.0, 100.0 * (1.0 + 1e-7))  # a float of 32 bits
-    for told in (100.1, -100.1, math.nan, math.inf):
-        assert stopped(lambda t=told: guard().accepted(100.0, t)).limit == "torque"
-    for asked, told in ((80.0, 75.0), (-80.0, -75.0), (0.0, 0.0)):  # rounded
+    for wording in (100.1, -100.1, math.nan, math.inf):
+        assert stopped(lambda t=wording: guard().accepted(100.0, t)).limit == "torque"
+    for asked, accepted in ((80.0, 75.0), (-80.0, -75.0), (0.0, 0.0)):  # rounded
         for _ in range(30):
-            watched.accepted(asked, told)
+            watched.accepted(asked, accepted)
     watched.commanded(0.0, 0)
     for _ in range(21):
         watched.accepted(80.0, 40.0)  # the drive's own limit is lower

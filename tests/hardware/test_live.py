@@ -122,28 +122,28 @@ def test_a_sessions_line_ends_with_the_run() -> None:
 
 
 def test_several_observers_are_called_and_closed_each() -> None:
-    told: list[str] = []
+    wording: list[str] = []
 
     class Closing:
         def __init__(self, name: str) -> None:
             self.name = name
 
         def __call__(self, phase: str, *_: object) -> None:
-            told.append(f"{self.name} {phase}")
+            wording.append(f"{self.name} {phase}")
 
         def close(self) -> None:
-            told.append(f"{self.name} closed")
+            wording.append(f"{self.name} closed")
             raise RuntimeError(self.name)
 
     def plain(phase: str, *_: object) -> None:
-        told.append(f"plain {phase}")
+        wording.append(f"plain {phase}")
 
     with (
         pytest.raises(RuntimeError, match="a"),
         Observers(Closing("a"), plain, Closing("b")) as all_of_them,
     ):
         all_of_them("run", 0.0, SAMPLE, 0.0, 0.0)
-    assert told == ["a run", "plain run", "b run", "a closed", "b closed"]
+    assert wording == ["a run", "plain run", "b run", "a closed", "b closed"]
 
 
 def test_a_live_plot_of_a_session_ends_as_a_picture(tmp_path: Path) -> None:
@@ -159,14 +159,14 @@ def test_a_live_plot_of_a_session_ends_as_a_picture(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "told"),
+    ("wrong", "wording"),
     [
         ({"span": 0.0}, "span is 0.0: more than 0 s is expected"),
         ({"window": False}, "neither a window nor a picture"),
     ],
 )
-def test_a_plot_of_nothing_is_refused(wrong: dict[str, Any], told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_a_plot_of_nothing_is_refused(wrong: dict[str, Any], wording: str) -> None:
+    with pytest.raises(InputError, match=wording):
         LivePlot(**wrong)
 
 

@@ -43,16 +43,16 @@ def test_all_is_granted_or_reported_and_restored() -> None:
         freeze_garbage=True,
     )
     with RealTime(options) as asked:
-        told = {note.partition(":")[0] for note in asked.notes}
+        wording = {note.partition(":")[0] for note in asked.notes}
         priority, locked = os.sched_getparam(0).sched_priority, realtime._locked_memory()
-        assert (priority == 1) != ("priority" in told)
-        assert (locked > 0) != ("lock_memory" in told)
+        assert (priority == 1) != ("priority" in wording)
+        assert (locked > 0) != ("lock_memory" in wording)
         assert os.sched_getaffinity(0) == set(options.cpus or ())
         # With a real-time priority newer kernels have no slack at all.
         assert ctypes.CDLL(None).prctl(30, 0, 0, 0, 0) in (0, 1000)
         assert not gc.isenabled()
         assert gc.get_freeze_count() > 0
-        assert told <= {"priority", "lock_memory"}
+        assert wording <= {"priority", "lock_memory"}
     assert state() == before
 
 
@@ -113,7 +113,7 @@ def test_elsewhere_than_on_linux_it_says_so(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 @pytest.mark.parametrize(
-    ("wrong", "told"),
+    ("wrong", "wording"),
     [
         ({"priority": 0}, "priority is 0: 1 to 99 is expected"),
         ({"priority": 100}, "priority is 100"),
@@ -123,8 +123,8 @@ def test_elsewhere_than_on_linux_it_says_so(monkeypatch: pytest.MonkeyPatch) -> 
         ({"timer_slack": float("nan")}, "timer_slack is nan"),
     ],
 )
-def test_senseless_options_are_refused(wrong: dict[str, Any], told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_senseless_options_are_refused(wrong: dict[str, Any], wording: str) -> None:
+    with pytest.raises(InputError, match=wording):
         RealTimeOptions(**wrong)
 
 

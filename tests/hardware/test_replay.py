@@ -225,11 +225,11 @@ def test_a_missing_frame_is_named(
     lacking.write_text("".join(lines[:missing] + lines[missing + 1 :]))
     with pytest.raises(jid.InputError) as caught:
         jid.hardware.replay(lacking, JOINT, recording=recording)
-    told = str(caught.value)
+    wording = str(caught.value)
     assert re.fullmatch(
         rf"\S+run\.log: {sentence} [\d.]+ s is missing, in cycle {cycle}; frames are missing from the log",
-        told,
-    ), told
+        wording,
+    ), wording
 
 
 def test_missing_cycles_are_counted(

@@ -213,7 +213,7 @@ def test_a_fast_motion_is_not_overlooked_between_the_instants_that_are_checked()
 
 
 @pytest.mark.parametrize(
-    ("make", "told"),
+    ("make", "wording"),
     [
         (lambda: ElmoOptions(bitrate=math.inf), "bitrate"),
         (lambda: ElmoOptions(bitrate=math.nan), "bitrate"),
@@ -226,8 +226,8 @@ def test_a_fast_motion_is_not_overlooked_between_the_instants_that_are_checked()
         (lambda: SyncedConverter(lowest=3.0, highest=0.0), "lowest"),
     ],
 )
-def test_options_that_cannot_be_are_refused(make: Callable[[], object], told: str) -> None:
-    with pytest.raises(jid.InputError, match=told):
+def test_options_that_cannot_be_are_refused(make: Callable[[], object], wording: str) -> None:
+    with pytest.raises(jid.InputError, match=wording):
         make()
 
 
@@ -291,17 +291,19 @@ def test_without_a_sensor_there_is_no_column_of_it(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "returned", "told"),
+    ("name", "returned", "wording"),
     [
         ("problems", "not homed", r"problems\(\) is 'not homed': a list of sentences"),
         ("command", None, r"command\(\) returned None; the torque that it accepted"),
     ],
 )
-def test_a_wrong_return_value_of_a_drive_is_reported(name: str, returned: Any, told: str) -> None:
+def test_a_wrong_return_value_of_a_drive_is_reported(
+    name: str, returned: Any, wording: str
+) -> None:
     drive = ElmoDrive(EmulatedBus(*devices()), JOINT)
     setattr(drive, name, lambda *_: returned)
     options = SessionOptions(period=PERIOD, settle=0.05)
-    with pytest.raises((jid.InputError, SessionStoppedError), match=told):
+    with pytest.raises((jid.InputError, SessionStoppedError), match=wording):
         Session(drive, law(), motion(), limits(), options=options).run()
 
 

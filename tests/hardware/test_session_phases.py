@@ -64,7 +64,7 @@ def test_current_is_recorded_beside_the_command() -> None:
     assert recording.torque is not None
     assert recording.current is not None
     felt = recording.current * 0.198 * 101.0
-    # It is told at the SYNC, before the command of the same cycle; and in thousandths of 8 A.
+    # It is reported at the SYNC, before the command of the same cycle; and in thousandths of 8 A.
     assert np.corrcoef(felt[1:], recording.torque[:-1])[0, 1] > 0.99
 
 

@@ -137,7 +137,7 @@ def test_motor_that_another_has_switched_on_is_left_alone(state: str) -> None:
         assert {identifier for _, identifier, _ in bench.bus.tried} == {0x37F}
 
 
-def test_several_reasons_are_told_together() -> None:
+def test_several_reasons_are_reported_together() -> None:
     bench = EmulatedSession()
     strong(bench)
     railed(bench)

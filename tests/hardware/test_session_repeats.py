@@ -21,7 +21,7 @@ def test_a_repeated_session_is_bit_identical_and_its_seed_matters() -> None:
 
 def test_a_session_repeats_in_another_interpreter(repo: Path) -> None:
     search = os.pathsep.join([str(repo / "tests"), *sys.path])
-    told = subprocess.run(
+    wording = subprocess.run(
         [sys.executable, "-W", "error", str(repo / "tests" / "session_bench.py")],
         env={**os.environ, "PYTHONPATH": search, "PYTHONHASHSEED": "77"},
         capture_output=True,
@@ -29,7 +29,7 @@ def test_a_session_repeats_in_another_interpreter(repo: Path) -> None:
         check=True,
     ).stdout.split()
     frames, recording, count = hashes_of_a_session()
-    assert told == [frames, recording, str(count)]
+    assert wording == [frames, recording, str(count)]
 
 
 def test_a_kilohertz_works_on_the_virtual_clock() -> None:

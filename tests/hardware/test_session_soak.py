@@ -1,4 +1,4 @@
-"""A short `make soak` of sessions: nothing grows, nothing is lost; and what grows or is lost is told."""
+"""A short `make soak` of sessions: nothing grows, nothing is lost; and growth or loss is reported."""
 
 import sys
 from pathlib import Path

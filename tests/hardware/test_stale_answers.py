@@ -29,7 +29,7 @@ class MovingBench:
         self.drive.connect(PERIOD)
         self.drive.enable()
 
-    def told(self) -> float:
+    def wording(self) -> float:
         """The time that the newest answer tells [s]."""
         position = self.drive.read(0.5 * PERIOD).position
         return position / self.drive.options.angle(1, JOINT) * 1e-3
@@ -37,12 +37,12 @@ class MovingBench:
 
 def test_after_a_stall_the_newest_position_counts() -> None:
     bench = MovingBench()
-    bench.told()
+    bench.wording()
     for _ in range(20):  # somebody else's SYNCs, answered while the host stands still
         bench.bus.send(can.Message(arbitration_id=canopen.SYNC, is_extended_id=False))
         bench.bus.sleep_until(bench.bus.now() + PERIOD)
     now = bench.bus.now()
-    assert bench.told() == pytest.approx(now, abs=1.01e-3)
+    assert bench.wording() == pytest.approx(now, abs=1.01e-3)
 
 
 @pytest.mark.parametrize("delay", [0.8e-3, 1.2e-3, 1.7e-3, 2.1e-3, 2.9e-3])
@@ -50,7 +50,7 @@ def test_after_a_stall_the_newest_position_counts() -> None:
 def test_a_late_answer_is_never_taken_for_the_next_one(delay: float, identifier: int) -> None:
     fault = BusFault(kind="delay", start=math.inf, identifier=identifier, delay=delay)
     bench = MovingBench(fault)
-    bench.told()
+    bench.wording()
     bench.bus.sleep_until(bench.bus.now() + PERIOD)
     begin = bench.bus.now()
     fault.start, fault.stop = begin, begin + 1e-3  # the answer of one SYNC alone
@@ -59,11 +59,11 @@ def test_a_late_answer_is_never_taken_for_the_next_one(delay: float, identifier:
         bench.bus.sleep_until(begin + k * PERIOD)
         asked = bench.bus.now()
         try:
-            told = bench.told()
+            wording = bench.wording()
         except DriveFaultError as error:
             late += error.kind == "stale_position"
             continue
-        assert asked - 0.51e-3 <= told <= bench.bus.now() + 0.51e-3
+        assert asked - 0.51e-3 <= wording <= bench.bus.now() + 0.51e-3
     assert late <= math.ceil(delay / PERIOD)
     assert late >= (delay > 0.5 * PERIOD)
 
@@ -71,15 +71,15 @@ def test_a_late_answer_is_never_taken_for_the_next_one(delay: float, identifier:
 def test_a_lost_answer_is_given_up_in_the_end() -> None:
     fault = BusFault(kind="drop", start=math.inf, identifier=POSITION)
     bench = MovingBench(fault)
-    bench.told()
+    bench.wording()
     begin = bench.bus.now()
     fault.start, fault.stop = begin, begin + 1e-3
     with pytest.raises(DriveFaultError, match="no answer to the SYNC within 1 ms"):
-        bench.told()
+        bench.wording()
     while bench.bus.now() < begin + 2.0 * bench.drive.options.heartbeat:
         bench.bus.sleep_until(bench.bus.now() + PERIOD)
         bench.drive.command(0.0)
-    assert bench.told() == pytest.approx(bench.bus.now(), abs=1.5e-3)
+    assert bench.wording() == pytest.approx(bench.bus.now(), abs=1.5e-3)
 
 
 def test_an_answer_that_comes_twice_is_one_answer() -> None:
@@ -88,7 +88,7 @@ def test_an_answer_that_comes_twice_is_one_answer() -> None:
     for _ in range(20):
         bench.bus.sleep_until(bench.bus.now() + PERIOD)
         now = bench.bus.now()
-        assert bench.told() == pytest.approx(now, abs=1.01e-3)
+        assert bench.wording() == pytest.approx(now, abs=1.01e-3)
         bench.drive.command(0.0)
 
 

@@ -153,7 +153,7 @@ def test_two_shapes_are_polished_over_their_whole_range(
     assert penalty(best) == pytest.approx(least, rel=1e-6)
 
 
-def test_the_direct_sum_has_the_last_word(excited: jid.Recording) -> None:
+def test_the_direct_sum_verifies_the_result(excited: jid.Recording) -> None:
     penalty, domain = made(excited, Case("stribeck", "sensor"))
     other, _ = made(excited.crop(0.0, 6.0), Case("stribeck", "sensor"))
     engine = Engine.of(penalty, domain, 1, "ga")
@@ -162,6 +162,6 @@ def test_the_direct_sum_has_the_last_word(excited: jid.Recording) -> None:
     outcome = Outcome(best=best, convergence=None, status="converged", message="found")
     assert engine.verified(outcome, domain) is outcome
     wrong = Engine(direct=other, form=engine.form, reason="")
-    mended = wrong.verified(outcome, domain)
-    assert "did not agree" in mended.message
-    assert other(mended.best) <= other(best)
+    polished = wrong.verified(outcome, domain)
+    assert "did not agree" in polished.message
+    assert other(polished.best) <= other(best)

@@ -85,7 +85,7 @@ LEVEL = jid.thesis_joint()
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_sign_that_is_not_clear_is_told(seed: int) -> None:
+def test_a_sign_that_is_not_clear_is_reported(seed: int) -> None:
     # Two degrees about the horizontal: the link's torque hardly varies, the reading is noise.
     run = jid.simulate(
         LEVEL.with_parameters(TRUTH),
@@ -96,10 +96,10 @@ def test_a_sign_that_is_not_clear_is_told(seed: int) -> None:
     )
     for residual in ("sensor", "torque"):
         estimate = jid.identify(run, LEVEL.replace(parameters={}), residual=residual)
-        (told,) = (w for w in estimate.warnings if w.code == "undetermined")
+        (wording,) = (w for w in estimate.warnings if w.code == "undetermined")
         other = "negative" if estimate.parameters["sensor_gain"].value > 0.0 else "positive"
-        assert f"a {other} sensor_gain fits almost as well" in told.message
-        assert "sensor_gain" in told.parameters
+        assert f"a {other} sensor_gain fits almost as well" in wording.message
+        assert "sensor_gain" in wording.parameters
 
 
 def test_a_sign_that_is_known_or_clear_is_not() -> None:

@@ -115,7 +115,7 @@ def test_every_word_searches(task: Task) -> None:
             assert result.penalty < result.history[0].best
             different.add(bits(result)[0])
     # Every word walks its own way: the default, and selection 2, fitness 2, crossover 2, uncrossed 1,
-    # mutation 3, its unit 1, binary coding with either crossover 2; diversity is only told.
+    # mutation 3, its unit 1, binary coding with either crossover 2; diversity is only reported.
     assert plain[0] in different
     assert len(different) == 14
 

@@ -146,13 +146,13 @@ def test_emps_without_any_option(shared_data: Path) -> None:
     assert estimate.parameters["inertia"].unit == "kg"
 
 
-def test_stribeck_on_emps_is_told_to_be_too_rich(shared_data: Path) -> None:
+def test_stribeck_on_emps_is_reported_to_be_too_rich(shared_data: Path) -> None:
     recording = jid.load(shared_data / "emps" / "emps_train.csv.gz")
     estimate = jid.identify(recording, model="stribeck", search="separable")
     assert "model_too_rich" in {warning.code for warning in estimate.warnings}
 
 
-def test_noisy_velocity_is_told(shared_data: Path) -> None:
+def test_noisy_velocity_is_reported(shared_data: Path) -> None:
     estimate = jid.identify(
         jid.load(shared_data / "ak80" / "ak80_swing_up.csv"), search="separable"
     )

@@ -52,7 +52,7 @@ def test_a_wrong_inertia_is(joint: jid.Joint, amplitude: float, law: str, factor
     recording = moved(joint, amplitude, law, noise=0.5)
     assert joint.rotor_inertia is not None
     wrong = joint.replace(rotor_inertia=factor * joint.rotor_inertia)
-    (told,) = (w for w in jid.identify(recording, wrong).warnings if w.code == "wrong_scale")
-    stated = re.search(r"([\d.]+) times the", told.message)
+    (wording,) = (w for w in jid.identify(recording, wrong).warnings if w.code == "wrong_scale")
+    stated = re.search(r"([\d.]+) times the", wording.message)
     assert stated is not None
     assert float(stated[1]) == pytest.approx(1.0 / factor, rel=0.03)

@@ -100,12 +100,12 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("options", "told"), BAD.values(), ids=BAD.keys())
-def test_odd_arguments_get_one_sentence(options: dict[str, Any], told: str) -> None:
+@pytest.mark.parametrize(("options", "wording"), BAD.values(), ids=BAD.keys())
+def test_odd_arguments_get_one_sentence(options: dict[str, Any], wording: str) -> None:
     well = jid.load(data_folder() / "well_excited.csv.gz")
     searched = {n: v for n, v in options.items() if n in ("seed", "threads", "ga", "callback")}
     others = {n: v for n, v in options.items() if n not in searched}
-    with pytest.raises(jid.InputError, match=told) as refused:
+    with pytest.raises(jid.InputError, match=wording) as refused:
         jid.identify(well, **{"joint": jid.thesis_joint(), **others}, search=jid.Search(**searched))
     assert "\n" not in str(refused.value)
 

@@ -398,7 +398,7 @@ def test_an_empty_file_is_filled(tmp_path: Path) -> None:
     assert Joint.load(path) == thesis_joint()
 
 
-def test_a_sensor_may_be_told_away(tmp_path: Path) -> None:
+def test_a_sensor_may_be_excluded(tmp_path: Path) -> None:
     path = tmp_path / "joint.toml"
     path.write_text("schema = 1\n[sensor]\n")
     assert Joint.load(path).sensor

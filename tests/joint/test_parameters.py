@@ -34,7 +34,7 @@ TABLES = st.sets(NAMES).flatmap(
 )
 
 
-def test_a_parameter_is_free_and_unknown_unless_told() -> None:
+def test_a_parameter_is_free_and_unknown_by_default() -> None:
     parameter = Parameter(name="coulomb")
     assert (parameter.value, parameter.min, parameter.max) == (None, None, None)
     assert parameter.vary

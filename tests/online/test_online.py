@@ -131,7 +131,7 @@ def test_standing_still_gives_no_estimate_and_no_error() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "wording"),
     [
         ({"window": 0.0}, "window is 0.0: a duration above 0"),
         ({"update": float("nan")}, "update is nan: a duration above 0"),
@@ -141,13 +141,13 @@ def test_standing_still_gives_no_estimate_and_no_error() -> None:
         ({"callback": 3}, "callback is 3: a function"),
     ],
 )
-def test_refuses_settings(changes: dict[str, object], told: str) -> None:
-    with pytest.raises(jid.InputError, match=told):
+def test_refuses_settings(changes: dict[str, object], wording: str) -> None:
+    with pytest.raises(jid.InputError, match=wording):
         jid.OnlineIdentifier(**changes)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
-    ("sample", "told"),
+    ("sample", "wording"),
     [
         ({"time": 0.0, "position": 0.0, "torque": 1.0}, "samples: velocity: it is missing"),
         (
@@ -176,15 +176,15 @@ def test_refuses_settings(changes: dict[str, object], told: str) -> None:
         ({"time": 9.0, "speed": 1.0}, "samples: speed: there is no such signal"),
     ],
 )
-def test_refuses_samples(sample: dict[str, object], told: str) -> None:
+def test_refuses_samples(sample: dict[str, object], wording: str) -> None:
     with jid.OnlineIdentifier(jid.thesis_joint()) as identifier:
         identifier.feed(time=1.0, position=0.0, velocity=0.0, torque=0.0, sensor=0.0)
-        with pytest.raises(jid.InputError, match=told):
+        with pytest.raises(jid.InputError, match=wording):
             identifier.feed(**sample)  # type: ignore[arg-type]
         identifier.feed(time=1.1, position=0.0, velocity=0.0, torque=0.0, sensor=0.0)
 
 
-def test_an_error_in_the_thread_is_told_by_the_next_call(excited: jid.Recording) -> None:
+def test_an_error_in_the_thread_is_reported_by_the_next_call(excited: jid.Recording) -> None:
     def broken(_: jid.OnlineEstimate) -> None:
         raise RuntimeError("the user's own")
 

@@ -18,7 +18,7 @@ def excited() -> jid.Recording:
 
 
 @pytest.mark.parametrize("kind", [SystemExit, KeyboardInterrupt, RuntimeError])
-def test_whatever_the_callback_raises_is_told(
+def test_errors_of_the_callback_are_reported(
     excited: jid.Recording, kind: type[BaseException]
 ) -> None:
     calls: list[int] = []
@@ -100,14 +100,14 @@ with jid.OnlineIdentifier(jid.thesis_joint()) as identifier:
     assert identifier.wait(60.0) is not None
     print(sorted(set(sys.modules) - before))
 """
-    told = subprocess.run(
+    wording = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, check=True
     )
-    assert told.stdout.strip() == "[]"
+    assert wording.stdout.strip() == "[]"
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "wording"),
     [
         ({"model": "foo"}, "name is 'foo': it is unknown"),
         ({"residual": "foo"}, "residual is 'foo': it is unknown"),
@@ -126,8 +126,8 @@ with jid.OnlineIdentifier(jid.thesis_joint()) as identifier:
         ({"windows": 2.2}, "windows is 2.2: 7 parameters need more than 14 windows"),
     ],
 )
-def test_refuses_settings_at_once(changes: dict[str, object], told: str) -> None:
-    with pytest.raises(jid.InputError, match=told):
+def test_refuses_settings_at_once(changes: dict[str, object], wording: str) -> None:
+    with pytest.raises(jid.InputError, match=wording):
         jid.OnlineIdentifier(jid.thesis_joint(), **changes)  # type: ignore[arg-type]
 
 
@@ -139,7 +139,7 @@ def test_without_a_joint_the_first_sample_says_whether_there_is_a_sensor() -> No
 
 
 @pytest.mark.parametrize(
-    ("sample", "told"),
+    ("sample", "wording"),
     [
         (
             {"motor_position": 0.0, "torque": 0.0, "sensor": 0.0},
@@ -149,10 +149,10 @@ def test_without_a_joint_the_first_sample_says_whether_there_is_a_sensor() -> No
         ({"position": 0.0, "torque": 0.0}, "the samples have no signal sensor"),
     ],
 )
-def test_refuses_the_first_sample(sample: dict[str, float], told: str) -> None:
+def test_refuses_the_first_sample(sample: dict[str, float], wording: str) -> None:
     with (
         jid.OnlineIdentifier(jid.thesis_joint()) as identifier,
-        pytest.raises(jid.InputError, match=told),
+        pytest.raises(jid.InputError, match=wording),
     ):
         identifier.feed(time=0.0, **sample)
 

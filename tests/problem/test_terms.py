@@ -261,12 +261,12 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("options", "joint", "told"), REFUSED.values(), ids=REFUSED.keys())
-def test_what_cannot_be_told_apart_is_refused(
-    options: dict[str, Any], joint: jid.Joint | None, told: str
+@pytest.mark.parametrize(("options", "joint", "wording"), REFUSED.values(), ids=REFUSED.keys())
+def test_indistinguishable_terms_are_refused(
+    options: dict[str, Any], joint: jid.Joint | None, wording: str
 ) -> None:
     recording = smooth({"inertia": 0.8, "coulomb": 2.0, "viscous": 4.0})
-    with pytest.raises(jid.InputError, match=told):
+    with pytest.raises(jid.InputError, match=wording):
         jid.identify([recording, recording], joint, model=options)
 
 

@@ -1,4 +1,4 @@
-"""Simulated sensors: each does what it is told and nothing else; all are off by default."""
+"""Simulated sensors: each does what its options say and nothing else; all are off by default."""
 
 import math
 import pickle

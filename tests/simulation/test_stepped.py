@@ -60,7 +60,7 @@ def test_time_is_the_sum_of_the_steps() -> None:
 
 
 @pytest.mark.parametrize(
-    ("torque", "duration", "told"),
+    ("torque", "duration", "wording"),
     [
         (math.nan, 1e-3, "torque"),
         (math.inf, 1e-3, "torque"),
@@ -68,19 +68,19 @@ def test_time_is_the_sum_of_the_steps() -> None:
         (1.0, math.nan, "duration"),
     ],
 )
-def test_what_cannot_be_stepped_is_refused(torque: float, duration: float, told: str) -> None:
-    with pytest.raises(ValueError, match=told):
+def test_what_cannot_be_stepped_is_refused(torque: float, duration: float, wording: str) -> None:
+    with pytest.raises(ValueError, match=wording):
         stepped_joint(TRUE).advance(torque, duration)
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "wording"),
     [
         ({"period": 0.0}, "period"),
         ({"integration_step": -1.0}, "step"),
         ({"position": math.nan}, "position"),
     ],
 )
-def test_a_joint_that_cannot_be_is_refused(change: dict[str, float], told: str) -> None:
-    with pytest.raises(ValueError, match=told):
+def test_a_joint_that_cannot_be_is_refused(change: dict[str, float], wording: str) -> None:
+    with pytest.raises(ValueError, match=wording):
         stepped_joint(TRUE, **change)  # type: ignore[arg-type]

@@ -270,7 +270,7 @@ def test_truths_that_differ_are_those_of_their_cells(scenario: jid.Scenario) -> 
         assert all(abs(cell.bias["coulomb"]) < 0.02 for cell in study.summary().cells)
 
 
-def test_a_dead_worker_is_told_with_what_was_done(
+def test_a_dead_worker_is_reported_with_what_was_done(
     recording: jid.Recording, joint: jid.Joint, tmp_path: Path
 ) -> None:
     path = tmp_path / "study.jsonl"
@@ -352,7 +352,7 @@ def test_what_cannot_be_used_here_is_refused_there_only(
 
 
 @pytest.mark.parametrize(
-    ("keywords", "told"),
+    ("keywords", "wording"),
     [
         ({"grid": {"ga.populaton": [20]}}, "grid: ga.populaton: it cannot be swept; did you mean"),
         (
@@ -390,10 +390,10 @@ def test_what_cannot_be_used_here_is_refused_there_only(
         ({"standard_errors": 1}, "standard_errors is 1: true or false"),
     ],
 )
-def test_wrong_input_is_told_in_a_sentence(
-    recording: jid.Recording, joint: jid.Joint, keywords: dict[str, Any], told: str
+def test_wrong_input_is_reported_in_a_sentence(
+    recording: jid.Recording, joint: jid.Joint, keywords: dict[str, Any], wording: str
 ) -> None:
-    with pytest.raises(jid.InputError, match=told) as error:
+    with pytest.raises(jid.InputError, match=wording) as error:
         jid.sweep(recording, joint, **keywords)
     assert "\n" not in str(error.value)
 
@@ -560,8 +560,8 @@ def test_another_studys_file_is_left_alone(
         ({"grid": GRID, "search": jid.Search(seed=1), "resume": True}, "another seed"),
         ({"grid": GRID, "windows": 77, "resume": True}, "another options"),
     ]
-    for keywords, told in changes:
-        with pytest.raises(jid.InputError, match=told):
+    for keywords, wording in changes:
+        with pytest.raises(jid.InputError, match=wording):
             jid.sweep(recording, joint, trials=1, output=path, **keywords)
     other = recording.crop(0.0, 6.0)
     with pytest.raises(jid.InputError, match="another subject"):
@@ -628,13 +628,13 @@ def test_a_killed_study_goes_on(
         if child.poll() is None:
             os.kill(child.pid, kill)
             kills += 1
-        told, _ = child.communicate(timeout=60)
+        wording, _ = child.communicate(timeout=60)
         if child.returncode == 0:
             break
         if kill == signal.SIGINT:
             assert child.returncode in (130, -signal.SIGINT)
             if child.returncode == 130:
-                assert int(told) == len(jid.Study.load(path))
+                assert int(wording) == len(jid.Study.load(path))
     assert kills > 0
     assert jid.Study.load(path).rows == long_study.rows
     rows = [json.loads(line) for line in _lines(path)]

@@ -1,4 +1,4 @@
-"""The joint of the 2007 thesis."""
+"""The joint of the thesis."""
 
 from jointid.joint.joint import Joint
 from jointid.joint.link import Limits, Link
@@ -7,7 +7,7 @@ from jointid.joint.parameters import Parameter
 
 
 def thesis_joint() -> Joint:
-    """Return the joint of the 2007 thesis: a strain-wave drive with a built-in torque sensor.
+    """Return the joint of the thesis: a strain-wave drive with a built-in torque sensor.
 
     It has the drive's data and the bounds of the search, but no values of friction or sensor.
     """
