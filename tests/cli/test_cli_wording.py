@@ -289,3 +289,11 @@ def test_a_place_that_has_an_option(command: str, error: InputError, text: str) 
 )
 def test_values(value: object, text: str) -> None:
     assert in_sentence(value) == text
+
+
+def test_a_page_from_the_command_line_advises_options(tmp_path: Path) -> None:
+    """Who made the page with the command line follows its advice there."""
+    assert main(["demo", "--output", str(tmp_path), "--quiet"]) == 0
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "load with --column velocity=none" in page
+    assert "columns=" not in page

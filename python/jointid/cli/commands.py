@@ -13,7 +13,7 @@ from jointid.cli.outputs import check_outputs, check_page
 from jointid.cli.session import emulate, run
 from jointid.cli.simulation import simulate
 from jointid.cli.study import sweep
-from jointid.cli.wording import Wording
+from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
@@ -31,7 +31,7 @@ def demo(arguments: argparse.Namespace) -> None:
         demonstration = demonstrate(callback=progress)
     estimate = demonstration.estimate
     arguments.output.mkdir(parents=True, exist_ok=True)
-    page = save_report(estimate, arguments.output / "report.html")
+    page = save_report(estimate, arguments.output / "report.html", action=ADVICE.of_action)
     estimate.save(arguments.output / "estimate.json")
     if arguments.json:
         print(estimate.to_json())
@@ -121,7 +121,7 @@ def report(arguments: argparse.Namespace) -> None:
 
     check_page("output", arguments.output)
     estimate = Estimate.load(arguments.estimate)
-    page = save_report(estimate, arguments.output)
+    page = save_report(estimate, arguments.output, action=ADVICE.of_action)
     if arguments.json:
         summary = {"report": str(page), "warnings": [warning.code for warning in estimate.warnings]}
         print(json.dumps(summary, indent=1, ensure_ascii=False))
@@ -157,7 +157,7 @@ def _write(estimate: Estimate, arguments: argparse.Namespace) -> None:
     from jointid.report.html import save_report
 
     if arguments.report is not None:
-        save_report(estimate, arguments.report)
+        save_report(estimate, arguments.report, action=ADVICE.of_action)
     if arguments.save is not None:
         estimate.save(arguments.save)
 

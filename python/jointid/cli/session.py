@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from jointid.base.errors import InputError
 from jointid.cli.arguments import TEXT, decimal, whole, whole_seed
 from jointid.cli.outputs import check_folder
-from jointid.cli.wording import Wording
+from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
     from jointid.commissioning import Commissioning
@@ -247,6 +247,6 @@ def _write(result: Commissioning, folder: Path) -> None:
         tracking_error(result.recordings(), axes)
         figure.savefig(folder / "tracking_error.png", dpi=150, bbox_inches="tight")
         pyplot.close(figure)
-    save_report(result.estimates[-1], folder / "report.html")
+    save_report(result.estimates[-1], folder / "report.html", action=ADVICE.of_action)
     write_whole(folder / "ring.txt", (result.report() + "\n").encode())
     write_whole(folder / "ring.json", json.dumps(result.to_dict(), indent=1).encode())

@@ -108,6 +108,10 @@ class Wording:
         return f"--model {in_sentence(self.model)}, {field}" if field in stated else ""
 
 
+ADVICE = Wording("identify")
+"""For pages: what a finding advises is done by identifying again."""
+
+
 def _typed(option: str, key: str, value: Any) -> str:
     """An option as the user typed it, so far as that is known."""
     if option in PLACEHOLDERS and not key:

@@ -67,7 +67,7 @@ class Finding:
         action : callable
             Words one action. Default: as at a Python prompt.
         """
-        advice = " or ".join(action(each) for each in self.advice)
+        advice = "; or ".join(action(each) for each in self.advice)
         return f"{self.cause}; {advice}" if advice else self.cause
 
     @property

@@ -119,7 +119,27 @@ def _pictures(estimate: Estimate) -> list[Html]:
 def save_report(
     estimate: Estimate, path: str | Path, action: Callable[[Action], str] = str
 ) -> Path:
-    """Write the report, whole or not at all; returns its path."""
+    """Write the report, whole or not at all.
+
+    Parameters
+    ----------
+    estimate : Estimate
+    path : path
+        Replaced when it exists.
+    action : callable
+        Words the advice of a finding. Default: as at a Python prompt.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    InputError
+        The path is no file name.
+    OSError
+        The file cannot be written; an existing one is untouched.
+    """
     target = require_path("path", path)
     write_whole(target, html_report(estimate, action).encode())
     return target
