@@ -311,14 +311,3 @@ def test_the_page_of_findings_is_what_the_checks_say() -> None:
     assert written == findings_page(), (
         "write it anew: python -m jointid.identification.warnings.table > docs/findings.md"
     )
-
-
-def test_readme_names_no_other_codes() -> None:
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    start = readme.find("| code | meaning |")
-    if start < 0:
-        pytest.skip("README has no table of warnings any more")
-    table = readme[start : readme.index("\n\n", start)]
-    cells = [line.split("|")[1] for line in table.splitlines()[2:]]
-    codes = [code for cell in cells for code in re.findall(r"`(\w+)`", cell)]
-    assert sorted(codes) == sorted(registry.finding_types())
