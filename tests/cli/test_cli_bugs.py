@@ -1,5 +1,6 @@
 """A bug of jointid ends with a traceback and exit code 70; only bad input ends with one line and 2."""
 
+import errno
 import os
 import subprocess
 import sys
@@ -9,6 +10,7 @@ from typing import Any
 import pytest
 
 import jointid as jid
+from jointid.cli import session
 from jointid.cli.command_line import main
 from jointid.cli.demo import data_folder
 from jointid.hardware.emulated.bus import EmulatedBus
@@ -91,6 +93,44 @@ def test_what_is_no_bug(
     written = capsys.readouterr().err
     assert written.startswith(text)
     assert written.count("\n") == 1
+
+
+def test_a_full_disk_is_not_a_bug(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    full = OSError(errno.ENOSPC, "No space left on device")
+    monkeypatch.setattr("jointid.cli.commands.load_all", raising(full))
+    assert main(["info", WELL]) == 2
+    assert capsys.readouterr().err == "jointid info: the output: No space left on device\n"
+
+
+def test_a_broken_pipe_that_is_not_our_output_is_not_passed_over() -> None:
+    program = (
+        "import sys\nfrom jointid.cli import commands, main\n"
+        "def broken(_):\n    raise BrokenPipeError\n"
+        "commands.COMMANDS['info'] = broken\nsys.exit(main(['info', 'x.csv']))"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.returncode == 70
+    assert "BrokenPipeError" in done.stderr
+
+
+def test_notes_of_a_bug_are_repeated_at_the_end(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    error = KeyError("injected")
+    error.add_note("the motor is off")
+    monkeypatch.setattr("jointid.cli.commands.load_all", raising(error))
+    assert main(["info", WELL]) == 70
+    assert capsys.readouterr().err.splitlines()[-1].endswith("(the motor is off)")
+
+
+def test_the_end_of_the_input_is_a_no(monkeypatch: pytest.MonkeyPatch) -> None:
+    def ended(_: str) -> str:
+        raise EOFError
+
+    monkeypatch.setattr("builtins.input", ended)
+    assert session._yes("Is the space free?") is False
 
 
 def test_an_error_of_the_system_without_a_file_is_a_bug(

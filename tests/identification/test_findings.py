@@ -35,11 +35,6 @@ def well_excited() -> jid.Recording:
 def separable(
     recording: jid.Recording, joint: jid.Joint | None = None, **arguments: Any
 ) -> jid.Estimate:
-    model = str(arguments.pop("model", "stribeck"))
-    if not hasattr(jid, "Model"):  # a model's text is not yet understood by identify
-        arguments |= jid.ModelSpec.parse(model).arguments()
-    else:
-        arguments["model"] = model
     return jid.identify(recording, joint or jid.thesis_joint(), search="separable", **arguments)
 
 

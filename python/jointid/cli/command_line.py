@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import select
 import sys
 import traceback
 from collections.abc import Sequence
@@ -11,6 +13,8 @@ from jointid.cli.outputs import check_distinct
 from jointid.cli.parser import BAD_USAGE, command_parser
 from jointid.cli.wording import Wording
 
+# Errors of a disk, which name no file when they are raised by a write.
+_DISK = {errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS, errno.EFBIG}
 DONE, BAD_INPUT, BUG, INTERRUPTED = 0, BAD_USAGE, 70, 130
 
 
@@ -47,23 +51,35 @@ def main(argv: Sequence[str] | None = None) -> int:
         reason = f": {stop}" if str(stop) else ""
         print(f"jointid: interrupted{reason}", file=sys.stderr)
         return INTERRUPTED
-    except BrokenPipeError:  # the reader of our output left: not our failure
-        sys.stderr.close()
-        return DONE
     except InputError as error:
         sentence = Wording.of(arguments).of_error(error)
         print(f"jointid {arguments.command}: {sentence}", file=sys.stderr)
         return BAD_INPUT
     except Exception as error:
-        if isinstance(error, OSError) and error.filename is not None:  # a file of the user's
+        if isinstance(error, BrokenPipeError) and _reader_left():
+            sys.stderr.close()  # the reader of our output left: not our failure
+            return DONE
+        if isinstance(error, OSError) and (error.filename is not None or error.errno in _DISK):
             reason = error.strerror or str(error)
-            print(f"jointid {arguments.command}: {error.filename}: {reason}", file=sys.stderr)
+            place = "the output" if error.filename is None else str(error.filename)
+            print(f"jointid {arguments.command}: {place}: {reason}", file=sys.stderr)
             return BAD_INPUT
         traceback.print_exception(error)
+        notes = "; ".join(getattr(error, "__notes__", ()))
         print(
-            f"jointid {arguments.command}: this is a bug in jointid, not bad input; please report it "
-            "with the lines above",
+            f"jointid {arguments.command}: this is an error in the program, not bad input; please "
+            f"report it with the lines above{f' ({notes})' if notes else ''}",
             file=sys.stderr,
         )
         return BUG
     return DONE if code is None else int(code)
+
+
+def _reader_left() -> bool:
+    """Whether it is our own output that nobody reads any more, not another pipe."""
+    try:
+        pipe = select.poll()
+        pipe.register(sys.stdout.fileno(), select.POLLERR)
+        return any(event & select.POLLERR for _, event in pipe.poll(0))
+    except (AttributeError, OSError, ValueError):  # no poll on this system; no file behind stdout
+        return True

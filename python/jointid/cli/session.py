@@ -221,13 +221,21 @@ def _agreed(bench: Bench) -> bool:
     if not sys.stdin.isatty():
         print("give --yes to start without being asked", file=sys.stderr)
         return False
-    return input("Is the space free, and the emergency stop at hand? [yes/no] ").strip() == "yes"
+    return _yes("Is the space free, and the emergency stop at hand? [yes/no] ")
 
 
 def _agreed_again(estimate: Estimate) -> bool:
     """Whether the user agrees that the joint moves with the identified values."""
     print(Wording("run").of_report(estimate), file=sys.stderr)
-    return input("Move the joint with these values? Is the space free? [yes/no] ").strip() == "yes"
+    return _yes("Move the joint with these values? Is the space free? [yes/no] ")
+
+
+def _yes(question: str) -> bool:
+    """Whether the user answers yes; the end of the input is a no."""
+    try:
+        return input(question).strip() == "yes"
+    except EOFError:
+        return False
 
 
 def _write(result: Commissioning, folder: Path) -> None:
