@@ -46,7 +46,7 @@ def test_a_bug_ends_with_a_traceback(
     lines = capsys.readouterr().err.splitlines()
     assert lines[0] == "Traceback (most recent call last):"
     assert "injected" in lines[-2]
-    assert lines[-1].startswith("jointid identify: this is a bug in jointid")
+    assert lines[-1].startswith("jointid identify: this is an error in the program")
     assert "please report it" in lines[-1]
 
 
@@ -169,7 +169,7 @@ def test_a_bug_in_a_session_switches_the_motor_off_first(
     lines = capsys.readouterr().err.splitlines()
     assert lines[0] == "Traceback (most recent call last):"
     assert any(line.startswith(kind.__name__) and "injected" in line for line in lines)
-    assert lines[-1].startswith("jointid run: this is a bug in jointid")
+    assert lines[-1].startswith("jointid run: this is an error in the program")
     assert motor_was_on[-1]
     assert [device.motor_on for device in devices] == [False]
     assert len(jid.load(runs / "initial.csv")) > 200, "closed, whole, and it reads back"

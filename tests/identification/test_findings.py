@@ -35,7 +35,8 @@ def well_excited() -> jid.Recording:
 def separable(
     recording: jid.Recording, joint: jid.Joint | None = None, **arguments: Any
 ) -> jid.Estimate:
-    return jid.identify(recording, joint or jid.thesis_joint(), search="separable", **arguments)
+    options = {"model": "stribeck", "search": "separable"} | arguments
+    return jid.identify(recording, joint or jid.thesis_joint(), **options)
 
 
 def found_in(estimate: jid.Estimate, code: str) -> Finding:
