@@ -62,9 +62,9 @@ FOLDERS: dict[str, Folder] = {
         may_use={*_SOUGHT, "identification/inference", "identification/warnings"},
         packages={"numpy"},
     ),
-    "identification/search": Folder(may_use=_FOUND, packages={"numpy", "scipy"}),
+    "identification/search": Folder(may_use=_FOUND - {"recording"}, packages={"numpy", "scipy"}),
     "identification/inference": Folder(
-        may_use={*_FOUND, "identification/search"}, packages={"numpy", "scipy"}
+        may_use={*_FOUND, "identification/search"} - {"base"}, packages={"numpy", "scipy"}
     ),
     "identification/warnings": Folder(
         may_use={*_FOUND, "identification/inference"}, packages={"numpy"}
@@ -74,18 +74,17 @@ FOLDERS: dict[str, Folder] = {
     "simulation": Folder(may_use=_DATA, packages={"numpy"}),
     "study": Folder(may_use={*_SOUGHT, "simulation"}, packages={"numpy", "pandas", "pyarrow"}),
     "plot": Folder(
-        may_use={*_DATA, "simulation", "estimate", "study", "problem"},
+        may_use={*_DATA, "simulation", "estimate", "study"},
         packages={"numpy", "matplotlib"},
     ),
     "report": Folder(
-        may_use={*_FOUND, "plot", "identification/warnings"}, packages={"numpy", "matplotlib"}
+        may_use={"base", "estimate", "plot", "identification/warnings"},
+        packages={"numpy", "matplotlib"},
     ),
     "hardware/session": Folder(may_use={*_DATA, "simulation"}, packages={"numpy"}),
     "hardware/can": Folder(may_use={"base"}, packages={"can"}),
     "hardware/live": Folder(may_use={"base", "hardware/session"}, packages={"numpy", "matplotlib"}),
-    "hardware/emulated": Folder(
-        may_use={"base", "joint", "simulation", "hardware/can"}, packages={"numpy", "can"}
-    ),
+    "hardware/emulated": Folder(may_use={"base", "hardware/can"}, packages={"numpy", "can"}),
     "hardware/bench": Folder(
         may_use={
             *(*_DATA, "recording/readers", "simulation"),
@@ -95,7 +94,7 @@ FOLDERS: dict[str, Folder] = {
     ),
     "hardware/elmo": Folder(
         may_use={
-            *(*_DATA, "simulation"),
+            *("base", "joint", "simulation"),
             *("hardware/session", "hardware/can", "hardware/bench", "hardware/emulated"),
         },
         packages={"numpy", "can"},
@@ -108,27 +107,32 @@ FOLDERS: dict[str, Folder] = {
         },
     ),
     "commissioning": Folder(
-        may_use={*_SOUGHT, "simulation", "hardware/session", "hardware/bench"}, packages={"numpy"}
+        may_use={*_SOUGHT, "simulation", "hardware/session", "hardware/bench"} - {"problem"},
+        packages={"numpy"},
     ),
     "cli": Folder(
         may_use={
-            *(*_SOUGHT, "recording/readers", "comparison", "simulation", "study", "plot", "report"),
+            *(_SOUGHT - {"problem"}),
+            *("recording/readers", "comparison", "simulation", "study", "plot", "report"),
             *("hardware/session", "hardware/can", "hardware/live", "hardware/bench"),
-            *("hardware/emulated", "commissioning", "identification/warnings", ""),
+            *("hardware/emulated", "commissioning", ""),
         },
         packages={"numpy", "matplotlib"},
     ),
     # The face of the package: its own folder is the top one.
     "": Folder(
         may_use={
-            *(*_SOUGHT, "recording/readers", "comparison", "online", "simulation", "study"),
-            *("plot", "report", "hardware", "commissioning", "cli"),
+            *(_SOUGHT - {"problem"}),
+            *("recording/readers", "comparison", "online", "simulation", "study"),
+            *("plot", "hardware", "commissioning", "cli"),
         },
     ),
 }
 TOP = {"__init__", "__main__"}
 # These bring python-can, a window, or a motor: imported by name, when asked for.
 ASKED_FOR = {"hardware", "commissioning"}
+# The registry of drive types names what is loaded only when a bench asks for it.
+NAMED_ON_PURPOSE = {"hardware.bench.drive_types"}
 MEDIAN = 130  # lines of a Python file, at most
 # Slow to load, or of use to few: imported inside the function that needs it (hardware aside).
 HEAVY = {"scipy", "pandas", "pyarrow", "matplotlib", "can", "canopen", "tomlkit"}
@@ -158,6 +162,22 @@ def _median(python: list[Path]) -> list[str]:
     lengths = [len(path.read_text(encoding="utf-8").splitlines()) for path in python]
     median = statistics.median(lengths) if lengths else 0
     return [f"python/jointid: half of its files have more than {MEDIAN} lines"] * (median > MEDIAN)
+
+
+def unused_arrows(package: Path) -> list[tuple[str, str]]:
+    """Pairs of folders that the table allows and no import needs, for the type checker neither."""
+    used: set[tuple[str, str]] = set()
+    for path in package.rglob("*.py"):
+        name = path.parent.relative_to(package).as_posix().removeprefix(".")
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        for _, target, _ in _imported(tree, _module(path, package), package):
+            other = target.partition(".")[2]
+            inner = package.joinpath(*other.split("."))
+            used.add((name, _folder(other if inner.is_dir() else other.rpartition(".")[0])))
+    allowed = {
+        (name, other) for name, folder in FOLDERS.items() for other in folder.may_use - {name}
+    }
+    return sorted(allowed - used)
 
 
 def module_graph(package: Path) -> dict[str, set[str]]:
@@ -354,3 +374,10 @@ def _imported(
                     place.is_dir() or place.with_suffix(".py").exists() or alias.name == "_core"
                 )
                 yield node.lineno, full if is_module else base, id(node) in late
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            # A module named in a text is imported by its name, sooner or later.
+            named = re.fullmatch(r"(jointid(?:\.\w+)+)(?::\w+)?", node.value)
+            if named and module not in NAMED_ON_PURPOSE:
+                place = package.joinpath(*named[1].split(".")[1:])
+                if place.is_dir() or place.with_suffix(".py").exists():
+                    yield node.lineno, named[1], True

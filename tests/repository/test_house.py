@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
-from house_rules import FOLDERS, HEAVY, ROOMS, check, module_graph
+from house_rules import FOLDERS, HEAVY, ROOMS, check, module_graph, unused_arrows
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 
@@ -151,6 +151,11 @@ LIMITS = "hardware/session/limits.py"
         (LIMITS, "from ...identification.identify import find", "hardware/session may use base"),
         (LIMITS, "def f():\n    from jointid import plot", "hardware/session may use base"),
         (LIMITS, "from ..can import bus", "hardware/session may use base"),
+        (
+            RUN,
+            "def f():\n    import_module('jointid.cli.command_line')",
+            "recording may use base",
+        ),
         (RUN, "import can", "packages allowed in recording"),
         (RUN, "import requests", "packages allowed in recording"),
         (DRAW, "def f():\n    import scipy", "packages allowed in plot"),
@@ -236,6 +241,19 @@ def test_the_tables_name_only_what_they_know() -> None:
     graphlib.TopologicalSorter(
         {n: f.may_use - {"", n} for n, f in FOLDERS.items() if n}
     ).prepare()  # raises where the table itself has a circle
+
+
+def test_contributing_says_what_each_folder_may_use() -> None:
+    text = (REPOSITORY / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `python/jointid/([\w/]+)` \|[^|]*\|([^|]*)\|$", text, re.MULTILINE)
+    assert len(rows) == len(FOLDERS) - 1
+    for name, cell in rows:
+        said = {word.strip(" `") for word in cell.split(",")} - {"_core", "standard library"}
+        assert said == FOLDERS[name].may_use - {name, ""}, name
+
+
+def test_the_table_allows_no_more_than_is_used() -> None:
+    assert unused_arrows(REPOSITORY / "python" / "jointid") == []
 
 
 def test_contributing_has_a_row_for_every_folder() -> None:

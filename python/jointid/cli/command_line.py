@@ -14,7 +14,7 @@ from jointid.cli.parser import BAD_USAGE, command_parser
 from jointid.cli.wording import Wording
 
 # Errors of a disk, which name no file when they are raised by a write.
-_DISK = {errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS, errno.EFBIG}
+_DISK = {errno.ENOSPC, errno.EIO, errno.EROFS, errno.EFBIG, getattr(errno, "EDQUOT", -1)}
 DONE, BAD_INPUT, BUG, INTERRUPTED = 0, BAD_USAGE, 70, 130
 
 
