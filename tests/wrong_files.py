@@ -78,7 +78,7 @@ def _joint_files(folder: Path) -> None:
     joint = jid.thesis_joint()
     joint.save(folder / "unknown.toml")
     joint.with_parameters(_TRUTH).save(folder / "true.toml")
-    bench = data_folder().parent / "hardware" / "joint.toml"
+    bench = Path(__file__).resolve().parents[1] / "examples" / "hardware" / "joint.toml"
     text = bench.read_text(encoding="utf-8")
     texts = {
         "typo.toml": "schema = 1\n[drive]\ngear_ration = 3.0\n",

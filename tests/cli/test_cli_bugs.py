@@ -17,7 +17,7 @@ from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.session.guard import Guard
 
 WELL = str(data_folder() / "well_excited.csv.gz")
-BENCH = str(data_folder().parent / "hardware" / "joint.toml")
+BENCH = str(Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml")
 DEPTHS = {
     "the command": "jointid.cli.commands.load_all",
     "a reader": "jointid.recording.readers.csv_reader.CsvTable.numbers",
