@@ -28,6 +28,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         The exit code: 0 done, 2 bad input, 3 a session stopped or refused, 70 a bug of jointid,
         130 interrupted by Ctrl-C.
     """
+    _show_every_character()
     grammar = command_parser()
     arguments = grammar.parse_args(argv)
     if arguments.version:
@@ -67,3 +68,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         )
         return BUG
     return DONE if code is None else int(code)
+
+
+def _show_every_character() -> None:
+    """A terminal or pipe without √ or ± shows a question mark; it is no reason to lose a result."""
+    for stream in (sys.stdout, sys.stderr):
+        reconfigure = getattr(stream, "reconfigure", None)  # a stream put in its place has none
+        if reconfigure is not None:
+            reconfigure(errors="replace")
