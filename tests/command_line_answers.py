@@ -44,6 +44,18 @@ def commands() -> dict[str, argparse.ArgumentParser]:
     return dict(action.choices)
 
 
+def obeyed(line: list[str], options: list[str]) -> list[str]:
+    """A command line with the advice followed: a NAME=VALUE replaces the one of the same name."""
+    given = {word.partition("=")[0] for word in options if "=" in word}
+    kept: list[str] = []
+    for word in line:
+        if "=" in word and word.partition("=")[0] in given and kept[-1] in PLACEHOLDERS:
+            kept.pop()
+        else:
+            kept.append(word)
+    return [*kept, *options]
+
+
 def advised(sentence: str, line: list[str], fill: dict[str, str]) -> list[list[str]]:
     """The alternatives that a sentence advises, each as the options to add."""
     alternatives = []

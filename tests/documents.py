@@ -25,13 +25,12 @@ def enter(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(folder)
 
 
-def run_python_blocks(
-    text: str, folder: Path, monkeypatch: pytest.MonkeyPatch, **names: Any
-) -> dict[str, Any]:
+def run_python_blocks(text: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """Run a document's Python blocks one after the other in one namespace, and return it."""
     pyplot = pytest.importorskip("matplotlib.pyplot")
     enter(folder, monkeypatch)
     found = blocks(text, "python")
+    names: dict[str, Any] = {}
     assert found
     try:
         for block in found:

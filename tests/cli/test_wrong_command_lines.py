@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from command_line_answers import OPTION, advised, answer, commands, python_in
+from command_line_answers import OPTION, advised, answer, commands, obeyed, python_in
 from wrong_files import write_wrong_files
 
 from jointid.cli.command_line import main
@@ -50,7 +50,7 @@ def test_a_wrong_command_line_is_answered_in_one_line(
     alternatives = advised(sentence.partition("; see jointid")[0], line, entry.get("fill", {}))
     for options in alternatives:
         assert not re.search(r"\b[A-Z]{4,}\b", " ".join(options)), f"fill {options}"
-        code, again = answer([*line, *options], capsys)
+        code, again = answer(obeyed(line, options), capsys)
         assert again != text, options
         if entry.get("remedied"):
             assert code == 0, (options, again)

@@ -5,7 +5,6 @@ import shlex
 import shutil
 import tomllib
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -27,15 +26,7 @@ COMMANDS = [
 
 
 def test_the_guide_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    run = jid.load(data_folder() / "well_excited.csv.gz").crop(0.0, 2.0)
-    assert run.torque is not None
-    assert run.sensor is not None
-    columns = (run.time, run.position, run.velocity, run.torque, run.sensor)
-    samples = [
-        SimpleNamespace(t=t, q=q, v=v, tau=tau, raw=raw)
-        for t, q, v, tau, raw in zip(*(column.tolist() for column in columns), strict=True)
-    ]
-    names = run_python_blocks(read("docs/guide.md"), tmp_path, monkeypatch, samples=samples)
+    names = run_python_blocks(read("docs/guide.md"), tmp_path, monkeypatch)
     assert (tmp_path / "grid.csv").is_file()
     assert names["comparison"].winner == "stribeck"
     assert names["measured"].status == names["together"].status == "converged"
@@ -80,8 +71,6 @@ def test_a_command_runs(
     enter(tmp_path, monkeypatch)
     if command == "sweep":
         arguments += ["--trials", "1"]
-    if command == "run" and arguments[0] == "joint.toml":
-        shutil.copy(ROOT / "examples" / "hardware" / "joint.toml", tmp_path)
     assert main([command, *arguments]) == 0
 
 

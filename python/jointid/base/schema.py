@@ -70,8 +70,10 @@ def read_json(text: str) -> Any:
         value = json.loads(text)
     except RecursionError:
         raise InputError("not JSON of ours: nested too deeply") from None
-    except ValueError as error:  # mostly a JSONDecodeError; an integer of 5000 digits is another
-        raise InputError(f"not JSON: {error}") from None
+    except json.JSONDecodeError as error:
+        raise InputError(f"not JSON: line {error.lineno}, column {error.colno}") from None
+    except ValueError:  # an integer of 5000 digits
+        raise InputError("not JSON of ours: a number has too many digits") from None
     level: list[Any] = [value]
     for _ in range(DEEPEST + 1):
         inside = [_items(each) for each in level if isinstance(each, list | dict)]

@@ -198,6 +198,10 @@ def _joint_fields(arguments: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]
 
 def _in_joint_file(entries: list[tuple[str, str, Any]]) -> str:
     """What to write into the joint file, table by table, and what to take out of it."""
+    if entries == [
+        ("sensor", "present", False)
+    ]:  # the table is there only to say that there is one
+        return "delete [sensor] from the joint file"
     tables: dict[tuple[bool, str], list[str]] = {}
     for table, key, value in entries:
         text = "VALUE" if value is ... or value == "..." else in_joint_file(value)

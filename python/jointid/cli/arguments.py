@@ -62,6 +62,22 @@ def pair(text: str) -> tuple[str, str]:
     return name, value
 
 
+def by_name(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str, str]:
+    """Values by name.
+
+    Raises
+    ------
+    InputError
+        A name is given twice.
+    """
+    values: dict[str, str] = {}
+    for name, value in pairs:
+        if name in values:
+            raise InputError("it is given twice", argument=f"{argument}.{name}", value=value)
+        values[name] = value
+    return values
+
+
 def number_or_text(text: str) -> Any:
     """An int, else a float, else the text."""
     for kind in (int, float):
@@ -120,10 +136,12 @@ def load_all(paths: Sequence[Path], arguments: argparse.Namespace) -> list[Recor
 
     columns = {
         signal: int(header) if header.isdigit() else None if header == "none" else header
-        for signal, header in arguments.column
+        for signal, header in by_name("columns", arguments.column).items()
     }
-    where = {column: number_or_text(value) for column, value in arguments.where}
-    units = dict(arguments.unit)
+    where = {
+        column: number_or_text(value) for column, value in by_name("where", arguments.where).items()
+    }
+    units = by_name("units", arguments.unit)
     scale = _numbers("scale", arguments.scale)
     return [
         load(
@@ -143,14 +161,14 @@ def fixed_values(arguments: argparse.Namespace) -> dict[str, float]:
     Raises
     ------
     InputError
-        Not a number.
+        Not a number, or a name is given twice.
     """
     return _numbers("parameters", arguments.set)
 
 
 def _numbers(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str, float]:
     numbers: dict[str, float] = {}
-    for name, value in pairs:
+    for name, value in by_name(argument, pairs).items():
         number = number_or_text(value)
         if isinstance(number, str):
             raise InputError("a number is expected", argument=f"{argument}.{name}", value=value)

@@ -32,6 +32,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         The exit code: 0 done, 2 bad input, 3 a session stopped or refused, 70 a bug of jointid,
         130 interrupted by Ctrl-C.
     """
+    _show_every_character()
     grammar = command_parser()
     arguments = grammar.parse_args(argv)
     if arguments.version:
@@ -83,3 +84,11 @@ def _reader_left() -> bool:
         return any(event & select.POLLERR for _, event in pipe.poll(0))
     except (AttributeError, OSError, ValueError):  # no poll on this system; no file behind stdout
         return True
+
+
+def _show_every_character() -> None:
+    """A terminal or pipe without √ or ± shows a question mark; it is no reason to lose a result."""
+    for stream in (sys.stdout, sys.stderr):
+        reconfigure = getattr(stream, "reconfigure", None)  # a stream put in its place has none
+        if reconfigure is not None:
+            reconfigure(errors="replace")

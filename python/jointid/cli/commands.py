@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.cli.arguments import fixed_values, load_all
-from jointid.cli.outputs import check_outputs, check_page
+from jointid.cli.outputs import check_output_folder, check_outputs, check_page
+from jointid.cli.parser import BAD_USAGE
 from jointid.cli.session import emulate, run
 from jointid.cli.simulation import simulate
 from jointid.cli.study import sweep
@@ -27,10 +29,11 @@ def demo(arguments: argparse.Namespace) -> None:
     from jointid.cli.progress import Progress
     from jointid.report.html import save_report
 
+    check_output_folder("output", arguments.output)
     with Progress(enabled=not arguments.quiet) as progress:
         demonstration = demonstrate(callback=progress)
     estimate = demonstration.estimate
-    arguments.output.mkdir(parents=True, exist_ok=True)
+    arguments.output.mkdir(exist_ok=True)
     page = save_report(estimate, arguments.output / "report.html", action=ADVICE.of_action)
     estimate.save(arguments.output / "estimate.json")
     if arguments.json:
@@ -47,7 +50,7 @@ def demo(arguments: argparse.Namespace) -> None:
     print(f"\nreport: {page}")
 
 
-def identify(arguments: argparse.Namespace) -> None:
+def identify(arguments: argparse.Namespace) -> int:
     """Identify a joint from one recording or several."""
     from jointid._core import GaOptions
     from jointid.cli.progress import Progress
@@ -83,11 +86,12 @@ def identify(arguments: argparse.Namespace) -> None:
             windows=arguments.windows,
             torque_hold=arguments.torque_hold,
         )
-    _write(estimate, arguments)
+    refused = _write(estimate, arguments)
     print(estimate.to_json() if arguments.json else Wording.of(arguments).of_report(estimate))
+    return _exit_code(refused, arguments)
 
 
-def compare(arguments: argparse.Namespace) -> None:
+def compare(arguments: argparse.Namespace) -> int:
     """Compare models by how well they predict held-out motion."""
     from jointid.cli.progress import ComparisonProgress
     from jointid.comparison.comparison import compare_models
@@ -110,8 +114,9 @@ def compare(arguments: argparse.Namespace) -> None:
             torque_hold=arguments.torque_hold,
             callback=progress,
         )
-    _write(comparison.estimate, arguments)
+    refused = _write(comparison.estimate, arguments)
     print(comparison.to_json() if arguments.json else comparison.report())
+    return _exit_code(refused, arguments)
 
 
 def report(arguments: argparse.Namespace) -> None:
@@ -153,13 +158,34 @@ def _joint(arguments: argparse.Namespace) -> Joint | None:
     return Joint.load(path) if path is not None else None
 
 
-def _write(estimate: Estimate, arguments: argparse.Namespace) -> None:
+def _write(estimate: Estimate, arguments: argparse.Namespace) -> str:
+    """Write what was asked for; returns the code of the finding that refuses a joint file, if any.
+
+    The next session reads a joint file and obeys it, so values that cannot be used stay out of it.
+    """
     from jointid.report.html import save_report
 
     if arguments.report is not None:
         save_report(estimate, arguments.report, action=ADVICE.of_action)
-    if arguments.save is not None:
-        estimate.save(arguments.save)
+    blocking = [each.code for each in estimate.findings if each.severity == "blocking"]
+    if arguments.save is None:
+        return ""
+    if arguments.save.suffix == ".toml" and blocking:
+        return blocking[0]
+    estimate.save(arguments.save)
+    return ""
+
+
+def _exit_code(refused: str, arguments: argparse.Namespace) -> int:
+    """Say after the report which joint file was not written, and why."""
+    if not refused:
+        return 0
+    print(
+        f"jointid {arguments.command}: the finding {refused} is blocking: {arguments.save} was not "
+        "written; --save estimate.json keeps the result",
+        file=sys.stderr,
+    )
+    return BAD_USAGE
 
 
 def _contents(recording: Recording) -> dict[str, Any]:

@@ -30,7 +30,8 @@ _READ = (
     *("simulate", "believe", "trajectory", "resume"),
 )
 _WRITTEN = ("output", "report", "table", "plot", "checkpoint", "save")
-# Continuing a search in its own file, and updating a joint file, are intended.
+# Continuing a search in its own file, and updating a joint file, are intended; but values of an
+# emulated joint do not belong into the file of the real one.
 _INTENDED = {("resume", "checkpoint"), ("joint", "save")}
 
 
@@ -49,7 +50,9 @@ def check_distinct(arguments: argparse.Namespace) -> None:
         for read in _READ:
             inputs = getattr(arguments, read, None)
             for path in inputs if isinstance(inputs, list) else [inputs]:
-                if not isinstance(path, str | Path) or (read, written) in _INTENDED:
+                if not isinstance(path, str | Path):
+                    continue
+                if (read, written) in _INTENDED and not getattr(arguments, "emulate", False):
                     continue
                 if Path(path).is_file() and output.exists() and output.samefile(path):
                     raise InputError(
@@ -82,6 +85,19 @@ def check_folder(argument: str, path: Path | None) -> None:
     """
     if path is not None and not path.parent.is_dir():
         raise InputError(f"the folder {path.parent} does not exist", argument=argument, value=path)
+
+
+def check_output_folder(argument: str, path: Path) -> None:
+    """Refuse a folder to be made that is a file, or in a folder that does not exist.
+
+    Raises
+    ------
+    InputError
+        A file, or no such folder.
+    """
+    if path.exists() and not path.is_dir():
+        raise InputError("this is a file; a folder is expected", argument=argument, value=path)
+    check_folder(argument, path)
 
 
 def check_recording_file(argument: str, path: Path | None) -> None:

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any, NoReturn
 
+from jointid._core import model_names
 from jointid.cli.arguments import (
     TEXT,
     file_kinds,
@@ -19,6 +20,8 @@ from jointid.cli.arguments import (
 from jointid.cli.session import add_emulate, add_run
 from jointid.cli.simulation import add_simulate
 from jointid.cli.study import add_sweep
+from jointid.identification.search.search import METHODS
+from jointid.recording.signals import closest
 
 BAD_USAGE = 2
 """Exit code of a command line that cannot be used."""
@@ -27,7 +30,6 @@ BAD_USAGE = 2
 # What argparse says in the terms of a programmer.
 _PLAIN = {
     "the following arguments are required:": "missing:",
-    "unrecognized arguments:": "unknown:",
     "expected one argument": "a value is expected",
     "expected at least one argument": "a value is expected",
 }
@@ -41,9 +43,23 @@ class _Parser(argparse.ArgumentParser):
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         try:
-            return super().parse_known_args(args, namespace)
+            known, unknown = super().parse_known_args(args, namespace)
         except argparse.ArgumentError as error:
             self.error(": ".join(filter(None, (error.argument_name, error.message))))
+        if unknown:  # said here, where the command and its options are known
+            self.error(self._unknown(unknown))
+        return known, unknown
+
+    def _unknown(self, arguments: list[str]) -> str:
+        """What is said of arguments that no option takes; of options, the first."""
+        for argument in arguments:
+            if argument.startswith("--"):
+                option = argument.partition("=")[0]
+                close = closest(option, self._option_string_actions, cutoff=0.8)
+                return f"there is no option {option}" + (
+                    f"; did you mean {close}?" if close else ""
+                )
+        return f"unknown: {' '.join(arguments)}"
 
     def error(self, message: str) -> NoReturn:
         sentence = " ".join(message.split())
@@ -101,7 +117,7 @@ def _add_identify(commands: Any) -> None:
     identify.add_argument(
         "--model",
         metavar="NAME[:OPTION[=VALUE]]",
-        help="friction model: coulomb_viscous or stribeck; with options: stribeck:asymmetric:ripple=2,4",
+        help=f"friction model: {', '.join(model_names())}; with options: stribeck:asymmetric:ripple=2,4",
     )
     identify.add_argument("--population", type=whole, help="individuals of the genetic algorithm")
     identify.add_argument("--generations", type=whole, help="generations of the genetic algorithm")
@@ -174,9 +190,9 @@ def _add_info(commands: Any) -> None:
 
 
 def _identification_arguments(command: argparse.ArgumentParser, *, method: str) -> None:
-    other = "separable" if method == "ga" else "ga"
+    others = " or ".join(name for name in METHODS if name != method)
     command.add_argument("--joint", type=Path, help="joint file (.toml)")
-    command.add_argument("--method", default=method, help=f"{method} (default) or {other}")
+    command.add_argument("--method", default=method, help=f"{method} (default), {others}")
     command.add_argument("--residual", help="sensor or torque")
     command.add_argument(
         "--torque-hold", help="torque between samples: zoh (held command) or linear (measured)"

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
-from jointid.cli.arguments import decimal, number_or_text, pair
+from jointid.cli.arguments import by_name, decimal, number_or_text, pair
 
 if TYPE_CHECKING:
     from jointid.simulation.arguments import Controller
@@ -175,12 +175,14 @@ def _and(names: Sequence[str]) -> str:
 
 
 def _check_names(argument: str, chosen: Mapping[str, Any], known: Collection[str]) -> None:
-    from jointid.joint.checks import suggestion
+    from jointid.recording.signals import closest
 
     for name, value in chosen.items():
         if name not in known:
+            close = closest(name, [*known], cutoff=0.75)  # below it is another thing's name
             raise InputError(
-                f"there is no {name}; {suggestion(name, [*known])}",
+                f"there is no {name}; "
+                + (f"did you mean '{close}'?" if close else f"known are {', '.join(known)}"),
                 argument=f"{argument}.{name}",
                 value=value,
             )
@@ -207,9 +209,7 @@ def _checked(
 def _values(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str, Any]:
     """Numbers, angles such as 60deg, true and false, texts."""
     values: dict[str, Any] = {}
-    for name, text in pairs:
-        if name in values:
-            raise InputError("it is given twice", argument=f"{argument}.{name}", value=text)
+    for name, text in by_name(argument, pairs).items():
         degrees = number_or_text(text.removesuffix("deg"))
         if text.endswith("deg") and not isinstance(degrees, str):
             values[name] = math.radians(degrees)

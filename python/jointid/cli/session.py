@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
 from jointid.cli.arguments import TEXT, decimal, whole, whole_seed
-from jointid.cli.outputs import check_folder
+from jointid.cli.outputs import check_folder, check_output_folder
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
@@ -57,7 +57,12 @@ def add_run(commands: Any) -> None:
         "--threads", type=whole, default=0, help="threads of the search (default 0: all cores)"
     )
     run.add_argument(
-        "--output", type=Path, help="folder for recordings, frame logs, estimates and a picture"
+        "--output",
+        type=Path,
+        help=(
+            "folder for recordings, frame logs, estimates, tracking_error.png, report.html, ring.json "
+            "and ring.txt"
+        ),
     )
     run.add_argument("--save", type=Path, help="write the last estimate to a joint file (.toml)")
     run.add_argument("--plot", action="store_true", help="show the motion in a window")
@@ -180,17 +185,14 @@ def _check(arguments: argparse.Namespace) -> None:
     check_folder("save", arguments.save)
     output = arguments.output
     if output is not None:
-        if output.exists() and not output.is_dir():
-            raise InputError(
-                "this is a file; a folder is expected", argument="output", value=output
-            )
+        check_output_folder("output", output)
         if output.is_dir() and any(output.iterdir()):
             raise InputError(
                 "the folder is not empty, and a session overwrites nothing",
                 argument="output",
                 value=output,
+                remedy="give another name",
             )
-        check_folder("output", output)
 
 
 def _observers(arguments: argparse.Namespace) -> Observers:

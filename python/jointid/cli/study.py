@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from jointid.base.errors import InputError
 from jointid.cli.arguments import (
     TEXT,
+    by_name,
     fixed_values,
     load_all,
     number_or_text,
@@ -102,7 +103,7 @@ def add_sweep(commands: Any) -> None:
     sweep.add_argument("--resume", action="store_true", help="continue the file of --output")
     sweep.add_argument("--table", type=Path, help="file for the table: .csv or .parquet")
     sweep.add_argument(
-        "--plot", type=Path, help="draw the penalty over the first settings: .png, .pdf"
+        "--plot", type=Path, help="draw the penalty over the first settings: .png, .pdf, .svg"
     )
     sweep.add_argument("--json", action="store_true", help="print the summary as JSON")
     sweep.add_argument("--quiet", action="store_true", help="no progress bar")
@@ -120,6 +121,10 @@ def sweep(arguments: argparse.Namespace) -> None:
     if arguments.table is not None and arguments.table.suffix not in (".csv", ".parquet"):
         raise InputError(
             "a table is written as .csv or .parquet", argument="table", value=arguments.table
+        )
+    if arguments.plot is not None and arguments.plot.suffix not in (".png", ".pdf", ".svg"):
+        raise InputError(
+            "a plot is written as .png, .pdf or .svg", argument="plot", value=arguments.plot
         )
     if (arguments.simulate is None) == (not arguments.recordings):
         if arguments.recordings:
@@ -212,13 +217,10 @@ def _workers(count: int | None) -> Executor | nullcontext[None]:
 
 
 def _grid(pairs: list[tuple[str, str]]) -> dict[str, list[Any]]:
-
-    grid: dict[str, list[Any]] = {}
-    for name, values in pairs:
-        if name in grid:
-            raise InputError("it is given twice", argument=f"grid.{name}", value=values)
-        grid[name] = [_value(text) for text in values.split(",")]
-    return grid
+    return {
+        name: [_value(text) for text in values.split(",")]
+        for name, values in by_name("grid", pairs).items()
+    }
 
 
 def _value(text: str) -> Any:

@@ -8,13 +8,34 @@ from collections.abc import Mapping
 from typing import Any
 
 _LONGEST = 60
+_OTHER_KIND = re.compile(
+    r"\s*(?:true|false|none|[-+]?(?:inf|nan|(?:\d[\d_]*\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*",
+    re.IGNORECASE,
+)
 _SPECIAL = re.compile(r"[\s'\"\\$`&|;<>()*?\[\]{}!#~]")
 
 
 def in_sentence(value: object) -> str:
-    """A value as a sentence shows it: no quotes, no braces, `none`, `true`, `2, 4`."""
+    """A value as a sentence shows it: no braces, `none`, `true`, `2, 4`.
+
+    A text is quoted only where it looks like a number or a flag: the quotes are then the fault.
+    """
+    if isinstance(value, list | tuple):
+        return as_typed(", ".join(_distinct(entry) for entry in value))
+    return as_typed(_distinct(value))
+
+
+def as_typed(value: object) -> str:
+    """A value as it was typed behind an option, on one line and not too long."""
     text = " ".join(_text(value, ", ").split())
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
+
+
+def _distinct(value: object) -> str:
+    """A value's text, with quotes where it would be taken for a value of another kind."""
+    if isinstance(value, str) and _OTHER_KIND.fullmatch(value):
+        return f'"{value}"'
+    return _text(value, " " if isinstance(value, list | tuple) else ", ")
 
 
 def behind_option(value: object) -> str:

@@ -11,7 +11,7 @@ from jointid.base.advice import Action
 from jointid.base.errors import NOT_GIVEN, InputError
 from jointid.cli.advice import option_with_value, words_of_action
 from jointid.cli.options import FLAGS, OPTIONS, PLACEHOLDERS, option_of
-from jointid.cli.values import in_sentence
+from jointid.cli.values import as_typed, in_sentence
 
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
@@ -31,11 +31,14 @@ class Wording:
         The one model that the command was called with. Default: none, or several.
     grid : frozenset of str
         Settings that ``--grid`` names. Default: none.
+    joint_file : str
+        The joint file that the command reads. Default: it reads none.
     """
 
     command: str
     model: str = ""
     grid: frozenset[str] = frozenset()
+    joint_file: str = "the joint file"
 
     @classmethod
     def of(cls, arguments: argparse.Namespace) -> Wording:
@@ -45,6 +48,7 @@ class Wording:
             arguments.command,
             models[0] if len(models) == 1 and models[0] else "",
             frozenset(name for name, _ in getattr(arguments, "grid", ())),
+            str(getattr(arguments, "joint", None) or "the joint file"),
         )
 
     def of_error(self, error: InputError) -> str:
@@ -59,7 +63,8 @@ class Wording:
 
     def of_action(self, action: Action) -> str:
         """What to do, with the command's options; empty if the command line cannot do it."""
-        return words_of_action(action, self.command, self.model)
+        words = words_of_action(action, self.command, self.model)
+        return words.replace("the joint file", self.joint_file)
 
     def of_report(self, estimate: Estimate) -> str:
         """An estimate's report as text, the advice of its findings in the words of the command."""
@@ -104,8 +109,8 @@ class Wording:
         if not self.model or "model" not in OPTIONS.get(self.command, {}):
             return ""
         if field in ("name", "model"):
-            return f"--model {in_sentence(self.model)}"
-        return f"--model {in_sentence(self.model)}, {field}" if field in stated else ""
+            return f"--model {as_typed(self.model)}"
+        return f"--model {as_typed(self.model)}, {field}" if field in stated else ""
 
 
 ADVICE = Wording("identify")
@@ -116,14 +121,12 @@ def _typed(option: str, key: str, value: Any) -> str:
     """An option as the user typed it, so far as that is known."""
     if option in PLACEHOLDERS and not key:
         if isinstance(value, str):  # only the name behind the option
-            return f"{option} {in_sentence(value)}"
+            return f"{option} {as_typed(value)}"
         if not isinstance(value, dict) or len(value) != 1:
             return option
         ((key, value),) = value.items()
     if value is NOT_GIVEN or (option in FLAGS and isinstance(value, bool)):
         return f"{option} {key}".rstrip()
     if option in PLACEHOLDERS or not key:
-        return option_with_value(
-            option, key, in_sentence(value) if isinstance(value, str) else value
-        )
+        return option_with_value(option, key, as_typed(value) if isinstance(value, str) else value)
     return f"{option}: {key} is {in_sentence(value)}"

@@ -12,6 +12,9 @@ from jointid import _core
 from jointid.base.errors import InputError
 from jointid.recording.signals import closest
 
+_FEW = 5  # known names that fit into a sentence
+_MISSPELT, _SIMILAR = 0.75, 0.6  # likeness of two texts, as difflib counts it
+
 
 def check_parameter_name(name: object) -> None:
     """Refuse a name that no parameter has, with a suggestion."""
@@ -25,8 +28,11 @@ def check_parameter_name(name: object) -> None:
 
 
 def suggestion(name: object, known: Collection[str]) -> str:
-    """Return a phrase with the known name nearest to an unknown one, or with all known names."""
-    close = closest(name, known)
+    """Return a phrase with the known name nearest to an unknown one, or with all known names.
+
+    A short list is shorter than a wrong guess: only a misspelling is then answered with one name.
+    """
+    close = closest(name, known, _MISSPELT if len(known) <= _FEW else _SIMILAR)
     return f"did you mean '{close}'?" if close else f"known are {', '.join(known)}"
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.identification.prepared import require_joint
 from jointid.identification.search.stated_bounds import parameter_bounds
@@ -90,7 +91,7 @@ class Settings:
                 f"joint '{joint.name}' has a torque sensor, but the samples have no signal sensor",
                 argument="sensor",
                 place="samples",
-                remedy=("give its reading", "remove the sensor from the joint"),
+                remedy=("give its reading", Action("call", {"sensor": False}, function="Joint")),
             )
         if not {"torque", "motor_torque", "current"} & set(signals):
             raise InputError(

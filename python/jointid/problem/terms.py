@@ -147,7 +147,7 @@ def _has_sensor(recordings: Sequence[Recording], joint: Joint | None) -> bool:
                     place=f"recording {number}",
                     remedy=(
                         Action("call", {"columns": {"sensor": ...}}, function="load"),
-                        "remove the sensor from the joint",
+                        Action("call", {"sensor": False}, function="Joint"),
                     ),
                 )
     return joint.sensor

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from jointid import _core
+from jointid.base.advice import Action
 from jointid.base.errors import InputError, shown
 from jointid.joint.checks import suggestion
 from jointid.joint.model import FIELDS
@@ -57,7 +58,12 @@ def _check_name(name: object, known: Sequence[str], scenario: Scenario | None) -
             "it is a setting of a simulation, and recordings are given",
             argument=name,
             place="grid",
-            remedy="give a scenario instead of recordings",
+            remedy=Action(
+                "call",
+                {"subject": ...},
+                text="a scenario instead of recordings",
+                function="sweep",
+            ),
         )
     raise InputError(f"it cannot be swept; {suggestion(name, known)}", argument=name, place="grid")
 

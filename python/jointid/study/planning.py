@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.identification.prepared import require_joint
 from jointid.identification.search.search import Search
@@ -64,7 +65,12 @@ def work_of(
                 "the tracking error after identification needs a simulation, and recordings are given",
                 argument="tracking",
                 value=True,
-                remedy="give a scenario instead of recordings",
+                remedy=Action(
+                    "call",
+                    {"subject": ...},
+                    text="a scenario instead of recordings",
+                    function="sweep",
+                ),
             )
         scenario.believing(scenario.joint)
     work = Work(
