@@ -214,6 +214,21 @@ def test_a_measured_velocity_takes_the_place_of_the_estimated_one() -> None:
     assert stopped.value.stop.limit == "velocity"
 
 
+def test_a_measured_velocity_that_is_stuck_does_not_disarm_the_limit() -> None:
+    class Stuck(Flywheel):
+        def read(self, timeout: float) -> DriveSample:
+            return replace(super().read(timeout), velocity=0.0)
+
+    wheel = Stuck()
+    push = jid.Trajectory.step(5.0, duration=2.0)
+    with pytest.raises(SessionStoppedError) as stopped:
+        within = replace(LIMITS, velocity=0.5)
+        Session(wheel, jid.OpenLoop(), push, within, options=OPTIONS).run()
+    assert stopped.value.stop.limit == "velocity"
+    assert stopped.value.stop.measured == pytest.approx(0.5, abs=0.1)
+    assert abs(wheel.velocity) < 0.6
+
+
 METHODS = ["connect", "problems", "enable", "read", "command", "disable", "close"]
 METHODS += ["bus_load", "identity"]
 

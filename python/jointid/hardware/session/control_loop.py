@@ -135,6 +135,8 @@ class Follower:
             sample = self._drive.read(timeout)
             estimated = self._estimate(sample.time, sample.position)
             speed = estimated if math.isnan(sample.velocity) else sample.velocity
+            # The larger one for the limit: a velocity that a drive no longer updates must not disarm it.
+            fastest = estimated if abs(estimated) > abs(speed) else speed
             late = sample.time - begin - k * period
             first = late if first is None else first
             # To the nanosecond: rounding errors would turn the sign of a velocity of 0.
@@ -143,7 +145,7 @@ class Follower:
             target = target_at(reference[k] + offset, velocity[k], acceleration[k], shift)
             elapsed = k * period + shift
             error = sample.position - target if self._feedback else None
-            guard.measured(sample, speed, error)
+            guard.measured(sample, fastest, error)
             torque = self._asked(elapsed, sample, speed, (target, pace, acceleration[k]))
             guard.commanded(torque, self._law.saturations)
             accepted = self._accepted(torque)

@@ -75,8 +75,8 @@ class DriveSample:
     torque : float
         Of that current, at the output [N·m]. Default: not a number.
     velocity : float
-        Measured by the drive, at the output [rad/s]. Default: not a number; the session then estimates it
-        from times and positions.
+        Measured by the drive, at the output [rad/s], for the controller. Default: not a number; the
+        controller then gets the estimate from times and positions. The velocity limit holds for both.
     """
 
     time: float

@@ -21,7 +21,7 @@ class SessionLimits:
     position : tuple of float
         Lowest and highest output angle [rad].
     velocity : float
-        Estimated from the positions [rad/s].
+        Estimated from the positions, and measured where the drive does: the larger one counts [rad/s].
     torque : float
         Commanded, at the output [N·m].
     torque_rate : float
