@@ -229,6 +229,27 @@ def test_a_measured_velocity_that_is_stuck_does_not_disarm_the_limit() -> None:
     assert abs(wheel.velocity) < 0.6
 
 
+@pytest.mark.parametrize("back", [0.0, 0.005, math.nan])
+def test_a_sample_that_is_not_later_than_the_last_one_is_the_drives_fault(back: float) -> None:
+    class Stamping(Flywheel):
+        last = math.nan
+
+        def read(self, timeout: float) -> DriveSample:
+            sample = super().read(timeout)
+            if self.clock.now() > 1.5:
+                return replace(sample, time=self.last - back)
+            self.last = sample.time
+            return sample
+
+    wheel = Stamping()
+    with pytest.raises(SessionStoppedError, match="stamps must increase") as stopped:
+        Session(wheel, LAW, SWING, LIMITS, options=OPTIONS).run()
+    assert stopped.value.stop.limit == "stale_position"
+    assert stopped.value.stop.allowed == wheel.last
+    assert not wheel.on
+    assert stopped.value.recording is not None
+
+
 METHODS = ["connect", "problems", "enable", "read", "command", "disable", "close"]
 METHODS += ["bus_load", "identity"]
 

@@ -80,6 +80,7 @@ class Follower:
         self._estimate = VelocityEstimator(
             options.resolution, options.velocity_counts, options.velocity_time
         )
+        self._stamp = -math.inf  # of the last sample [s]
         self.phase, self.began = "check", drive.clock.now()
         self.rows: list[tuple[float, ...]] = []
         self.late: list[float] = []
@@ -133,6 +134,7 @@ class Follower:
             if self._interruptions.reason is not None:
                 raise LimitError("user", self._interruptions.reason)
             sample = self._drive.read(timeout)
+            self._check_stamp(sample.time)
             estimated = self._estimate(sample.time, sample.position)
             speed = estimated if math.isnan(sample.velocity) else sample.velocity
             # The larger one for the limit: a velocity that a drive no longer updates must not disarm it.
@@ -166,6 +168,17 @@ class Follower:
             missed = clock.now() - (begin + (k + 1) * period)
             self.late.append(missed)
             guard.timed(missed)
+
+    def _check_stamp(self, stamp: float) -> None:
+        """See that a sample is younger than the one before it: else it is not of this cycle."""
+        if not self._stamp < stamp < math.inf:
+            raise DriveFaultError(
+                "stale_position",
+                f"the drive stamped a sample {stamp:.6f} s, the one before it {self._stamp:.6f} s; stamps must increase",
+                measured=stamp,
+                allowed=self._stamp,
+            )
+        self._stamp = stamp
 
     def _accepted(self, torque: float) -> float:
         """Command the drive; the torque that it accepted [N·m]."""

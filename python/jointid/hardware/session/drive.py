@@ -60,7 +60,8 @@ class DriveSample:
     Attributes
     ----------
     time : float
-        When the position was taken [s], on the drive's `clock`.
+        When the position was taken [s], on the drive's `clock`; later than in the cycle before, else the
+        session stops by "stale_position".
     position : float
         At the output [rad]. A value that is not finite stops the session.
     reading : float
