@@ -221,8 +221,8 @@ def test_a_measured_velocity_that_is_stuck_does_not_disarm_the_limit() -> None:
 
     wheel = Stuck()
     push = jid.Trajectory.step(5.0, duration=2.0)
+    within = replace(LIMITS, velocity=0.5)
     with pytest.raises(SessionStoppedError) as stopped:
-        within = replace(LIMITS, velocity=0.5)
         Session(wheel, jid.OpenLoop(), push, within, options=OPTIONS).run()
     assert stopped.value.stop.limit == "velocity"
     assert stopped.value.stop.measured == pytest.approx(0.5, abs=0.1)

@@ -174,7 +174,7 @@ class Follower:
         if not self._stamp < stamp < math.inf:
             raise DriveFaultError(
                 "stale_position",
-                f"the drive stamped a sample {stamp:.6f} s, the one before it {self._stamp:.6f} s; stamps must increase",
+                f"the drive stamped a sample {stamp:.6f} s, the one before {self._stamp:.6f} s; stamps must increase",
                 measured=stamp,
                 allowed=self._stamp,
             )
