@@ -202,7 +202,9 @@ def test_a_measured_velocity_takes_the_place_of_the_estimated_one() -> None:
 
     for wheel, name in ((Measuring(), "measured"), (Flywheel(), "estimated")):
         law: Any = Law(name)
-        Session(wheel, law, SWING, LIMITS, options=OPTIONS).run()
+        recording = Session(wheel, law, SWING, LIMITS, options=OPTIONS).run()
+        assert recording is not None
+        assert recording.metadata.get("velocity_measured", False) is (name == "measured")
         peak = max(map(abs, seen[name]))
         assert 0.5 < peak < 5.0
     # The estimate is the mean over past samples, so it lags behind.

@@ -85,6 +85,7 @@ class Follower:
         self.rows: list[tuple[float, ...]] = []
         self.late: list[float] = []
         self.cycles = self.cycles_before = 0  # in which a torque was commanded; before the run
+        self.velocity_measured = False  # by the drive; the controller got it in some cycle
         self._held = 0.0  # of the last command [N·m]: enabling commands zero
 
     def enter(self, phase: str) -> None:
@@ -136,7 +137,9 @@ class Follower:
             sample = self._drive.read(timeout)
             self._check_stamp(sample.time)
             estimated = self._estimate(sample.time, sample.position)
-            speed = estimated if math.isnan(sample.velocity) else sample.velocity
+            measures = not math.isnan(sample.velocity)
+            speed = sample.velocity if measures else estimated
+            self.velocity_measured = self.velocity_measured or measures
             # The larger one for the limit: a velocity that a drive no longer updates must not disarm it.
             fastest = estimated if abs(estimated) > abs(speed) else speed
             late = sample.time - begin - k * period
