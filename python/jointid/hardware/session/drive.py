@@ -25,12 +25,13 @@ class DriveFaultError(RuntimeError):
     """The drive, or the way to it, has failed; the session stops.
 
     The only exception that a drive should raise: its kind becomes the name of the stop. An OSError or
-    InputError stops the session as "error"; any other is a bug, and is raised again after the session.
+    InputError stops the session as "error" (before the motor is on, an OSError refuses it as this one
+    does); any other is a bug, and is raised again after the session.
 
     Parameters
     ----------
     kind : str
-        "stale_position": no state within the time allowed; "drive_fault": the drive has shut down or
+        "stale_position": no new state within the time allowed; "drive_fault": the drive has shut down or
         refuses a command; "heartbeat_lost": it does not answer any more; "host_heartbeat_lost": it reports that
         the host does not; "bus": the bus has failed; "sensor": a reading is missing or not finite.
     message : str
