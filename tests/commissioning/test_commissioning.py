@@ -1,7 +1,7 @@
 """The ring on an emulated bench: what is identified through the bus, and how far the error falls."""
 
 import json
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
@@ -9,6 +9,7 @@ import pytest
 import jointid as jid
 from jointid.cli.command_line import main
 from jointid.commissioning import Commissioning, commission
+from jointid.commissioning import ring as ring_module
 from jointid.hardware.bench.bench import Bench
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "hardware" / "joint.toml"
@@ -124,3 +125,35 @@ def test_a_stop_is_exit_code_three(tmp_path: Path, capsys: pytest.CaptureFixture
     assert "tracking_error" in wording
     assert wording.count("\n") == 1
     assert (output / "initial.csv").exists()
+
+
+def test_what_was_recorded_is_kept_by_what_ends_a_commissioning(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    bench, runs = Bench.load(EXAMPLE), list[str]()
+    monkeypatch.setattr(ring_module, "identify", lambda *_, **__: Identified(bench.joint))
+
+    def callback(text: str) -> None:
+        if text.startswith("run: "):
+            runs.append(text)
+
+    def observer(phase: str, when: float, *_: object) -> None:
+        if len(runs) == 2 and phase == "run" and when > 1.0:
+            raise KeyError("a bug")
+
+    with pytest.raises(KeyError) as found:
+        commission(bench, emulate=True, observer=observer, callback=callback)
+    kept = vars(found.value)["recordings"]
+    assert [*kept] == ["initial", "cycle 1"]
+    whole, part = kept.values()
+    assert whole.metadata["stop"] is None
+    assert part.metadata["stopped"]["limit"] == "error"
+    assert 400 < part.time.size < whole.time.size
+    assert any("`recordings`" in note for note in found.value.__notes__)
+
+
+@dataclass(frozen=True)
+class Identified:
+    """As much of an estimate as a commissioning needs to move the joint."""
+
+    joint: jid.Joint

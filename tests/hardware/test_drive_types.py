@@ -9,6 +9,7 @@ from importlib.metadata import EntryPoint, EntryPoints
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from house_rules import _imported
 
@@ -94,13 +95,27 @@ def test_an_installed_type_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     ("entries", "name", "wording"),
     [
         ((), "elmos", "drive type is 'elmos': did you mean 'elmo'?"),
-        ((("wheel", "no.such.module:X"),), "wheel", "no.such.module:X cannot be imported"),
-        ((("wheel", "math:pi"),), "wheel", "its entry point is no DriveType but a float"),
+        (
+            (("wheel", "no.such.module:X"),),
+            "wheel",
+            "no.such.module:X of an unknown package cannot be used",
+        ),
+        (
+            (("wheel", "math:no"),),
+            "wheel",
+            "math:no of an unknown package cannot be used (AttributeError",
+        ),
+        (
+            (("wheel", "math:pi"),),
+            "wheel",
+            "math:pi of an unknown package is no DriveType but a float",
+        ),
+        ((), ["elmo"], "drive type is ['elmo']: a text is expected"),
         ((("wheel", "a:X"), ("wheel", "b:X")), "wheel", "by several packages: a:X, b:X"),
     ],
 )
 def test_a_type_that_cannot_be_had_is_refused(
-    monkeypatch: pytest.MonkeyPatch, entries: tuple[tuple[str, str], ...], name: str, wording: str
+    monkeypatch: pytest.MonkeyPatch, entries: tuple[tuple[str, str], ...], name: Any, wording: str
 ) -> None:
     installed(monkeypatch, *entries)
     with pytest.raises(jid.InputError) as refused:
@@ -118,9 +133,74 @@ def test_a_type_without_a_decoder_is_refused_by_replay(
         jid.hardware.replay(tmp_path / "run.log", jid.Joint(name="any"), drive="wheel", period=0.1)
 
 
-def test_a_type_that_is_built_in_cannot_be_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
-    installed(monkeypatch, ("elmo", f"{__name__}:Wheel"))
-    assert not isinstance(drive_type("elmo"), Wheel)
+class BrokenType(DriveType):
+    """A drive type that cannot be made."""
+
+    def __init__(self) -> None:
+        raise RuntimeError("no licence")
+
+
+def package(site: Path, monkeypatch: pytest.MonkeyPatch, entry: str) -> None:
+    """Leave what an installed package leaves that registers a drive type."""
+    about = site / "wheel_drive-1.0.dist-info"
+    about.mkdir(parents=True)
+    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: wheel-drive\nVersion: 1.0\n")
+    (about / "entry_points.txt").write_text(f"[jointid.drives]\n{entry}\n")
+    monkeypatch.syspath_prepend(str(site))
+
+
+def test_whatever_a_package_raises_names_the_package(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    package(tmp_path / "site", monkeypatch, f"wheel = {__name__}:BrokenType")
+    with pytest.raises(jid.InputError) as refused:
+        drive_type("wheel")
+    assert refused.value.reason == (
+        f"the entry point {__name__}:BrokenType of the package wheel-drive cannot be used "
+        "(RuntimeError: no licence)"
+    )
+    assert isinstance(refused.value.__cause__, RuntimeError)
+
+
+def test_a_package_that_raises_when_it_is_imported_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    site = tmp_path / "site"
+    package(site, monkeypatch, "wheel = wheel_drive:WheelType")
+    (site / "wheel_drive.py").write_text("1 / 0\n")
+    with pytest.raises(jid.InputError, match=r"wheel-drive cannot be used \(ZeroDivisionError"):
+        drive_type("wheel")
+
+
+def test_a_package_that_registers_a_built_in_name_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    package(tmp_path / "site", monkeypatch, f"elmo = {__name__}:Wheel")
+    wording = "registered by the package wheel-drive, but built in; rename it"
+    with pytest.raises(jid.InputError, match=wording):
+        drive_type("elmo")
+    with pytest.raises(jid.InputError, match=wording):
+        jid.hardware.Bench.load(EXAMPLE)
+
+
+@pytest.mark.parametrize("kind", [["elmo"], {"name": "elmo"}, 3])
+def test_a_recording_whose_type_is_no_text_is_refused(tmp_path: Path, kind: object) -> None:
+    time = np.arange(20) * 2e-3
+    session = jid.Recording(
+        time=time, position=time, torque=time, metadata={"drive_type": kind, "control_period": 2e-3}
+    )
+    (tmp_path / "run.log").write_text("")
+    with pytest.raises(jid.InputError, match=r"drive type is .*: a text is expected"):
+        jid.hardware.replay(tmp_path / "run.log", jid.Joint(name="any"), recording=session)
+
+
+def test_a_type_in_a_joint_file_that_is_no_text_is_refused(tmp_path: Path) -> None:
+    text = EXAMPLE.read_text(encoding="utf-8")
+    path = tmp_path / "joint.toml"
+    path.write_text(text.replace('type = "elmo"', 'type = ["elmo"]'), encoding="utf-8")
+    with pytest.raises(jid.InputError) as refused:
+        jid.hardware.Bench.load(path)
+    assert (refused.value.argument, refused.value.reason) == ("type", "a text is expected")
 
 
 def test_the_address_of_a_drive_is_shown_before_a_joint_moves(

@@ -231,6 +231,34 @@ def test_limit_that_is_none_is_refused(name: str, value: float) -> None:
         SessionLimits(**{name: value})  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize("name", [f.name for f in fields(SessionLimits) if f.name != "position"])
+@pytest.mark.parametrize("value", ["a", True, [1.0]])
+def test_limit_of_a_wrong_kind_is_refused(name: str, value: Any) -> None:
+    with pytest.raises(jid.InputError, match="a number is expected") as refused:
+        SessionLimits(**{name: value})
+    assert refused.value.argument == name
+
+
+def test_only_a_limit_that_may_be_left_out_may_be_none() -> None:
+    assert SessionLimits(measured_torque=None, torque_difference=None) == SessionLimits()
+    with pytest.raises(jid.InputError, match="velocity is None: a number is expected"):
+        SessionLimits(velocity=None)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("window", [None, 1.0, "ab", (1.0,), (0.0, 1.0, 2.0), (0.0, "1")])
+def test_window_of_a_wrong_kind_is_refused(window: Any) -> None:
+    with pytest.raises(jid.InputError, match="a lowest and a highest angle"):
+        SessionLimits(position=window)
+
+
+@pytest.mark.parametrize("name", [f.name for f in fields(SessionOptions)])
+@pytest.mark.parametrize("value", ["x", True, [1.0]])
+def test_option_of_a_wrong_kind_is_refused(name: str, value: Any) -> None:
+    with pytest.raises(jid.InputError, match=r"a (whole )?number is expected") as refused:
+        SessionOptions(**{name: value})
+    assert refused.value.argument == name
+
+
 @pytest.mark.parametrize("window", [(1.0, 1.0), (1.0, -1.0), (math.nan, 1.0), (-math.inf, 0.0)])
 def test_window_that_is_none_is_refused(window: tuple[float, float]) -> None:
     with pytest.raises(jid.InputError, match="a lowest and a highest angle"):
@@ -254,6 +282,9 @@ def test_limits_of_a_joint() -> None:
     [
         (lambda: SessionOptions(period=0.0), "period is 0.0: more than 0"),
         (lambda: SessionOptions(settle=-1.0), "settle is -1.0: at least 0"),
+        (lambda: SessionOptions(settle=None), "settle is None: a number is expected"),  # type: ignore[arg-type]
+        (lambda: SessionOptions(velocity_counts=0), "velocity_counts is 0: 1 to 1000000 is"),
+        (lambda: SessionOptions(velocity_counts=2.5), "2.5: a whole number is expected"),  # type: ignore[arg-type]
         (lambda: SessionOptions(answer_timeout=0.0), "answer_timeout is 0.0: more than 0"),
         (lambda: ElmoOptions(heartbeat=0.001), "heartbeat is 0.001: 0.005 to 10 s"),
         (lambda: ElmoOptions(drive_heartbeat=0.03), "0.001 s to half of heartbeat, 0.025 s"),

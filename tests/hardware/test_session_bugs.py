@@ -1,6 +1,8 @@
 """A bug in a session: the motor is off and the recording closed first, then the exception is raised again."""
 
+import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +10,13 @@ import pytest
 from session_bench import JOINT, PERIOD, devices, law, limits, motion
 
 import jointid as jid
-from jointid.hardware import DriveFaultError, EmulatedBus, SessionOptions, SessionStoppedError
+from jointid.hardware import (
+    DriveFaultError,
+    EmulatedBus,
+    SessionOptions,
+    SessionRefusedError,
+    SessionStoppedError,
+)
 from jointid.hardware.elmo import ElmoDrive
 from jointid.hardware.elmo.decoder import ElmoDecoder
 from jointid.hardware.session import recorder as recorder_module
@@ -22,7 +30,7 @@ BEGIN = 0.9  # [s] on the bus's clock, in the run
 class Bench:
     """A session into which a bug can be put."""
 
-    def __init__(self, output: Path) -> None:
+    def __init__(self, output: Path | None = None) -> None:
         self.elmo, converter = devices()
         self.bus = EmulatedBus(self.elmo, converter)
         self.drive = ElmoDrive(self.bus, JOINT)
@@ -30,7 +38,7 @@ class Bench:
         self.observer: Callable[..., object] | None = None
         self.output = output
 
-    def run(self) -> jid.Recording | None:
+    def session(self) -> Session:
         return Session(
             self.drive,
             self.law,
@@ -39,7 +47,10 @@ class Bench:
             options=SessionOptions(period=PERIOD, settle=0.05),
             output=self.output,
             observer=self.observer,
-        ).run()
+        )
+
+    def run(self) -> jid.Recording | None:
+        return self.session().run()
 
 
 class Law:
@@ -113,7 +124,7 @@ def test_a_bug_is_raised_again_after_the_motor_is_off_and_the_recording_closed(
     assert bench.elmo.switchings[-1][0] - thrown[0] < 3.0 * PERIOD
     (note,) = bug.__notes__
     assert note.startswith("the session was stopped by error after ")
-    recording = jid.load(bench.output)
+    recording = jid.load(tmp_path / "run.csv")
     assert recording.metadata["stopped"]["limit"] == "error"
     assert recording.metadata["stopped"]["motor_off"] is True
     assert not {"torn", "truncated"} & recording.metadata.keys()
@@ -135,7 +146,7 @@ def test_a_bug_on_the_way_out_is_raised_too(
         bench.run()
     assert not bench.elmo.motor_on  # the second disable() of every way out has done it
     assert found.value.__notes__ == ["the session was completed"]
-    assert jid.load(bench.output).metadata["motor_off"] is True
+    assert jid.load(tmp_path / "run.csv").metadata["motor_off"] is True
 
 
 def test_a_bug_in_disable_that_stays_says_that_the_motor_was_not_seen_off(
@@ -195,3 +206,118 @@ def test_what_is_no_bug_stops_the_session(tmp_path: Path, cause: Exception) -> N
         bench.run()
     assert found.value.__cause__ is cause
     assert found.value.recording is not None
+
+
+def late(fails: Fails, bench: Bench) -> Callable[..., object]:
+    """An observer that fails in the run."""
+    return lambda *_: fails() if bench.bus.now() >= BEGIN else None
+
+
+def broken() -> None:
+    raise KeyError("a bug")
+
+
+def test_what_was_recorded_before_a_bug_is_kept_by_the_session() -> None:
+    bench = Bench()
+    bench.observer = late(broken, bench)
+    session = bench.session()
+    assert session.recording is None
+    with pytest.raises(KeyError):
+        session.run()
+    assert session.recording is not None
+    assert session.recording.time.size > 100
+    assert session.recording.metadata["stopped"]["limit"] == "error"
+
+
+def test_the_recording_is_kept_by_the_session_after_success_and_after_a_stop() -> None:
+    session = Bench().session()
+    assert session.run() is session.recording is not None
+    bench = Bench()
+
+    def stops() -> None:
+        raise DriveFaultError("bus", "gone")
+
+    bench.observer = late(stops, bench)
+    session = bench.session()
+    with pytest.raises(SessionStoppedError) as found:
+        session.run()
+    assert session.recording is found.value.recording is not None
+
+
+def unrecordable(bench: Bench) -> None:
+    """Let the drive give a current that no recording takes."""
+    read = bench.drive.read
+    bench.drive.read = lambda timeout: replace(  # type: ignore[method-assign]
+        read(timeout), current=math.inf
+    )
+
+
+def test_a_bug_is_raised_though_there_is_no_recording() -> None:
+    bench = Bench()
+    unrecordable(bench)
+    bench.observer = late(broken, bench)
+    session = bench.session()
+    with pytest.raises(KeyError) as found:
+        session.run()
+    how, why = found.value.__notes__
+    assert how.startswith("the session was stopped by error after ")
+    assert why.startswith("the recording cannot be made: InputError: ")
+    assert session.recording is None
+    assert not bench.elmo.motor_on
+
+
+def test_a_stop_is_raised_though_there_is_no_recording() -> None:
+    bench = Bench()
+    unrecordable(bench)
+
+    def stops() -> None:
+        raise DriveFaultError("bus", "gone")
+
+    bench.observer = late(stops, bench)
+    with pytest.raises(SessionStoppedError) as found:
+        bench.run()
+    assert (found.value.stop.limit, found.value.recording) == ("bus", None)
+    assert found.value.__notes__[0].startswith("the recording cannot be made: ")
+
+
+def test_a_completed_session_without_a_recording_is_a_stop() -> None:
+    bench = Bench()
+    unrecordable(bench)
+    with pytest.raises(SessionStoppedError, match="the recording cannot be made") as found:
+        bench.run()
+    assert (found.value.stop.limit, found.value.stop.motor_off) == ("recording", True)
+
+
+@pytest.mark.parametrize("name", ["connect", "problems", "read", "bus_load"])
+def test_an_error_of_the_system_refuses_the_session(
+    monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    bench, gone = Bench(), BrokenPipeError(32, "Broken pipe")
+    switched: list[None] = []
+
+    def fails() -> None:
+        raise gone
+
+    before(monkeypatch, bench.drive, name, fails)
+    before(monkeypatch, bench.drive, "disable", lambda: switched.append(None))
+    with pytest.raises(
+        SessionRefusedError, match=r"not started: BrokenPipeError: .*Broken pipe"
+    ) as f:
+        bench.run()
+    assert f.value.__cause__ is gone
+    assert switched
+    assert not bench.elmo.motor_on
+
+
+def test_an_error_of_the_system_while_the_motor_comes_on_is_a_stop(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    bench = Bench()
+
+    def fails() -> None:
+        raise BrokenPipeError(32, "Broken pipe")
+
+    before(monkeypatch, bench.drive, "enable", fails)
+    with pytest.raises(SessionStoppedError, match="Broken pipe") as found:
+        bench.run()
+    assert (found.value.stop.phase, found.value.stop.motor_off) == ("enable", True)

@@ -78,7 +78,10 @@ CASES: dict[str, tuple[Prepare, str]] = {
     "object missing": (unwilling, "refused object 1016h:1: the object does not exist"),
 }
 WIRES = {
-    "nobody there": (BusFault(kind="drop", start=0.0), "no boot-up message: is the drive on"),
+    "nobody there": (
+        BusFault(kind="drop", start=0.0),
+        "no boot-up message from node 127 within 2000 ms; check that the drive is on, and that this is",
+    ),
     "no answers": (BusFault(kind="drop", start=0.0, identifier=0x5FF), "no answer to object 1018h"),
     "no replies": (BusFault(kind="drop", start=0.0, identifier=0x2FF), "no reply to SR"),
     "no position": (BusFault(kind="drop", start=0.0, identifier=0x4FF), "no answer to the SYNC"),

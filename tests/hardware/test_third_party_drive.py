@@ -1,7 +1,9 @@
 """A drive of a package of its own, found by its entry point: run from the command line, recorded, replayed."""
 
+import ast
 import json
 import os
+import re
 import subprocess
 import sys
 import tomllib
@@ -12,6 +14,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
+from jointid.hardware.bench import drive_types
 
 PACKAGE = Path(__file__).parents[1] / "third_party_drive"
 JOINT = """
@@ -142,6 +145,29 @@ def test_what_it_does_not_emulate_is_said(installed: Path, tmp_path: Path) -> No
     port = "port is '/dev/ttyACM0': there is no drive"
     with pytest.raises(jid.InputError, match=port), jid.hardware.open_drive(bench):
         pass
+
+
+def test_it_needs_public_names_alone(repo: Path) -> None:
+    texts = [(PACKAGE / "acme_drive.py").read_text(encoding="utf-8")]
+    page = (repo / "docs" / "hardware.md").read_text(encoding="utf-8")
+    texts.append(page.partition("## Writing your own drive")[2])
+    for text in texts:
+        assert "from jointid.hardware import " in text
+        assert not re.search(r"(from|import) jointid\.(?!hardware import )", text)
+
+
+def test_the_types_in_the_signatures_of_a_drive_type_are_public() -> None:
+    module = ast.parse(Path(drive_types.__file__).read_text(encoding="utf-8"))
+    imported = [
+        alias.name
+        for node in ast.walk(module)
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("jointid.hardware")
+        for alias in node.names
+        if alias.name[0].isupper()
+    ]
+    assert "Table" in imported
+    # An emulated device is one on our own emulated bus.
+    assert {*imported, "Clock"} - {"Device"} <= set(jid.hardware.__all__)
 
 
 def test_it_is_short() -> None:

@@ -202,7 +202,9 @@ def test_a_measured_velocity_takes_the_place_of_the_estimated_one() -> None:
 
     for wheel, name in ((Measuring(), "measured"), (Flywheel(), "estimated")):
         law: Any = Law(name)
-        Session(wheel, law, SWING, LIMITS, options=OPTIONS).run()
+        recording = Session(wheel, law, SWING, LIMITS, options=OPTIONS).run()
+        assert recording is not None
+        assert recording.metadata.get("velocity_measured", False) is (name == "measured")
         peak = max(map(abs, seen[name]))
         assert 0.5 < peak < 5.0
     # The estimate is the mean over past samples, so it lags behind.
@@ -212,6 +214,42 @@ def test_a_measured_velocity_takes_the_place_of_the_estimated_one() -> None:
     with pytest.raises(SessionStoppedError) as stopped:
         Session(wrong, LAW, SWING, LIMITS, options=OPTIONS).run()
     assert stopped.value.stop.limit == "velocity"
+
+
+def test_a_measured_velocity_that_is_stuck_does_not_disarm_the_limit() -> None:
+    class Stuck(Flywheel):
+        def read(self, timeout: float) -> DriveSample:
+            return replace(super().read(timeout), velocity=0.0)
+
+    wheel = Stuck()
+    push = jid.Trajectory.step(5.0, duration=2.0)
+    within = replace(LIMITS, velocity=0.5)
+    with pytest.raises(SessionStoppedError) as stopped:
+        Session(wheel, jid.OpenLoop(), push, within, options=OPTIONS).run()
+    assert stopped.value.stop.limit == "velocity"
+    assert stopped.value.stop.measured == pytest.approx(0.5, abs=0.1)
+    assert abs(wheel.velocity) < 0.6
+
+
+@pytest.mark.parametrize("back", [0.0, 0.005, math.nan])
+def test_a_sample_that_is_not_later_than_the_last_one_is_the_drives_fault(back: float) -> None:
+    class Stamping(Flywheel):
+        last = math.nan
+
+        def read(self, timeout: float) -> DriveSample:
+            sample = super().read(timeout)
+            if self.clock.now() > 1.5:
+                return replace(sample, time=self.last - back)
+            self.last = sample.time
+            return sample
+
+    wheel = Stamping()
+    with pytest.raises(SessionStoppedError, match="stamps must increase") as stopped:
+        Session(wheel, LAW, SWING, LIMITS, options=OPTIONS).run()
+    assert stopped.value.stop.limit == "stale_position"
+    assert stopped.value.stop.allowed == wheel.last
+    assert not wheel.on
+    assert stopped.value.recording is not None
 
 
 METHODS = ["connect", "problems", "enable", "read", "command", "disable", "close"]

@@ -10,11 +10,19 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from jointid import InputError, Joint
-from jointid.hardware import Bench, BusOptions, DriveType, LoggedCycle, emulated_joint
-from jointid.hardware.bench.table import Table
-from jointid.hardware.can.frame_log import LoggedFrame
-from jointid.hardware.session.clock import Clock
-from jointid.hardware.session.drive import DriveEnd, DriveFaultError, DriveSample
+from jointid.hardware import (
+    Bench,
+    BusOptions,
+    Clock,
+    DriveEnd,
+    DriveFaultError,
+    DriveSample,
+    DriveType,
+    LoggedCycle,
+    LoggedFrame,
+    Table,
+    emulated_joint,
+)
 
 STATE, TORQUE, POWER = 0x10, 0x20, 0x30  # requests; the identifier of a reply is one higher
 _STATE_REPLY = struct.Struct("<if?")  # counts, velocity [rad/s], whether the motor is on

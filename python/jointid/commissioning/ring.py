@@ -151,6 +151,9 @@ def commission(
         The controller uses no estimates, `cycles` is below 1, or the bench cannot be emulated.
     SessionRefusedError, SessionStoppedError
         As in `Session.run`; what was recorded until then is in the folder.
+    Exception
+        Whatever a session or a callable raises: with an attribute `recordings`, a dict of what was recorded
+        until then by the name of the run, e.g. "initial"; the last one may be incomplete.
     """
     if cycles < 1:
         raise InputError("at least 1 is expected", argument="cycles", value=cycles)
@@ -163,12 +166,13 @@ def commission(
     runs: list[BenchRun] = []
     estimates: list[Estimate] = []
     true_run: BenchRun | None = None
+    recordings: dict[str, Recording] = {}
     with open_drive(bench, emulate=emulate, seed=seed) as drive:
 
         def run(name: str, law: Controller) -> BenchRun:
             report(f"run: {name}")
             place = None if folder is None else folder / f"{name.replace(' ', '_')}.csv"
-            recording = Session(
+            session = Session(
                 drive,
                 law,
                 bench.trajectory,
@@ -177,27 +181,36 @@ def commission(
                 output=place,
                 observer=observer,
                 real_time=None if emulate else bench.real_time,
-            ).run()
+            )
+            try:
+                recording = session.run()
+            finally:
+                if session.recording is not None:
+                    recordings[name] = session.recording
             assert recording is not None, "only a dry run has none"
             return _assessed(name, recording, law)
 
-        runs.append(run("initial", controller))
-        for cycle in range(1, cycles + 1):
-            report(f"identify: cycle {cycle}")
-            recordings = [each.recording for each in runs]
-            estimate = identify(recordings, bench.joint, search=search)
-            estimates.append(estimate)
-            if folder is not None:
-                estimate.save(folder / f"cycle_{cycle}.json")
-            if agree is not None and not agree(estimate):
-                break
-            runs.append(run(f"cycle {cycle}", believing(controller, estimate.joint)))
-        if emulate:
-            true_run = run("true parameters", believing(controller, true_joint(bench)))
+        try:
+            runs.append(run("initial", controller))
+            for cycle in range(1, cycles + 1):
+                report(f"identify: cycle {cycle}")
+                before = [each.recording for each in runs]
+                estimate = identify(before, bench.joint, search=search)
+                estimates.append(estimate)
+                if folder is not None:
+                    estimate.save(folder / f"cycle_{cycle}.json")
+                if agree is not None and not agree(estimate):
+                    break
+                runs.append(run(f"cycle {cycle}", believing(controller, estimate.joint)))
+            if emulate:
+                true_run = run("true parameters", believing(controller, true_joint(bench)))
+        except (Exception, KeyboardInterrupt) as error:
+            _keep(error, recordings)
+            raise
     plain = None
     if bench.joint.model.resolved.ripple:
-        recordings = [each.recording for each in runs[: len(estimates)]]
-        plain = identify(recordings, bench.joint, model=Model(ripple=()), search=search)
+        before = [each.recording for each in runs[: len(estimates)]]
+        plain = identify(before, bench.joint, model=Model(ripple=()), search=search)
     truth = bench.emulation.truth if emulate and bench.emulation is not None else {}
     return Commissioning(
         runs=tuple(runs),
@@ -206,6 +219,13 @@ def commission(
         true_run=true_run,
         without_ripple=plain,
     )
+
+
+def _keep(error: BaseException, recordings: Mapping[str, Recording]) -> None:
+    """Let an exception carry what was recorded: without a folder it would be lost."""
+    vars(error)["recordings"] = dict(recordings)
+    if recordings:
+        error.add_note(f"the attribute `recordings` has what was recorded: {', '.join(recordings)}")
 
 
 def _assessed(name: str, recording: Recording, controller: Controller) -> BenchRun:

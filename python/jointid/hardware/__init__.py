@@ -12,13 +12,15 @@ from jointid.hardware.bench.drive_types import DriveType, drive_type, drive_type
 from jointid.hardware.bench.emulated_joints import emulated_joint, true_joint
 from jointid.hardware.bench.frame_replay import replay
 from jointid.hardware.bench.opened_drive import emulated_devices, open_drive
+from jointid.hardware.bench.table import Table
 from jointid.hardware.can.bus import open_bus
+from jointid.hardware.can.frame_log import LoggedFrame
 from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.emulated.faults import BusFault
 from jointid.hardware.emulated.thread import EmulatorThread
 from jointid.hardware.live.console import ConsoleLine
 from jointid.hardware.live.plot import LivePlot
-from jointid.hardware.session.clock import MonotonicClock
+from jointid.hardware.session.clock import Clock, MonotonicClock
 from jointid.hardware.session.cycle import LoggedCycle
 from jointid.hardware.session.drive import Drive, DriveEnd, DriveFaultError, DriveSample
 from jointid.hardware.session.limits import SessionLimits
@@ -35,6 +37,7 @@ __all__ = [
     "Bench",
     "BusFault",
     "BusOptions",
+    "Clock",
     "ConsoleLine",
     "Drive",
     "DriveEnd",
@@ -46,6 +49,7 @@ __all__ = [
     "EmulatorThread",
     "LivePlot",
     "LoggedCycle",
+    "LoggedFrame",
     "MonotonicClock",
     "RealTimeOptions",
     "Session",
@@ -54,6 +58,7 @@ __all__ = [
     "SessionRefusedError",
     "SessionStoppedError",
     "Stop",
+    "Table",
     "drive_type",
     "drive_type_names",
     "emulated_devices",

@@ -185,46 +185,56 @@ def drive_type_names() -> tuple[str, ...]:
 
 
 def drive_type(name: str) -> DriveType:
-    """Return the adapter of a drive type; a built-in type has precedence over an installed one of its name.
+    """Return the adapter of a drive type.
 
     Raises
     ------
     InputError
-        No such type, two packages that register it, or its package cannot be imported.
+        No text, no such type, several packages that register it, one that registers a built-in name, or an
+        entry point that cannot be used: `__cause__` is what its package raised.
     """
+    if not isinstance(name, str):
+        raise _refused(name, "a text is expected")
+    found: tuple[EntryPoint, ...] = tuple(entry_points(group=ENTRY_POINTS, name=name))
     if name in _BUILT_IN:
+        if found:
+            raise _refused(name, f"registered by {_origin(found[0])}, but built in; rename it")
         module, _, kind = _BUILT_IN[name].partition(":")
-        found: object = getattr(import_module(module), kind)
-    else:
-        found = _installed(name)
-    adapter = found() if isinstance(found, type) else found
+        made: DriveType = getattr(import_module(module), kind)()
+        return made
+    if not found:
+        names = suggestion(name, drive_type_names())
+        raise _refused(name, f"{names}; a package registers more of them as entry points")
+    if len({entry.value for entry in found}) > 1:
+        values = ", ".join(sorted(entry.value for entry in found))
+        raise _refused(name, f"registered by several packages: {values}")
+    return _loaded(name, found[0])
+
+
+def _loaded(name: str, entry: EntryPoint) -> DriveType:
+    """Return the adapter that a package supplies; whatever it raises is no bug of this program."""
+    try:
+        loaded = entry.load()
+        adapter = loaded() if isinstance(loaded, type) else loaded
+    except Exception as error:
+        raise _refused(
+            name,
+            f"the entry point {entry.value} of {_origin(entry)} cannot be used "
+            f"({type(error).__name__}: {error})",
+        ) from error
     if not isinstance(adapter, DriveType):
-        raise InputError(
-            f"its entry point is no DriveType but a {type(adapter).__name__}",
-            argument="drive type",
-            value=name,
+        raise _refused(
+            name,
+            f"the entry point {entry.value} of {_origin(entry)} is no DriveType but "
+            f"a {type(adapter).__name__}",
         )
     return adapter
 
 
-def _installed(name: str) -> object:
-    found: tuple[EntryPoint, ...] = tuple(entry_points(group=ENTRY_POINTS, name=name))
-    if not found:
-        raise InputError(
-            suggestion(name, drive_type_names())
-            + "; a package registers more of them as entry points",
-            argument="drive type",
-            value=name,
-        )
-    if len({entry.value for entry in found}) > 1:
-        raise InputError(
-            f"registered by several packages: {', '.join(sorted(entry.value for entry in found))}",
-            argument="drive type",
-            value=name,
-        )
-    try:
-        return found[0].load()
-    except ImportError as error:
-        raise InputError(
-            f"{found[0].value} cannot be imported ({error})", argument="drive type", value=name
-        ) from error
+def _origin(entry: EntryPoint) -> str:
+    """The package that brings an entry point."""
+    return "an unknown package" if entry.dist is None else f"the package {entry.dist.name}"
+
+
+def _refused(name: object, reason: str) -> InputError:
+    return InputError(reason, argument="drive type", value=name)

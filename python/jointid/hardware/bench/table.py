@@ -69,7 +69,9 @@ class Table:
     def choice(self, name: str, default: str, known: Collection[str]) -> str:
         """Return the value of a key that must be one of the known names."""
         value = self.entries.get(name, default)
-        if not isinstance(value, str) or value not in known:
+        if not isinstance(value, str):
+            self.refuse(name, "a text is expected", value)
+        if value not in known:
             self.refuse(name, suggestion(value, [*known]), value)
         return value
 

@@ -140,7 +140,10 @@ class ElmoDrive:
         link.forget_fault(but="bus")
         link.send(canopen.NMT, canopen.network(canopen.RESET_COMMUNICATION, node))
         link.wait(
-            lambda: link.booted, _BOOT, "no boot-up message: is the drive on, is its node right?"
+            lambda: link.booted,
+            _BOOT,
+            f"no boot-up message from node {node}",
+            advice="; check that the drive is on, and that this is its node",
         )
         self._identity |= elmo_setup.identity(link)
         elmo_setup.map_position(link, self.options)

@@ -150,6 +150,7 @@ class ElmoLink:
         timeout: float,
         missing: str,
         kind: str = "drive_fault",
+        advice: str = "",
     ) -> None:
         """Receive until a condition holds, or a fault is known.
 
@@ -166,7 +167,7 @@ class ElmoLink:
             if (not self.receive(max(0.0, left)) and left <= 0.0) or left < -timeout:
                 raise DriveFaultError(
                     kind,
-                    f"{missing} within {1e3 * timeout:g} ms",
+                    f"{missing} within {1e3 * timeout:g} ms{advice}",
                     measured=self.clock.now() - begin,
                     allowed=timeout,
                 )

@@ -80,10 +80,12 @@ class Follower:
         self._estimate = VelocityEstimator(
             options.resolution, options.velocity_counts, options.velocity_time
         )
+        self._stamp = -math.inf  # of the last sample [s]
         self.phase, self.began = "check", drive.clock.now()
         self.rows: list[tuple[float, ...]] = []
         self.late: list[float] = []
         self.cycles = self.cycles_before = 0  # in which a torque was commanded; before the run
+        self.velocity_measured = False  # by the drive; the controller got it in some cycle
         self._held = 0.0  # of the last command [N·m]: enabling commands zero
 
     def enter(self, phase: str) -> None:
@@ -133,8 +135,13 @@ class Follower:
             if self._interruptions.reason is not None:
                 raise LimitError("user", self._interruptions.reason)
             sample = self._drive.read(timeout)
+            self._check_stamp(sample.time)
             estimated = self._estimate(sample.time, sample.position)
-            speed = estimated if math.isnan(sample.velocity) else sample.velocity
+            measures = not math.isnan(sample.velocity)
+            speed = sample.velocity if measures else estimated
+            self.velocity_measured = self.velocity_measured or measures
+            # The larger one for the limit: a velocity that a drive no longer updates must not disarm it.
+            fastest = estimated if abs(estimated) > abs(speed) else speed
             late = sample.time - begin - k * period
             first = late if first is None else first
             # To the nanosecond: rounding errors would turn the sign of a velocity of 0.
@@ -143,7 +150,7 @@ class Follower:
             target = target_at(reference[k] + offset, velocity[k], acceleration[k], shift)
             elapsed = k * period + shift
             error = sample.position - target if self._feedback else None
-            guard.measured(sample, speed, error)
+            guard.measured(sample, fastest, error)
             torque = self._asked(elapsed, sample, speed, (target, pace, acceleration[k]))
             guard.commanded(torque, self._law.saturations)
             accepted = self._accepted(torque)
@@ -164,6 +171,17 @@ class Follower:
             missed = clock.now() - (begin + (k + 1) * period)
             self.late.append(missed)
             guard.timed(missed)
+
+    def _check_stamp(self, stamp: float) -> None:
+        """See that a sample is younger than the one before it: else it is not of this cycle."""
+        if not self._stamp < stamp < math.inf:
+            raise DriveFaultError(
+                "stale_position",
+                f"the drive stamped a sample {stamp:.6f} s, the one before {self._stamp:.6f} s; stamps must increase",
+                measured=stamp,
+                allowed=self._stamp,
+            )
+        self._stamp = stamp
 
     def _accepted(self, torque: float) -> float:
         """Command the drive; the torque that it accepted [N·m]."""

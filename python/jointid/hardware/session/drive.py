@@ -25,12 +25,13 @@ class DriveFaultError(RuntimeError):
     """The drive, or the way to it, has failed; the session stops.
 
     The only exception that a drive should raise: its kind becomes the name of the stop. An OSError or
-    InputError stops the session as "error"; any other is a bug, and is raised again after the session.
+    InputError stops the session as "error" (before the motor is on, an OSError refuses it as this one
+    does); any other is a bug, and is raised again after the session.
 
     Parameters
     ----------
     kind : str
-        "stale_position": no state within the time allowed; "drive_fault": the drive has shut down or
+        "stale_position": no new state within the time allowed; "drive_fault": the drive has shut down or
         refuses a command; "heartbeat_lost": it does not answer any more; "host_heartbeat_lost": it reports that
         the host does not; "bus": the bus has failed; "sensor": a reading is missing or not finite.
     message : str
@@ -60,7 +61,8 @@ class DriveSample:
     Attributes
     ----------
     time : float
-        When the position was taken [s], on the drive's `clock`.
+        When the position was taken [s], on the drive's `clock`; later than in the cycle before, else the
+        session stops by "stale_position".
     position : float
         At the output [rad]. A value that is not finite stops the session.
     reading : float
@@ -75,8 +77,8 @@ class DriveSample:
     torque : float
         Of that current, at the output [N·m]. Default: not a number.
     velocity : float
-        Measured by the drive, at the output [rad/s]. Default: not a number; the session then estimates it
-        from times and positions.
+        Measured by the drive, at the output [rad/s], for the controller. Default: not a number; the
+        controller then gets the estimate from times and positions. The velocity limit holds for both.
     """
 
     time: float

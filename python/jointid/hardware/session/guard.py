@@ -51,7 +51,7 @@ class Guard:
         ----------
         sample : DriveSample
         velocity : float
-            Estimated [rad/s].
+            The larger one of the estimated and the measured velocity [rad/s].
         error : float or None
             Position less reference [rad]; None without feedback.
 

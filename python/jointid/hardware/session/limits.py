@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 
 from jointid.base.errors import InputError
+from jointid.joint.checks import is_number
 from jointid.joint.joint import Joint
 from jointid.simulation.plant import torque_limit
 
@@ -21,7 +23,7 @@ class SessionLimits:
     position : tuple of float
         Lowest and highest output angle [rad].
     velocity : float
-        Estimated from the positions [rad/s].
+        Estimated from the positions, and measured where the drive does: the larger one counts [rad/s].
     torque : float
         Commanded, at the output [N·m].
     torque_rate : float
@@ -42,6 +44,11 @@ class SessionLimits:
         before, or the torque has since changed by more than `torque`: an encoder that hangs, or a blocked joint.
     clipped_samples : int
         Readings in a row at the end of the sensor's range.
+
+    Raises
+    ------
+    InputError
+        A value is of a wrong kind, or not above 0; the window is empty.
     """
 
     position: tuple[float, float] = (-math.pi, math.pi)
@@ -57,8 +64,9 @@ class SessionLimits:
     clipped_samples: int = 5
 
     def __post_init__(self) -> None:
-        low, high = self.position
-        if not (math.isfinite(low) and math.isfinite(high) and low < high):
+        window = tuple(self.position) if isinstance(self.position, Iterable) else ()
+        finite = all(is_number(angle) and math.isfinite(angle) for angle in window)
+        if not (len(window) == 2 and finite and window[0] < window[1]):
             raise InputError(
                 "a lowest and a highest angle are expected",
                 argument="position",
@@ -66,7 +74,11 @@ class SessionLimits:
             )
         for field in fields(self):
             value = getattr(self, field.name)
-            if field.name != "position" and value is not None and not value > 0:
+            if field.name == "position" or (value is None and field.default is None):
+                continue
+            if not is_number(value):
+                raise InputError("a number is expected", argument=field.name, value=value)
+            if not value > 0:
                 raise InputError("more than 0 is expected", argument=field.name, value=value)
 
     @property

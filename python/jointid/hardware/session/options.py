@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
+from jointid.base.argument_checks import whole_number
 from jointid.base.errors import InputError
+from jointid.joint.checks import is_number
+
+_MOST_COUNTS = 1_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,6 +31,11 @@ class SessionOptions:
     answer_timeout : float, optional
         For the drive's state in a cycle [s]; beyond, the position is stale. Default: three quarters of a
         period: after a late cycle the bus carries more frames.
+
+    Raises
+    ------
+    InputError
+        A value is of a wrong kind, or not within its range.
     """
 
     period: float = 2e-3
@@ -38,12 +47,15 @@ class SessionOptions:
     answer_timeout: float | None = None
 
     def __post_init__(self) -> None:
-        for name in (
-            *("period", "approach_velocity", "velocity_time"),
-            *("resolution", "answer_timeout"),
-        ):
-            value = getattr(self, name)
-            if value is not None and not 0.0 < value < math.inf:
-                raise InputError("more than 0 is expected", argument=name, value=value)
-        if not 0.0 <= self.settle < math.inf:
-            raise InputError("at least 0 is expected", argument="settle", value=self.settle)
+        whole_number("velocity_counts", self.velocity_counts, 1, _MOST_COUNTS)
+        for item in fields(self):
+            value = getattr(self, item.name)
+            if value is None and item.default is None:
+                continue
+            if not is_number(value):
+                raise InputError("a number is expected", argument=item.name, value=value)
+            if item.name == "settle":
+                if not 0.0 <= value < math.inf:
+                    raise InputError("at least 0 is expected", argument="settle", value=value)
+            elif not 0.0 < value < math.inf:
+                raise InputError("more than 0 is expected", argument=item.name, value=value)

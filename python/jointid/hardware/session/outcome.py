@@ -71,7 +71,9 @@ def ending_of(
             "slack_least": float(-late.max()),
             "slack_median": float(-np.median(late)),
         }
+    measured = follower is not None and follower.velocity_measured
     return {
+        **({"velocity_measured": True} if measured else {}),
         "cycles_before": 0 if follower is None else follower.cycles_before,
         "stop": None if stop is None else str(stop),
         "stopped": None if stop is None else stop.to_dict(),

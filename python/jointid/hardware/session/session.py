@@ -69,6 +69,12 @@ class Session:
         What to ask of the operating system while the motor is on; what it does not grant is in the
         recording's metadata. Default: nothing.
 
+    Attributes
+    ----------
+    recording : Recording or None
+        Of the last run, however it ended, also by a bug; None before it, and when too few samples were
+        recorded.
+
     Raises
     ------
     InputError
@@ -99,6 +105,7 @@ class Session:
         self._follower: Follower | None = None
         self._end: DriveEnd | None = None
         self._bug: Exception | None = None
+        self.recording: Recording | None = None
 
     def check(self) -> list[str]:
         """Bring the drive up and return the reasons not to enable the motor, which stays off.
@@ -145,12 +152,12 @@ class Session:
         Raises
         ------
         SessionRefusedError
-            A pre-flight check failed.
+            A pre-flight check failed, or the drive raised a DriveFaultError or an OSError in it.
         SessionStoppedError
             A limit, a fault, or the user stopped it; with what was recorded.
         Exception
             A bug in drive, controller, observer or session: raised again after the motor is off and the
-            recording closed, with a note of how the session ended.
+            recording closed, with a note of how the session ended. What was recorded is `recording`.
 
         Examples
         --------
@@ -158,7 +165,7 @@ class Session:
         """
         recorder: Recorder | None = None
         cause: Exception | KeyboardInterrupt | None = None
-        self._follower, self._end, self._bug = None, None, None
+        self._follower, self._end, self._bug, self.recording = None, None, None, None
         early: list[Frame] = []  # frames of bringing the drive up, before there is a recorder
         if self._output is not None and not dry_run:
             check_output(self._output)
@@ -201,17 +208,26 @@ class Session:
             if recorder is not None:
                 with suppress(Exception):  # another exception is on its way, or this one is known
                     recorder.close()
-        recording = self._recording(stop)
         if cause is not None:
             self._note_bug(cause)
+        try:
+            self.recording = self._recording(stop)
+        except Exception as error:  # it must not hide a bug or a stop
+            unmade = f"the recording cannot be made: {type(error).__name__}: {error}"
+            self._note_bug(error)
+            if cause is None:
+                cause = LimitError("recording", unmade)
+                stop = stop_of(cause, moment, self._follower, self._end)
+        else:
+            unmade = ""
         if self._bug is not None:
             self._bug.add_note(
                 "the session was completed" if stop is None else f"the session was {stop}"
             )
-            raise self._bug
+            raise _noted(self._bug, unmade)
         if stop is not None:
-            raise SessionStoppedError(stop, recording) from cause
-        return recording
+            raise _noted(SessionStoppedError(stop, self.recording), unmade) from cause
+        return self.recording
 
     def _recorder(self, output: Path) -> Recorder:
         # The date is in the file only: what a session returns is bit-identical when it is repeated.
@@ -228,6 +244,8 @@ class Session:
             reasons = self.check()
         except DriveFaultError as error:
             raise SessionRefusedError(f"not started: {error}") from error
+        except OSError as error:  # of the drive: nothing else is opened before
+            raise SessionRefusedError(f"not started: {type(error).__name__}: {error}") from error
         if reasons:
             raise SessionRefusedError("not started: " + "; ".join(reasons))
 
@@ -325,6 +343,13 @@ class Session:
         metadata = {**self._metadata(), "session": True, **self._ending(stop)}
         name = "" if self._output is None else self._output.stem
         return recording_of(self._follower, name, metadata)
+
+
+def _noted(error: Exception, note: str) -> Exception:
+    """The exception, with a note if there is one."""
+    if note:
+        error.add_note(note)
+    return error
 
 
 def _with_resolution(options: SessionOptions, drive: object) -> SessionOptions:

@@ -18,7 +18,7 @@ class Stop:
     ----------
     limit : str
         Its name: a field of `SessionLimits`, or "stale_position", "drive_fault", "heartbeat_lost" (the
-        drive's), "host_heartbeat_lost" (ours, as the drive reports), "bus", "recording" (it cannot be written),
+        drive's), "host_heartbeat_lost" (ours, as the drive reports), "bus", "recording" (it cannot be written or made),
         "sensor" (a reading that is not finite), "user", "error" (another exception).
     phase : str
         "check", "enable", "move", "settle" or "run".
