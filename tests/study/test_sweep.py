@@ -357,7 +357,7 @@ def test_what_cannot_be_used_here_is_refused_there_only(
         ({"grid": {"ga.populaton": [20]}}, "grid: ga.populaton: it cannot be swept; did you mean"),
         (
             {"grid": {"sensors.torque_noise": [1.0]}},
-            "grid: sensors.torque_noise: .* simulation.*; give a scenario",
+            "grid: sensors.torque_noise: .* simulation.*; sweep with subject=... \\(a scenario",
         ),
         ({"grid": {3: [1.0]}}, "grid is 3: the name of a setting"),
         ({"grid": {"windows": 100}}, "grid: windows is 100: a list of values is expected"),
@@ -379,7 +379,7 @@ def test_what_cannot_be_used_here_is_refused_there_only(
         ({"search": jid.Search(seed=2**64 - 1), "trials": 2}, "seed is .*: 0 to"),
         ({"grid": {"ga": ["thesys"]}}, "did you mean 'thesis'"),
         ({"search": jid.Search(checkpoint="x.bin")}, "leave it out of the search"),
-        ({"tracking": True}, "tracking is True: .*; give a scenario"),
+        ({"tracking": True}, "tracking is True: .*; sweep with subject=... \\(a scenario"),
         ({"resume": True}, "resume is True: there is no file to continue; sweep with output="),
         ({"output": "x.csv"}, r"output is 'x\.csv': a file that ends in \.jsonl"),
         ({"output": "nowhere/x.jsonl"}, "output is 'nowhere/x.jsonl': .* does not exist; create"),
