@@ -10,10 +10,13 @@
 #include <pybind11/stl.h>
 
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
+
+#include "base/input_error.hpp"
 
 namespace jointid::bind {
 
@@ -41,6 +44,24 @@ constexpr const char* kind_of() {
   return "it is of the wrong type";
 }
 
+/// Refuses a Python integer that a field cannot hold, with the range that the struct's own check
+/// names; with the range of the field's type where the check names none.
+template <class V, class T>
+[[noreturn]] void refuse_beyond(T target, V T::* member, const std::string& argument,
+                                const py::handle& given) {
+  using Limits = std::numeric_limits<V>;
+  const bool low = py::reinterpret_borrow<py::object>(given) < py::int_(0);
+  target.*member = low ? Limits::min() : Limits::max();
+  try {
+    target.validate();
+  } catch (const base::InputError& error) {
+    if (error.argument() == argument) refuse(error.reason(), argument, given);
+  }
+  refuse(low ? "must be at least " + std::to_string(Limits::min())
+             : "must be at most " + std::to_string(Limits::max()),
+         argument, given);
+}
+
 /// A plain struct as a frozen Python value: keyword-only constructor that validates, replace,
 /// asdict, repr, ==, hash, pickle.
 template <class T, class... M>
@@ -54,6 +75,11 @@ py::class_<T> value(py::module_& m, const char* name, std::string text, Field<T,
         if (py::isinstance<py::bool_>(given) != std::is_same_v<V, bool>) throw py::cast_error();
         target.*field.member = given.cast<V>();
       } catch (const py::cast_error&) {
+        if constexpr (std::is_integral_v<V> && !std::is_same_v<V, bool>) {
+          if (PyLong_CheckExact(given.ptr())) {
+            refuse_beyond(target, field.member, std::string(name) + "." + key, given);
+          }
+        }
         refuse(kind_of<V>(), std::string(name) + "." + key, given);
       }
       return true;

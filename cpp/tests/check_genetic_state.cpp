@@ -97,8 +97,8 @@ CHECK_CASE("genetic state: bytes that are not a whole state are refused") {
   options.generations = 3;
   options.population = 4;
   const std::string bytes = to_bytes(*go(options, {}).state);
-  CHECK_REFUSED(state_from_bytes(""), "these bytes are none");
-  CHECK_REFUSED(state_from_bytes("PK\x03\x04"), "these bytes are none");
+  CHECK_REFUSED(state_from_bytes(""), "this is not a checkpoint file");
+  CHECK_REFUSED(state_from_bytes("PK\x03\x04"), "this is not a checkpoint file");
   for (std::size_t length = 0; length < bytes.size(); ++length) {
     CHECK_REFUSED(state_from_bytes(std::string_view(bytes).substr(0, length)), "checkpoint");
   }

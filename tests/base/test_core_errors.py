@@ -13,6 +13,14 @@ MISSPELT: dict[str, Any] = {"stifness": 1.0}
 WRONG: list[Any] = [2.5, "no"]
 BAD: list[tuple[Any, str, Any, str]] = [
     (lambda: jid.GaOptions(population=1), "GaOptions.population", 1, "must be 4 to 1000000"),
+    (lambda: jid.GaOptions(population=10**12), "GaOptions.population", 10**12, "4 to 1000000"),
+    (lambda: jid.GaOptions(islands=-(10**30)), "GaOptions.islands", -(10**30), "must be 1 to"),
+    (
+        lambda: jid.GaOptions(migration_interval=2**40),
+        "GaOptions.migration_interval",
+        2**40,
+        "must be at most 2147483647",
+    ),
     (lambda: jid.GaOptions(elite=WRONG[0]), "GaOptions.elite", 2.5, "a whole number is expected"),
     (lambda: jid.GaOptions(polish=WRONG[1]), "GaOptions.polish", "no", "True or False is expected"),
     (lambda: jid.GaOptions(tolerance=True), "GaOptions.tolerance", True, "a number is expected"),
@@ -31,7 +39,12 @@ BAD: list[tuple[Any, str, Any, str]] = [
     ),
     (lambda: _core.WindowOptions(count=-1), "windows.count", -1, "must be positive"),
     (lambda: _core.term("colomb"), "term", "colomb", "known are inertia, coulomb"),
-    (lambda: _core.GaState.from_bytes(b"x"), "checkpoint of a genetic search", None, "bytes"),
+    (
+        lambda: _core.GaState.from_bytes(b"x"),
+        "checkpoint of a genetic search",
+        None,
+        "not a checkpoint",
+    ),
     (
         lambda: jid.Trajectory.sigmoid(1.0, rise=-1.0, duration=1.0),
         "Trajectory.rise",

@@ -43,6 +43,15 @@ def test_the_effect_of_ripple_is_reported(ring: Commissioning) -> None:
     assert "Errors without the sensor's ripple in the model" in ring.report()
 
 
+def test_the_report_says_how_many_times_smaller_an_error_is(ring: Commissioning) -> None:
+    head, _, first, second, *_ = ring.report().splitlines()
+    assert head.endswith("than the first")
+    assert "times" not in first
+    assert second.endswith(" times smaller")
+    worse = replace(ring, runs=ring.runs[::-1], true_run=None)
+    assert " times larger" in worse.report()
+
+
 def test_the_same_seed_gives_the_same_bits(ring: Commissioning) -> None:
     again = commission(Bench.load(EXAMPLE), cycles=2, emulate=True, seed=1)
     assert again.to_dict() == ring.to_dict()

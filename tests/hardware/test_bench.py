@@ -1,16 +1,20 @@
 """Bench files: what is read, and how errors are worded."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import jointid as jid
 from jointid.hardware.bench.bench import Bench
 from jointid.hardware.bench.emulated_joints import true_joint
+from jointid.hardware.bench.opened_drive import emulated_devices
 from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.elmo.torque_source import AnalogInput, SyncedConverter
 from jointid.hardware.emulated.bus import EmulatedBus
+from jointid.hardware.session.options import SessionOptions
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "hardware" / "joint.toml"
 TEXT = EXAMPLE.read_text(encoding="utf-8")
@@ -118,6 +122,32 @@ def driven(path: Path) -> ElmoDrive:
         ),
         ("tracking_error = 0.1 ", "tracking_error = -1.0 ", r"\[session.limits\]: tracking_error"),
         ("tracking_error = 0.1 ", "tracking = 0.1 ", r"\[session.limits\]: tracking: unknown key"),
+        ("period = 0.002", "period = 1e-9", r"\[session\]: period is 1e-09: at least 1e-05 s"),
+        (
+            "settle = 0.5",
+            "settle = 1e12",
+            r"\[session\]: settle is 1000000000000.0: at most 10000 s",
+        ),
+        (
+            "approach_velocity = 0.3",
+            "approach_velocity = 1e-12",
+            r"\[session\]: approach_velocity is 1e-12: at least 0.0001 rad/s",
+        ),
+        (
+            "duration = 12.0",
+            "duration = 1e12",
+            r"\[session.trajectory\]: duration is 1000000000000.0: at most 10000 s is expected",
+        ),
+        (
+            "identifier = 0x1C0",
+            "identifier = 0xFFFFFF",
+            r"\[session.torque\]: identifier: 0xFFFFFF is no identifier",
+        ),
+        (
+            "coulomb = 25.0",
+            "coulomb = -25",
+            r"\[session.emulated.truth\]: coulomb is -25: must be",
+        ),
         ("bitrate = 500000", "bitrate = 5", r"\[session.bus\]: bitrate is 5"),
         ("mantissa_bits = 24", "mantissa_bits = 40", r"\[session.drive\]: mantissa_bits is 40"),
         ("idle_loop = 0.0003", "idle_loop = 1.0", r"\[session.emulated\]: idle_loop is 1.0"),
@@ -167,3 +197,43 @@ def test_the_emulated_gear_ripples_when_the_truth_says_so(tmp_path: Path) -> Non
     assert rippled.model.ripple == (2.0,)
     assert rippled.parameters["ripple_sin_2"].value == 2.6
     assert rippled.parameters["ripple_cos_2"].value == 0.5
+
+
+@pytest.mark.parametrize("bench", [None, 3])
+def test_only_a_bench_has_a_drive(bench: Any) -> None:
+    for opened in (jid.hardware.open_drive, emulated_devices):
+        with pytest.raises(jid.InputError, match=f"^bench is {bench}: a Bench is expected$"):
+            opened(bench)
+
+
+def test_an_hour_at_a_kilohertz_is_a_session(tmp_path: Path) -> None:
+    path = written(tmp_path, "duration = 12.0", "duration = 3600.0")
+    path.write_text(path.read_text("utf-8").replace("period = 0.002", "period = 0.001"), "utf-8")
+    assert Bench.load(path).trajectory.duration == 3600.0
+
+
+@pytest.mark.parametrize(
+    ("changes", "wording"),
+    [
+        ({"trajectory": jid.Trajectory.thesis(duration=1e12)}, "^trajectory.duration is 1000000"),
+        (
+            {"options": SessionOptions(approach_velocity=1e-4)},
+            "^approach_velocity is 0.0001: at least 0.000204 rad/s is expected for the 1.3 rad",
+        ),
+    ],
+)
+def test_too_many_cycles_are_refused_before_the_motor_is_on(
+    changes: dict[str, Any], wording: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench = replace(Bench.load(EXAMPLE), **changes)
+    assert bench.emulation is not None
+    bench = replace(bench, emulation=replace(bench.emulation, position=1.3))
+    enabled: list[str] = []
+    monkeypatch.setattr(ElmoDrive, "enable", lambda _: enabled.append("on"))
+    with jid.hardware.open_drive(bench, emulate=True) as drive:
+        session = jid.hardware.Session(
+            drive, bench.controller, bench.trajectory, bench.limits, options=bench.options
+        )
+        with pytest.raises(jid.InputError, match=wording):
+            session.run()
+    assert not enabled

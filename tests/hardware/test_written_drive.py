@@ -263,14 +263,14 @@ def test_a_missing_method_is_reported_before_anything_is_called(name: str) -> No
     with pytest.raises(InputError) as refused:
         Session(wheel, LAW, SWING, LIMITS, options=OPTIONS)
     assert str(refused.value) == (
-        f"the drive Incomplete lacks {name}(); "
-        "`jointid.hardware.Drive` describes what a session needs of a drive"
+        f"drive is an Incomplete: a drive is expected, but this has no {name}(); "
+        "see `jointid.hardware.Drive` for what a session needs of a drive"
     )
     assert wheel.calls == []
 
 
 def test_all_missing_methods_are_reported_at_once() -> None:
-    with pytest.raises(InputError, match=r"lacks connect\(\), .*, clock, command_latency;"):
+    with pytest.raises(InputError, match=r"has no connect\(\), .*, clock, command_latency;"):
         Session(object(), LAW, SWING, LIMITS)  # type: ignore[arg-type]
 
 

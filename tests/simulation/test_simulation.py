@@ -403,14 +403,16 @@ def test_the_torque_limit_cuts_and_counts(joint: jid.Joint) -> None:
 @pytest.mark.parametrize(
     ("change", "complaint"),
     [
+        ({"control_period": 1e-12}, "control_period is 1e-12: 0.1 s would be 1e+11 control"),
+        ({"duration": 1e9}, "duration is 1000000000.0: 1e+09 s would be 1e+12 control periods"),
         ({"control_period": 0.0}, "control_period is 0.0: more than 0"),
         ({"integration_step": 3e-4}, "integration_step is 0.0003: must be a whole part"),
         ({"sample_period": 2.5e-3}, "sample_period is 0.0025: a whole number of control periods"),
         ({"duration": math.nan}, "duration is nan: a finite number"),
         ({"payload": "heavy"}, "payload is 'heavy': a number"),
         ({"seed": -1}, "seed is -1: a whole number"),
-        ({"seed": 1.5}, "seeds is 1.5: one of int"),
-        ({"sensors": 3}, "sensors is 3: Sensors are expected"),
+        ({"seed": 1.5}, "seeds is 1.5: a whole number"),
+        ({"sensors": 3}, "sensors is 3: a Sensors value is expected"),
         ({"bristle": 1e5}, "bristle is 100000.0: a Bristle is expected"),
     ],
 )
@@ -439,3 +441,12 @@ def test_ctrl_c_ends_a_long_simulation(joint: jid.Joint) -> None:
     threading.Timer(0.2, _thread.interrupt_main).start()
     with pytest.raises(KeyboardInterrupt):
         jid.simulate(joint, wrong_controller(), well_excited(), duration=3e5)
+
+
+def test_a_scenario_names_its_own_argument(joint: jid.Joint) -> None:
+    sensors: Any = 1
+    with pytest.raises(jid.InputError, match=r"^sensors is 1: a Sensors value is expected$"):
+        jid.Scenario(joint, wrong_controller(), well_excited(0.1), sensors)
+    trajectory: Any = 2
+    with pytest.raises(jid.InputError, match=r"^trajectory is 2: a Trajectory is expected$"):
+        jid.Scenario(joint, wrong_controller(), trajectory)

@@ -130,6 +130,28 @@ def test_a_recording_gives_its_reference_else_its_position() -> None:
             lambda: Trajectory.from_samples([0.0, 1.0], [1.0, math.nan]),
             "position is nan: must be finite",
         ),
+        (
+            lambda: Trajectory.sine(1e300, 1.0, duration=1.0),
+            "amplitude is 1e+300: at most 1e+06 rad or m in magnitude",
+        ),
+        (
+            lambda: Trajectory.multisine(-2e6, lowest=1.0, highest=2.0, duration=1.0),
+            "amplitude is -2000000.0: at most 1e+06",
+        ),
+        (lambda: Trajectory.thesis(2e6), "amplitude is 2000000.0: at most 1e+06"),
+        (
+            lambda: Trajectory.sine(1.0, 1.0, offset=2e6, duration=1.0),
+            "offset is 2000000.0: at most 1e+06",
+        ),
+        (lambda: Trajectory.step(2e6, duration=1.0), "distance is 2000000.0: at most 1e+06"),
+        (
+            lambda: Trajectory.from_samples([0.0, 1.0], [1.0, -2e6]),
+            "position is -2000000.0: at most 1e+06",
+        ),
+        (
+            lambda: Trajectory.multisine(1.0, lowest=1.0, highest=2.0, duration=1e12),
+            "duration is 1000000000000.0: at most 1.56e+05 s is expected with 8 sines up to 2 Hz",
+        ),
         (lambda: Trajectory.from_samples([[0.0]], [1.0]), "one dimension"),
     ],
 )

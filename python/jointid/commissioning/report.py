@@ -24,7 +24,7 @@ def text_report(result: Commissioning) -> str:
 def _runs(result: Commissioning) -> list[str]:
     revolute = result.estimates[0].joint.kind == "revolute"
     unit, factor = ("mrad", 1e3) if revolute else ("mm", 1e3)
-    rows = [["run", f"rms error [{unit}]", f"largest [{unit}]", "times the first"]]
+    rows = [["run", f"rms error [{unit}]", f"largest [{unit}]", "than the first"]]
     last = () if result.true_run is None else (result.true_run,)
     first = result.runs[0].tracking_error
     rows += [
@@ -32,7 +32,7 @@ def _runs(result: Commissioning) -> list[str]:
             run.name,
             f"{factor * run.tracking_error:.4f}",
             f"{factor * run.peak_error:.4f}",
-            f"1/{first / run.tracking_error:.1f}",
+            "" if run is result.runs[0] else _compared(first / run.tracking_error),
         ]
         for run in (*result.runs, *last)
     ]
@@ -42,6 +42,13 @@ def _runs(result: Commissioning) -> list[str]:
         ratio = result.runs[-1].tracking_error / result.true_run.tracking_error
         summary += f"; it ended at {ratio:.3f} times that with the true parameters"
     return [*lines, summary + "."]
+
+
+def _compared(ratio: float) -> str:
+    """Say how many times smaller an error is."""
+    if ratio < 1.0:
+        return f"{1.0 / ratio:.1f} times larger"
+    return f"{ratio:.1f} times smaller"
 
 
 def _parameters(result: Commissioning) -> list[str]:

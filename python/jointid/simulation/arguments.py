@@ -37,7 +37,10 @@ def side_by_side(
         for entry in lists[what]:
             if not isinstance(entry, known[what]) or isinstance(entry, bool):
                 names = ", ".join(kind.__name__ for kind in known[what])
-                raise InputError(f"one of {names} is expected", argument=what, value=entry)
+                expected = {"joints": "a Joint", "seeds": "a whole number"}.get(
+                    what, f"one of {names}"
+                )
+                raise InputError(f"{expected} is expected", argument=what, value=entry)
     count = max(len(entries) for entries in lists.values())
     for what, entries in lists.items():
         if len(entries) not in (1, count) or not entries:

@@ -23,6 +23,7 @@ from jointid.simulation.simulated_recording import SimulatedRecording
 from jointid.simulation.trajectory import Trajectory
 
 _SUBSTEPS = 2  # integration steps in a control period, by default
+_MOST_PERIODS = 1e9  # control periods of a simulation, as in the core
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,10 +103,19 @@ bristle, position, velocity, name
     if bristle is not None and not isinstance(bristle, Bristle):
         raise InputError("a Bristle is expected", argument="bristle", value=bristle)
     if sensors is not None and not isinstance(sensors, _core.Sensors):
-        raise InputError("Sensors are expected", argument="sensors", value=sensors)
+        raise InputError("a Sensors value is expected", argument="sensors", value=sensors)
     period = positive("control_period", control_period)
     every = 1 if sample_period is None else whole_multiple("sample_period", sample_period, period)
     length = trajectory.duration if duration is None else positive("duration", duration)
+    if length > _MOST_PERIODS * period:
+        # The argument that is further from what is usual.
+        name, value = ("control_period", period) if length <= 1e6 else ("duration", length)
+        raise InputError(
+            f"{length:g} s would be {length / period:.3g} control periods of {period:g} s; "
+            f"at most {_MOST_PERIODS:g} are possible",
+            argument=name,
+            value=value,
+        )
     scenario = _core.Scenario(
         duration=length,
         control_period=period,

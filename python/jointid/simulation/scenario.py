@@ -60,11 +60,14 @@ class Scenario:
         }
         for name, kinds in known.items():
             if not isinstance(getattr(self, name), kinds):
-                wanted = ", ".join(kind.__name__ for kind in kinds)
+                expected = (
+                    "a Sensors value"  # its name is a plural
+                    if name == "sensors"
+                    else f"{'one of' if len(kinds) > 1 else 'a'} "
+                    + ", ".join(kind.__name__ for kind in kinds)
+                )
                 raise InputError(
-                    f"one of {wanted} is expected",
-                    argument=f"Scenario.{name}",
-                    value=getattr(self, name),
+                    f"{expected} is expected", argument=name, value=getattr(self, name)
                 )
 
     def simulate(

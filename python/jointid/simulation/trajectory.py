@@ -23,6 +23,10 @@ _MAKE: dict[str, Callable[..., _core.Trajectory]] = {
     "samples": _core.Trajectory.samples,
 }
 
+_PLACES = ("distance", "offset")
+_FARTHEST = 1e6  # rad, m or N·m; beyond, errors of a simulation have no finite square
+_MOST_SINES = 5e7  # samples of all sines, to find the peak of a multisine
+
 
 @dataclass(frozen=True)
 class Trajectory:
@@ -57,7 +61,7 @@ class Trajectory:
             [s]. Default 12.
         """
         rate = 2.0 * math.pi / _positive("cycle", cycle)
-        size = _number("amplitude", amplitude) / 1.3
+        size = _extent("amplitude", amplitude) / 1.3
         return cls._sines((size, -0.5 * size), (rate, 2.0 * rate), (0.0, 0.0), 0.0, duration)
 
     @classmethod
@@ -76,7 +80,7 @@ class Trajectory:
             [s]
         """
         rate = 2.0 * math.pi * _positive("frequency", frequency)
-        return cls._sines((_number("amplitude", amplitude),), (rate,), (0.0,), offset, duration)
+        return cls._sines((_extent("amplitude", amplitude),), (rate,), (0.0,), offset, duration)
 
     @classmethod
     def multisine(
@@ -121,10 +125,17 @@ class Trajectory:
         rate = 2.0 * np.pi * np.linspace(low, high, count)
         number = np.arange(count)
         phase = -np.pi * number * (number + 1) / count
+        if 20.0 * high * _positive("duration", duration) * count > _MOST_SINES:
+            raise InputError(
+                f"at most {_MOST_SINES / (20.0 * high * count):.3g} s is expected with {count} sines up "
+                f"to {high:g} Hz",
+                argument="Trajectory.duration",
+                value=float(duration),
+            )
         # Sampled finely enough that the peak is found to a few thousandths.
-        time = np.linspace(0.0, _positive("duration", duration), int(20 * high * duration) + 2)
+        time = np.linspace(0.0, duration, int(20 * high * duration) + 2)
         shape = np.sin(np.outer(time, rate) + phase).sum(axis=1) - np.sin(phase).sum()
-        size = _number("amplitude", amplitude) / float(np.abs(shape).max())
+        size = _extent("amplitude", amplitude) / float(np.abs(shape).max())
         start = offset - size * float(np.sin(phase).sum())
         return cls._sines(
             (size,) * count, tuple(rate.tolist()), tuple(phase.tolist()), start, duration
@@ -185,7 +196,9 @@ class Trajectory:
             [rad]
         """
         return cls._made(
-            "samples", time=_samples("time", time), position=_samples("position", position)
+            "samples",
+            time=_samples("time", time),
+            position=_samples("position", position, _FARTHEST),
         )
 
     @classmethod
@@ -231,7 +244,7 @@ class Trajectory:
     def _made(cls, form: str, **arguments: Any) -> Self:
         for name, value in arguments.items():
             if not isinstance(value, tuple):
-                arguments[name] = _number(name, value)
+                arguments[name] = (_extent if name in _PLACES else _number)(name, value)
         trajectory = cls(form, tuple(arguments.items()))
         _ = trajectory.core  # wrong arguments raise here, not at first use
         return trajectory
@@ -246,6 +259,17 @@ def _number(name: str, value: object) -> float:
     return float(value)
 
 
+def _extent(name: str, value: object) -> float:
+    number = _number(name, value)
+    if _FARTHEST < abs(number) < math.inf:
+        raise InputError(
+            f"at most {_FARTHEST:g} rad or m in magnitude is expected",
+            argument=f"Trajectory.{name}",
+            value=number,
+        )
+    return number
+
+
 def _positive(name: str, value: object) -> float:
     number = _number(name, value)
     if not (0.0 < number < math.inf):
@@ -255,7 +279,7 @@ def _positive(name: str, value: object) -> float:
     return number
 
 
-def _samples(name: str, values: npt.ArrayLike) -> tuple[float, ...]:
+def _samples(name: str, values: npt.ArrayLike, largest: float = math.inf) -> tuple[float, ...]:
     try:
         array = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError):
@@ -266,4 +290,7 @@ def _samples(name: str, values: npt.ArrayLike) -> tuple[float, ...]:
         raise InputError(
             f"one dimension is expected, the shape is {array.shape}", argument=f"Trajectory.{name}"
         )
+    outside = np.flatnonzero(np.isfinite(array) & (np.abs(array) > largest))
+    if outside.size:
+        _extent(name, float(array[outside[0]]))
     return tuple(array.tolist())

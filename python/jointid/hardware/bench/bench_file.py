@@ -12,13 +12,14 @@ from jointid.hardware.bench.bench import Bench, BusOptions, Emulation, joint_wit
 from jointid.hardware.bench.drive_types import DEFAULT_TYPE, DriveType, drive_type, drive_type_names
 from jointid.hardware.bench.table import Table, types_of
 from jointid.hardware.session.limits import SessionLimits
-from jointid.hardware.session.options import SessionOptions
+from jointid.hardware.session.options import SessionOptions, check_cycles
 from jointid.hardware.session.realtime import RealTimeOptions
 from jointid.joint.checks import suggestion
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_from_document, read_document
 from jointid.simulation.arguments import Controller
 from jointid.simulation.scenario import believing
+from jointid.simulation.stepped import stepped_joint
 from jointid.simulation.trajectory import Trajectory
 
 _TABLES = ("bus", "drive", "trajectory", "controller", "limits", "real_time", "emulated")
@@ -66,15 +67,21 @@ def load_bench(path: str | Path) -> Bench:
             "missing; 1 where there is no gear", argument="gear_ratio", place=f"{source}: [drive]"
         )
     bus = session.table("bus").make(BusOptions)
+    trajectory = _trajectory(session.table("trajectory"))
+    options = session.without(*tables).make(SessionOptions, resolution=None)
+    try:
+        check_cycles("duration", trajectory.duration, options.period)
+    except InputError as error:
+        raise error.at(session.table("trajectory").place) from error
     return Bench(
         joint=joint,
         controller=_controller(session.table("controller"), joint),
-        trajectory=_trajectory(session.table("trajectory")),
+        trajectory=trajectory,
         drive=adapter.options(session, bus),
         limits=session.table("limits").call(
             lambda **given: SessionLimits.of(joint, **given), types_of(SessionLimits)
         ),
-        options=session.without(*tables).make(SessionOptions, resolution=None),
+        options=options,
         bus=bus,
         real_time=session.table("real_time").make(RealTimeOptions),
         emulation=_emulation(session.table("emulated"), joint, adapter)
@@ -118,9 +125,10 @@ def _emulation(table: Table, joint: Joint, adapter: DriveType) -> Emulation:
         if isinstance(value, bool) or not isinstance(value, int | float):
             truth.refuse(name, "a number is expected", value)
     try:
-        joint_with_truth(joint, truth.entries)
+        true_joint = joint_with_truth(joint, truth.entries)
     except InputError as error:
         raise InputError(str(error), place=truth.place) from error
+    _check_truth(truth, true_joint)
     common: dict[str, Any] = {n: v for n, v in table.entries.items() if n in _EMULATED}
     return Table(common, table.name, table.source).make(
         Emulation,
@@ -128,3 +136,15 @@ def _emulation(table: Table, joint: Joint, adapter: DriveType) -> Emulation:
         sensors=sensors.make_core(_core.Sensors, _NOT_EMULATED),
         drive=adapter.emulation(table.without("truth", "sensors", *_EMULATED)),
     )
+
+
+def _check_truth(truth: Table, joint: Joint) -> None:
+    """Refuse a value of the truth that no simulated joint can have; what is missing is for the emulation to say."""
+    try:
+        stepped_joint(joint)
+    except InputError as error:
+        name = error.argument.removeprefix("joint.")
+        if name not in truth.entries:  # friction of both directions under one name
+            name = name.removesuffix("_positive").removesuffix("_negative")
+        if name in truth.entries:
+            truth.refuse(name, error.reason, truth.entries[name])

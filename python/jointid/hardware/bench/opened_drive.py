@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING
 
+from jointid.base.argument_checks import require_kind
 from jointid.hardware.bench.bench import Bench
 from jointid.hardware.bench.drive_types import drive_type
 
@@ -34,7 +35,7 @@ def open_drive(
     Raises
     ------
     InputError
-        The bus cannot be opened, or the bench does not describe an emulated joint.
+        This is not a Bench, the bus cannot be opened, or the bench does not describe an emulated joint.
 
     Examples
     --------
@@ -44,6 +45,7 @@ def open_drive(
     ...         drive, bench.controller, bench.trajectory, bench.limits, options=bench.options
     ...     ).run()
     """
+    require_kind("bench", bench, Bench)
     adapter = drive_type(bench.drive_type)
     return adapter.emulate(bench, seed) if emulate else adapter.open(bench)
 
@@ -60,6 +62,7 @@ def emulated_devices(bench: Bench, seed: int = 0) -> tuple[Device, ...]:
     Raises
     ------
     InputError
-        The bench does not describe an emulated joint, or its drive type has no emulation on a CAN bus.
+        This is not a Bench, it does not describe an emulated joint, or its drive type has no emulation on a CAN bus.
     """
+    require_kind("bench", bench, Bench)
     return drive_type(bench.drive_type).devices(bench, seed)

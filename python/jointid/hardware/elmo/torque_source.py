@@ -78,6 +78,11 @@ class SyncedConverter:
     scaling: SensorScaling = field(default_factory=SensorScaling)
 
     def __post_init__(self) -> None:
+        if not 0x81 <= self.identifier <= 0x7FF:
+            raise InputError(
+                f"0x{self.identifier:X} is no identifier; 0x081 to 0x7FF is expected",
+                argument="identifier",
+            )
         if not 1 <= self.conversions <= 2**16:
             raise InputError(
                 "1 to 65536 is expected", argument="conversions", value=self.conversions

@@ -242,6 +242,8 @@ def check_drive(drive: object) -> None:
     missing += [name for name in _PROPERTIES if not (hasattr(kind, name) or hasattr(drive, name))]
     if missing:
         raise InputError(
-            f"the drive {kind.__name__} lacks {', '.join(missing)}; `jointid.hardware.Drive` describes what a "
-            "session needs of a drive"
+            f"a drive is expected, but this has no {', '.join(missing)}",
+            argument="drive",
+            value=drive,
+            remedy="see `jointid.hardware.Drive` for what a session needs of a drive",
         )

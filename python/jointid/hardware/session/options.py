@@ -11,6 +11,12 @@ from jointid.joint.checks import is_number
 
 _MOST_COUNTS = 1_000_000
 
+# Each cycle of a session is kept in memory until its end, in some 300 bytes: 1.5 GB for as many
+# cycles, which are 83 minutes at 1 kHz and almost three hours at the default period.
+MOST_CYCLES = 5_000_000
+SHORTEST_PERIOD = 1e-5  # s; no bus and no drive keeps a shorter one
+SLOWEST_APPROACH = 1e-4  # rad/s; a turn takes a day
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SessionOptions:
@@ -19,11 +25,11 @@ class SessionOptions:
     Attributes
     ----------
     period : float
-        Between commands [s].
+        Between commands [s]; at least 1e-5.
     approach_velocity : float
-        Largest, on the way to the start [rad/s].
+        Largest, on the way to the start [rad/s]; at least 1e-4.
     settle : float
-        Time at rest at the start [s].
+        Time at rest at the start [s]; at most 5 million periods.
     velocity_counts, velocity_time : int, float
         Of the velocity estimator (6.3.1): counts at least, [s] at most.
     resolution : float, optional
@@ -59,3 +65,30 @@ class SessionOptions:
                     raise InputError("at least 0 is expected", argument="settle", value=value)
             elif not 0.0 < value < math.inf:
                 raise InputError("more than 0 is expected", argument=item.name, value=value)
+        for name, least, unit in (
+            ("period", SHORTEST_PERIOD, "s"),
+            ("approach_velocity", SLOWEST_APPROACH, "rad/s"),
+        ):
+            value = getattr(self, name)
+            if value < least:
+                raise InputError(
+                    f"at least {least:g} {unit} is expected", argument=name, value=value
+                )
+        check_cycles("settle", self.settle, self.period)
+
+
+def check_cycles(name: str, time: float, period: float) -> None:
+    """Check that a time [s] has no more cycles than a session can keep.
+
+    Raises
+    ------
+    InputError
+        Names the longest time for this period.
+    """
+    if time > MOST_CYCLES * period:
+        raise InputError(
+            f"at most {MOST_CYCLES * period:g} s is expected with a period of {period:g} s: "
+            f"{MOST_CYCLES} cycles",
+            argument=name,
+            value=time,
+        )

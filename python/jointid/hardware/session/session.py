@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
@@ -20,11 +19,16 @@ from jointid.hardware.session.guard import Guard
 from jointid.hardware.session.interruptions import Interruptions
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.metadata import session_metadata
-from jointid.hardware.session.options import SessionOptions
+from jointid.hardware.session.options import SessionOptions, check_cycles
 from jointid.hardware.session.outcome import ending_of, recording_of, stop_of
 from jointid.hardware.session.realtime import RealTime, RealTimeOptions
 from jointid.hardware.session.recorder import Frame, Recorder, check_output
-from jointid.hardware.session.start_checks import problems_at_rest, problems_on_paper
+from jointid.hardware.session.start_checks import (
+    approach_time,
+    check_approach,
+    problems_at_rest,
+    problems_on_paper,
+)
 from jointid.hardware.session.stop import (
     LimitError,
     SessionRefusedError,
@@ -114,8 +118,14 @@ class Session:
         -------
         list of str
             Empty when all pre-flight checks pass.
+
+        Raises
+        ------
+        InputError
+            The trajectory or the way to its start has more cycles than a session can keep.
         """
         options, limits = self._options, self._limits
+        check_cycles("trajectory.duration", self._trajectory.duration, options.period)
         reasons = list(
             problems_on_paper(
                 self._drive, self._controller, self._trajectory, limits, options.period
@@ -132,7 +142,10 @@ class Session:
                 value=problems,
             )
         reasons += problems
-        reasons += problems_at_rest(self._drive.read(10.0 * options.period), limits)
+        sample = self._drive.read(10.0 * options.period)
+        reasons += problems_at_rest(sample, limits)
+        if not isinstance(self._controller, _core.OpenLoop):
+            check_approach(self._start() - sample.position, options)
         return reasons
 
     def run(self, *, dry_run: bool = False) -> Recording | None:
@@ -151,6 +164,8 @@ class Session:
 
         Raises
         ------
+        InputError
+            As in `check`.
         SessionRefusedError
             A pre-flight check failed, or the drive raised a DriveFaultError or an OSError in it.
         SessionStoppedError
@@ -288,13 +303,16 @@ class Session:
     def _approach(self, follower: Follower) -> None:
         """Move to the start of the trajectory, smoothly, and stop there."""
         options = self._options
-        start = float(self._trajectory.sample(np.zeros(1))[0][0])
         here = self._drive.read(10.0 * options.period).position
-        distance = start - here
-        rise = max(0.2, 0.5 * math.pi * abs(distance) / options.approach_velocity)
+        distance = self._start() - here
+        rise = approach_time(distance, options)
         approach = Trajectory.sigmoid(distance, rise=rise, duration=rise + options.settle)
         follower.enter("move")
         follower.follow(Course.of(approach, options.period), None, offset=here, settled=rise)
+
+    def _start(self) -> float:
+        """Where the trajectory begins [rad]."""
+        return float(self._trajectory.sample(np.zeros(1))[0][0])
 
     # Ways out.
 

@@ -8,12 +8,15 @@ from collections.abc import Iterator
 import numpy as np
 
 from jointid import _core
+from jointid.base.errors import InputError
 from jointid.hardware.session.drive import Drive, DriveSample
 from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.options import MOST_CYCLES, SessionOptions
 from jointid.simulation.arguments import Controller
 from jointid.simulation.trajectory import Trajectory
 
 _FEWEST = 8  # samples of a recording
+SHORTEST_APPROACH = 0.2  # s
 FULLEST_BUS = 0.8  # of its time; more leaves no room for an emergency or a repeated frame
 
 
@@ -51,6 +54,37 @@ def problems_on_paper(
     fastest = float(np.abs(speed).max())
     if fastest > limits.velocity:
         yield f"the trajectory is up to {fastest:.3f} rad/s fast, more than {limits.velocity:g} rad/s"
+
+
+def check_approach(distance: float, options: SessionOptions) -> None:
+    """Check that the way to the start has no more cycles than a session can keep.
+
+    Parameters
+    ----------
+    distance : float
+        To the start of the trajectory [rad].
+    options : SessionOptions
+
+    Raises
+    ------
+    InputError
+        Names the lowest velocity that is possible.
+    """
+    longest = MOST_CYCLES * options.period
+    if approach_time(distance, options) <= longest:
+        return
+    least = 0.5 * math.pi * abs(distance) / longest
+    raise InputError(
+        f"at least {least:.3g} rad/s is expected for the {abs(distance):.3g} rad to the start: "
+        f"a session has at most {MOST_CYCLES} cycles",
+        argument="approach_velocity",
+        value=options.approach_velocity,
+    )
+
+
+def approach_time(distance: float, options: SessionOptions) -> float:
+    """Return the time of the way to the start [s], over a distance [rad]."""
+    return max(SHORTEST_APPROACH, 0.5 * math.pi * abs(distance) / options.approach_velocity)
 
 
 def problems_at_rest(sample: DriveSample, limits: SessionLimits) -> Iterator[str]:
