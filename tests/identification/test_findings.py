@@ -175,10 +175,55 @@ def test_a_motor_side_torque_is_flipped_by_the_gear_ratio(
 def test_a_model_that_is_too_rich_is_made_simpler(tmp_path: Path) -> None:
     recording = jid.load(data_folder() / "kr300_joint1.csv.gz")
     joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
-    found = found_in(separable(recording, joint), "model_too_rich")
-    assert dict(found.advice[0].arguments) == {"model": "coulomb_viscous"}
+    found = found_in(separable(recording, joint, model="stribeck"), "model_too_rich")
+    assert dict(found.advice[0].arguments) == {"model": "coulomb_viscous:gravity=none"}
     simpler = separable(recording, joint, **found.advice[0].arguments)
     assert "model_too_rich" not in {each.code for each in simpler.findings}
+
+
+@pytest.mark.parametrize("gain", [1.0, {"value": 1.0}, {"value": 1.0, "max": 4.0}])
+def test_a_reversed_gain_is_stated_over_the_call(
+    well_excited: jid.Recording, gain: Any, tmp_path: Path
+) -> None:
+    recording = reversed_sensor(well_excited)
+    given = {
+        "parameters": {
+            "sensor_gain": gain if isinstance(gain, dict) else {"value": gain, "vary": False}
+        }
+    }
+    found = found_in(separable(recording, parameters={"sensor_gain": gain}), "reversed_sign")
+    (action,) = (each for each in found.advice if each.kind == "call")
+    after = obeyed(action, recording, given, tmp_path)
+    assert after.parameters["sensor_gain"].value < 0.0
+    assert "reversed_sign" not in {each.code for each in after.findings}
+
+
+def test_a_simpler_model_is_advised_without_what_it_lacks() -> None:
+    robot = jid.load(data_folder() / "kr300_joint1.csv.gz")
+    joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
+    bounds = {"static": {"min": 0.0, "max": 900.0}}
+    found = found_in(separable(robot, joint, model="stribeck", parameters=bounds), "model_too_rich")
+    assert found.advice[0].text == "without the values and bounds of static"
+    joint = joint.replace(parameters=bounds)
+    found = found_in(separable(robot, joint, model="stribeck"), "model_too_rich")
+    assert found.advice[0].text == ""
+
+
+def test_ripple_that_the_model_has_is_not_added_again(well_excited: jid.Recording) -> None:
+    fixed = {"ripple_cos_2": 0.0, "ripple_sin_2": 0.0}
+    estimate = separable(rippled(well_excited), model=":ripple=2", parameters=fixed)
+    (action,) = found_in(estimate, "ripple").advice
+    assert action.kind == "inspect"
+    assert "ripple_cos_2 and ripple_sin_2" in action.text
+
+
+def test_advised_models_keep_what_the_call_set_back(well_excited: jid.Recording) -> None:
+    joint = jid.thesis_joint()
+    joint = joint.replace(model=joint.model.replace(asymmetric=True))
+    given = {"model": ":asymmetric=false"}
+    found = found_in(separable(rippled(well_excited), joint, **given), "ripple")
+    after = separable(rippled(well_excited), joint, **found.advice[0].arguments)
+    assert after.settings["model"] == "stribeck:ripple=2"
 
 
 def test_assumed_units_are_stated(well_excited: jid.Recording, tmp_path: Path) -> None:
