@@ -288,6 +288,28 @@ def test_information_is_no_warning(well_excited: jid.Recording) -> None:
     assert found_in(separable(make(well_excited)), "constant_signal").severity == "blocking"
 
 
+def test_the_most_severe_finding_is_first(
+    well_excited: jid.Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    torn = DEFECTS["gap"][0](well_excited)
+    monkeypatch.setattr(registry, "CHECKS", registry.CHECKS[::-1])
+    order = [
+        found.severity
+        for found in separable(changed(torn, sensor=np.full_like(torn.time, 3.0))).findings
+    ]
+    assert order == sorted(order, key=["blocking", "warning", "info"].index)
+    assert {"blocking", "warning", "info"} == set(order)
+
+
+def test_a_few_pairs_are_named(well_excited: jid.Recording) -> None:
+    orders = ",".join(str(order) for order in range(1, 9))
+    estimate = separable(well_excited.crop(0.0, 1.2), model=f":harmonics={orders}")
+    names, matrix = estimate.free, np.abs(estimate.correlation)
+    assert (matrix[np.triu_indices(len(names), 1)] > 0.98).sum() > 5
+    cause = found_in(estimate, "undetermined").cause
+    assert cause.count("are indistinguishable") == 5
+
+
 # --- Adding one: a file and a line ---
 
 WOBBLE = """
