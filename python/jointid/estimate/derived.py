@@ -90,7 +90,7 @@ def _stribeck_velocity(estimate: Estimate) -> Iterator[DerivedValue]:
 def _slope(stribeck: float) -> float:
     """Derivative of 1/√stribeck; infinite where the number is too large for a float."""
     try:
-        return -0.5 * stribeck**-1.5
+        return -0.5 * float(stribeck**-1.5)
     except OverflowError:
         return -math.inf
 
