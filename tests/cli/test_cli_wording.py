@@ -96,6 +96,14 @@ CALL = partial(Action, "call")
             "set torque_offset = false under [model] in the joint file",
         ),
         (
+            "simulate",
+            CALL(
+                {"model": "stribeck:load_friction=false:ripple=none:gravity=none"}, function="Joint"
+            ),
+            'set friction = "stribeck" and load_friction = false and ripple = [] and gravity = "none" under [model] '
+            "in the joint file",
+        ),
+        (
             "identify",
             CALL({"gear_ratio": 101.0, "friction": "stribeck"}, function="Joint"),
             'set gear_ratio = 101 under [drive] and set friction = "stribeck" under [model] in the joint file',

@@ -1,5 +1,6 @@
 """A saved estimate is read again whatever stands in it: values, one sentence, and no script in a page."""
 
+import dataclasses
 import functools
 import json
 import math
@@ -12,7 +13,9 @@ from matplotlib.figure import Figure
 
 import jointid as jid
 from jointid.base import html
+from jointid.base.advice import Action
 from jointid.cli.demo import data_folder
+from jointid.estimate.findings import Finding
 from jointid.report import html as report
 
 SAVED = Path(__file__).with_name("estimate_schema_1.json")
@@ -31,6 +34,7 @@ JUNK = {
     "half a letter": '"\\ud800"',
     "negative": "-1",
     "large": "1e99",
+    "tiny": "1e-250",
 }
 Path_ = tuple[str | int, ...]
 
@@ -217,3 +221,13 @@ def test_a_file_is_read_and_named(tmp_path: Path) -> None:
         jid.Estimate.load(path)
     with pytest.raises(jid.InputError, match="No such file"):
         jid.Estimate.load(tmp_path / "none.json")
+
+
+def test_what_a_finding_may_hold_is_read_again() -> None:
+    estimate = jid.Estimate.from_json(text_of(2))
+    unknown = {"columns": {"sensor": ...}, "models": ["stribeck", ...]}
+    found = Finding(
+        code="undetermined", cause="x" * 50_000, advice=(Action("call", unknown, function="load"),)
+    )
+    again = jid.Estimate.from_json(dataclasses.replace(estimate, findings=(found,)).to_json())
+    assert again.findings == (found,)

@@ -115,6 +115,11 @@ def test_a_checkpoint_is_refused_before_the_search(tmp_path: Path) -> None:
     assert (error.argument, error.value) == ("checkpoint", str(nowhere))
     error = refused(PLAIN, search=jid.Search(resume=nowhere))
     assert (error.argument, error.place) == ("resume", str(nowhere))
+    foreign = tmp_path / "README.md"
+    foreign.write_text("not a checkpoint")
+    error = refused(PLAIN, search=jid.Search(resume=foreign))
+    assert (error.argument, error.place) == ("resume", str(foreign))
+    assert "bytes" in error.reason
 
 
 def test_an_error_in_the_callback_is_not_bad_input() -> None:

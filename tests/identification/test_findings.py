@@ -176,10 +176,55 @@ def test_a_motor_side_torque_is_flipped_by_the_gear_ratio(
 def test_a_model_that_is_too_rich_is_made_simpler(tmp_path: Path) -> None:
     recording = jid.load(data_folder() / "kr300_joint1.csv.gz")
     joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
-    found = found_in(separable(recording, joint), "model_too_rich")
-    assert dict(found.advice[0].arguments) == {"model": "coulomb_viscous"}
+    found = found_in(separable(recording, joint, model="stribeck"), "model_too_rich")
+    assert dict(found.advice[0].arguments) == {"model": "coulomb_viscous:gravity=none"}
     simpler = separable(recording, joint, **found.advice[0].arguments)
     assert "model_too_rich" not in {each.code for each in simpler.findings}
+
+
+@pytest.mark.parametrize("gain", [1.0, {"value": 1.0}, {"value": 1.0, "max": 4.0}])
+def test_a_reversed_gain_is_stated_over_the_call(
+    well_excited: jid.Recording, gain: Any, tmp_path: Path
+) -> None:
+    recording = reversed_sensor(well_excited)
+    given = {
+        "parameters": {
+            "sensor_gain": gain if isinstance(gain, dict) else {"value": gain, "vary": False}
+        }
+    }
+    found = found_in(separable(recording, parameters={"sensor_gain": gain}), "reversed_sign")
+    (action,) = (each for each in found.advice if each.kind == "call")
+    after = obeyed(action, recording, given, tmp_path)
+    assert after.parameters["sensor_gain"].value < 0.0
+    assert "reversed_sign" not in {each.code for each in after.findings}
+
+
+def test_a_simpler_model_is_advised_without_what_it_lacks() -> None:
+    robot = jid.load(data_folder() / "kr300_joint1.csv.gz")
+    joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
+    bounds = {"static": {"min": 0.0, "max": 900.0}}
+    found = found_in(separable(robot, joint, model="stribeck", parameters=bounds), "model_too_rich")
+    assert found.advice[0].text == "without the values and bounds of static"
+    joint = joint.replace(parameters=bounds)
+    found = found_in(separable(robot, joint, model="stribeck"), "model_too_rich")
+    assert found.advice[0].text == ""
+
+
+def test_ripple_that_the_model_has_is_not_added_again(well_excited: jid.Recording) -> None:
+    fixed = {"ripple_cos_2": 0.0, "ripple_sin_2": 0.0}
+    estimate = separable(rippled(well_excited), model=":ripple=2", parameters=fixed)
+    (action,) = found_in(estimate, "ripple").advice
+    assert action.kind == "inspect"
+    assert "ripple_cos_2 and ripple_sin_2" in action.text
+
+
+def test_advised_models_keep_what_the_call_set_back(well_excited: jid.Recording) -> None:
+    joint = jid.thesis_joint()
+    joint = joint.replace(model=joint.model.replace(asymmetric=True))
+    given = {"model": ":asymmetric=false"}
+    found = found_in(separable(rippled(well_excited), joint, **given), "ripple")
+    after = separable(rippled(well_excited), joint, **found.advice[0].arguments)
+    assert after.settings["model"] == "stribeck:ripple=2"
 
 
 def test_assumed_units_are_stated(well_excited: jid.Recording, tmp_path: Path) -> None:
@@ -242,6 +287,28 @@ def test_information_is_no_warning(well_excited: jid.Recording) -> None:
     assert "info (gaps): 1 gap(s)" in estimate.report()
     make, _ = DEFECTS["constant sensor"]
     assert found_in(separable(make(well_excited)), "constant_signal").severity == "blocking"
+
+
+def test_the_most_severe_finding_is_first(
+    well_excited: jid.Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    torn = DEFECTS["gap"][0](well_excited)
+    monkeypatch.setattr(registry, "CHECKS", registry.CHECKS[::-1])
+    order = [
+        found.severity
+        for found in separable(changed(torn, sensor=np.full_like(torn.time, 3.0))).findings
+    ]
+    assert order == sorted(order, key=["blocking", "warning", "info"].index)
+    assert {"blocking", "warning", "info"} == set(order)
+
+
+def test_a_few_pairs_are_named(well_excited: jid.Recording) -> None:
+    orders = ",".join(str(order) for order in range(1, 9))
+    estimate = separable(well_excited.crop(0.0, 1.2), model=f":harmonics={orders}")
+    names, matrix = estimate.free, np.abs(estimate.correlation)
+    assert (matrix[np.triu_indices(len(names), 1)] > 0.98).sum() > 5
+    cause = found_in(estimate, "undetermined").cause
+    assert cause.count("are indistinguishable") == 5
 
 
 # --- Adding one: a file and a line ---

@@ -198,7 +198,7 @@ def test_an_inertia_that_noise_hides_is_named(shared_data: Path, name: str, grav
 def test_ripple_is_named_by_its_frequency(shared_data: Path, name: str) -> None:
     found = warned(separable(simulated(shared_data, name)), "ripple")
     assert "2 × motor angle" in found.message
-    assert dict(found.advice[0].arguments) == {"model": "stribeck:ripple=2"}
+    assert dict(found.advice[0].arguments) == {"model": "stribeck:gravity=none:ripple=2"}
 
 
 @pytest.mark.parametrize("multiple", [1, 4])

@@ -86,7 +86,7 @@ def test_a_term_that_cannot_be_simulated_is_named(monkeypatch: pytest.MonkeyPatc
         run(joint())
     assert (error.value.argument, error.value.value) == ("model", "coulomb_viscous")
     with_term(monkeypatch, drag(option="load_friction"))
-    with pytest.raises(jid.InputError, match="set the joint with load_friction=False"):
+    with pytest.raises(jid.InputError, match="set the joint with model=':load_friction=false'"):
         run(joint())
 
 
@@ -111,9 +111,48 @@ def test_a_controller_refuses_friction_that_it_does_not_have() -> None:
     assert error.value.argument == "load_friction"
     (remedy,) = error.value.remedy
     assert isinstance(remedy, Action)
-    assert remedy.arguments == {"load_friction": False}
+    assert remedy.arguments == {"model": ":load_friction=false"}
     for option in set(OPTIONS) - {"load_friction"}:  # known, and left to the feedback
         assert jid.control_estimates(joint(option))["coulomb"] == 4.0
+
+
+@pytest.mark.parametrize("option", ["gravity", "load_friction", "harmonics", "ripple"])
+def test_the_advice_for_a_simulation_can_be_obeyed(
+    option: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        plant,
+        "terms_of",
+        lambda made: tuple(
+            drag(option=term.option) if term.option == option else term for term in terms_of(made)
+        ),
+    )
+    subject = joint(option)
+    with pytest.raises(jid.InputError, match="'drag'") as error:
+        run(subject)
+    (remedy,) = error.value.remedy
+    assert isinstance(remedy, Action)
+    assert remedy.function == "Joint"
+    run(subject.replace(**remedy.arguments))
+
+
+def test_the_advice_for_a_controller_can_be_obeyed() -> None:
+    subject = joint("load_friction", gear_ratio=50.0)
+    subject = subject.replace(model=subject.model.replace(ripple=(2,)))
+    recording = jid.simulate(
+        subject.with_parameters(OPTIONS["ripple"][1]),
+        jid.Pd(stiffness=300.0, damping=20.0),
+        jid.Trajectory.thesis(0.5, cycle=2.0, duration=4.0),
+        seed=0,
+    )
+    with pytest.raises(jid.InputError) as error:
+        jid.control_estimates(subject)
+    (remedy,) = error.value.remedy
+    assert isinstance(remedy, Action)
+    assert remedy.function == "identify"
+    found = jid.identify(recording, subject, search="separable", **remedy.arguments)
+    assert found.settings["model"] == "coulomb_viscous:ripple=2"
+    assert "coulomb" in jid.control_estimates(found.joint)
 
 
 def test_the_capabilities_of_the_terms_of_today() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import Any
 
 from jointid.base.advice import Action
@@ -93,26 +94,22 @@ class InputError(ValueError):
         remedies = " or ".join(str(each) for each in self.remedy)
         return f"{place}{sentence}" + (f"; {remedies}" if remedies else "")
 
+    def __repr__(self) -> str:
+        """The fields that are not their defaults."""
+        fields = {"argument": self.argument, "place": self.place, "remedy": self.remedy}
+        texts = [repr(self.reason), *(f"{name}={each!r}" for name, each in fields.items() if each)]
+        if self.value is not NOT_GIVEN:
+            texts.append(f"value={shown(self.value)}")
+        return f"{type(self).__name__}({', '.join(texts)})"
+
     def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuilt, (
-            type(self),
-            self.reason,
-            self.argument,
-            self.value,
-            self.place,
-            self.remedy,
-        )
-
-
-def _rebuilt(
-    kind: type[InputError],
-    reason: str,
-    argument: str,
-    value: object,
-    place: str,
-    remedy: tuple[str | Action, ...],
-) -> InputError:
-    return kind(reason, argument=argument, value=value, place=place, remedy=remedy)
+        """What is pickled: a value that cannot be is replaced by its text."""
+        state = dict(self.__dict__)
+        try:
+            pickle.dumps(self.value)
+        except Exception:  # whatever the value's own methods raise
+            state["value"] = shown(self.value)
+        return type(self), (self.reason,), state
 
 
 def shown(value: object) -> str:

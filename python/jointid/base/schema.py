@@ -17,6 +17,7 @@ from jointid.base.errors import NOT_GIVEN, InputError
 
 LARGEST = 500_000_000  # bytes of a file, characters of a text; an estimate of an hour's recording has 20 million
 DEEPEST = 32  # lists and tables inside each other; an estimate has 5
+_CHUNK = 1 << 20  # bytes
 _NOT_FINITE = ("inf", "-inf", "nan")
 
 
@@ -37,10 +38,13 @@ def read_text(path: Path) -> str:
     """
     place = str(path)
     try:
-        size = path.stat().st_size
-        if size > LARGEST:
-            raise InputError(f"too large: {size} bytes, {LARGEST} are allowed", place=place)
-        return path.read_bytes().decode("utf-8")
+        data = bytearray()
+        with path.open("rb") as file:  # a device or a pipe does not state its size
+            while chunk := file.read(min(_CHUNK, LARGEST + 1 - len(data))):
+                data += chunk
+                if len(data) > LARGEST:
+                    raise InputError(f"too large: {LARGEST} bytes are allowed", place=place)
+        return data.decode("utf-8")
     except UnicodeDecodeError:
         raise InputError("this is not text in UTF-8", place=place) from None
     except OSError as error:

@@ -185,7 +185,9 @@ def _parameter(
 
 def _joint_fields(arguments: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]]:
     for name, value in arguments.items():
-        if name == "parameters":
+        if name == "model" and isinstance(value, str):
+            yield from _joint_fields(_read_model(value))
+        elif name == "parameters":
             for parameter, entry in value.items():
                 pairs = entry.items() if isinstance(entry, Mapping) else [("value", entry)]
                 yield from ((f"parameters.{parameter}", key, each) for key, each in pairs)
@@ -193,7 +195,14 @@ def _joint_fields(arguments: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]
             yield from ((name, key, entry) for key, entry in value.items())
         else:
             key = {"name": "friction", "sensor": "present"}.get(name, name)
-            yield _TABLES.get(name, ""), key, value
+            yield _TABLES.get(name, ""), key, _of_file(name, value)
+
+
+def _of_file(name: str, value: Any) -> Any:
+    """The value of a field of a model that its text writes in words."""
+    if name in ("asymmetric", "load_friction") and value in ("true", "false"):
+        return value == "true"
+    return () if name in ("ripple", "harmonics") and value == "none" else value
 
 
 def _in_joint_file(entries: list[tuple[str, str, Any]]) -> str:

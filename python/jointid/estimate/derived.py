@@ -82,9 +82,17 @@ def _stribeck_velocity(estimate: Estimate) -> Iterator[DerivedValue]:
             meaning="speed at which the static excess has decayed to 1/e",
             unit="m/s" if estimate.settings["kind"] == "prismatic" else "rad/s",
             value=1.0 / math.sqrt(shape.value),
-            slopes={"stribeck": -0.5 * shape.value**-1.5},
+            slopes={"stribeck": _slope(shape.value)},
             formula="1/√stribeck",
         )
+
+
+def _slope(stribeck: float) -> float:
+    """Derivative of 1/√stribeck; infinite where the number is too large for a float."""
+    try:
+        return -0.5 * float(stribeck**-1.5)
+    except OverflowError:
+        return -math.inf
 
 
 def _derived(
@@ -122,5 +130,7 @@ def _error(estimate: Estimate, slopes: Mapping[str, float]) -> float | None:
         return None
     places = [estimate.free.index(name) for name in free]
     slope = np.array([slopes[name] for name in free])
+    if not np.isfinite(slope).all():
+        return None
     variance = float(slope @ estimate.covariance[np.ix_(places, places)] @ slope)
     return math.sqrt(max(variance, 0.0)) if math.isfinite(variance) else None

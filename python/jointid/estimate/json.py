@@ -137,8 +137,21 @@ def _finding(entry: Mapping[str, Any]) -> Finding:
         parameters=tuple(entry["parameters"]),
         evidence={name: Measured(**measured) for name, measured in entry["evidence"].items()},
         cause=entry["cause"],
-        advice=tuple(Action(**each) for each in entry["advice"]),
+        advice=tuple(_action(each) for each in entry["advice"]),
     )
+
+
+def _action(entry: Mapping[str, Any]) -> Action:
+    return Action(**{**entry, "arguments": _with_ellipsis(entry["arguments"])})
+
+
+def _with_ellipsis(value: Any) -> Any:
+    """An argument of an action; "..." stands for a value that only the user knows."""
+    if isinstance(value, Mapping):
+        return {name: _with_ellipsis(entry) for name, entry in value.items()}
+    if isinstance(value, list):
+        return [_with_ellipsis(entry) for entry in value]
+    return ... if value == "..." else value
 
 
 def _old_warning(entry: Mapping[str, Any]) -> Finding:
@@ -170,6 +183,8 @@ def _plain(value: Any) -> Any:
         return _plain(value.tolist())
     if isinstance(value, bool | int | str) or value is None:
         return value
+    if value is ...:
+        return "..."
     if isinstance(value, float | np.floating):
         return float(value) if np.isfinite(value) else str(float(value))
     if is_dataclass(value):

@@ -65,15 +65,16 @@ _ACTION = Record(
         "function": Text(),
     }
 )
+_SENTENCES = Text(longest=1_000_000)  # one for each of up to thousands of parameters
 _FINDING = Record(
     {
         "code": Text(),
         "severity": Text(known=get_args(Severity)),
         "parameters": ListOf(Text()),
         "evidence": TableOf(Record({"value": _ANY, "unit": Text()})),
-        "cause": Text(),
+        "cause": _SENTENCES,
         "advice": ListOf(_ACTION),
-        "message": Text(),
+        "message": _SENTENCES,
     }
 )
 _FIELDS: dict[str, Kind] = {

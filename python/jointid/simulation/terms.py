@@ -1,11 +1,15 @@
 """The terms of a joint's model, and whether a simulation or a controller can use them."""
 
 from collections.abc import Collection, Sequence
+from typing import Any
 
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.joint.joint import Joint
+
+# Fields of a model that switch terms on, and the value that switches them off.
+_OFF: dict[str, Any] = {"gravity": "none", "load_friction": False, "ripple": (), "harmonics": ()}
 
 
 def terms_of(joint: Joint) -> tuple[_core.Term, ...]:
@@ -80,12 +84,15 @@ def _refusal(
 ) -> InputError:
     """Return the error, with another friction model or the term's option switched off as remedy."""
     if term.option != "name":
-        remedy = Action("call", {term.option: False}, function=function)
-        return InputError(reason, argument=term.option, value=True, remedy=remedy)
+        if term.option not in _OFF:
+            return InputError(reason, argument=term.option, value=True)
+        value = getattr(joint.model.resolved, term.option)
+        model = joint.model.replace(**{term.option: _OFF[term.option]})
+        remedy = Action("call", {"model": str(model)}, function=function)
+        return InputError(reason, argument=term.option, value=value, remedy=remedy)
     models = [model.name for model in _core.models() if set(model.terms) <= set(usable)]
-    remedy = Action(
-        "call", {"model": models[-1]}, f"usable are {', '.join(models)}", function=function
-    )
+    other = str(joint.model.replace(name=models[-1]))
+    remedy = Action("call", {"model": other}, f"usable are {', '.join(models)}", function=function)
     return InputError(reason, argument="model", value=joint.model.resolved.name, remedy=remedy)
 
 

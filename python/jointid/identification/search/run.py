@@ -170,4 +170,4 @@ def _read_state(path: Path) -> _core.GaState:
             f"the checkpoint cannot be read: {error.strerror}", argument="resume", place=str(path)
         ) from error
     except InputError as error:
-        raise error.at(str(path)) from error
+        raise InputError(error.reason, argument="resume", place=str(path)) from error

@@ -1,12 +1,14 @@
 """All findings about an estimate: the results of all checks, without those that another finding explains."""
 
-from jointid.estimate.findings import Finding
+from jointid.estimate.findings import Finding, Severity
 from jointid.identification.warnings import registry, sensor_lag
 from jointid.identification.warnings.evidence import Evidence
 
+_ORDER: tuple[Severity, ...] = ("blocking", "warning", "info")
+
 
 def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
-    """All findings, the most severe first."""
+    """All findings, the most severe first; those of one severity in the order of the checks."""
     raised = [(check, found) for check in registry.CHECKS for found in check.find(evidence)]
     codes = {found.code for _, found in raised}
     # A controller feeds the ripple of a sensor back; the resulting motion looks like a lag of the sensor.
@@ -14,6 +16,7 @@ def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
     ripples = modelled or "ripple" in codes
     kept = [found for check, found in raised if not (ripples and check is sensor_lag.CHECK)]
     units = [found for found in kept if found.code == "implausible_units"]
-    # With degrees the motor's angle is wrong, too: a residual that oscillates with it is no ripple.
+    # With degrees the motor's angle is wrong, too: a residual that oscillates with it is not ripple.
     spurious = [found for found in kept if units and found.code == "ripple"]
-    return tuple(found for found in kept if found not in (*units[1:], *spurious))
+    left = [found for found in kept if found not in (*units[1:], *spurious)]
+    return tuple(sorted(left, key=lambda found: _ORDER.index(found.severity)))

@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+from jointid.base.advice import Action
 from jointid.identification.warnings.evidence import Evidence
 
 
-def model_with_ripple(evidence: Evidence, order: float) -> str:
-    """The identified model with one more order of ripple."""
+def add_ripple(evidence: Evidence, order: float) -> Action:
+    """Add one order of ripple to the identified model; where it is there, its coefficients are fixed or bounded.
+
+    The text has every field that is stated, defaults included: one that is left out is the joint's again.
+    """
     model = evidence.problem.choice.model
-    return str(model.replace(ripple=(*model.resolved.ripple, order)).resolved)
+    modelled = model.resolved.ripple
+    if order in modelled:
+        names = f"ripple_cos_{order:g} and ripple_sin_{order:g}"
+        text = f"the values and bounds of {names}: the model has this order; free its coefficients"
+        return Action("inspect", text=text)
+    return Action("call", {"model": str(model.replace(ripple=(*modelled, order)))})
 
 
 def simpler_model(evidence: Evidence) -> str:
-    """The identified model without the Stribeck effect."""
-    return str(evidence.problem.choice.model.replace(name="coulomb_viscous").resolved)
+    """The identified model without the Stribeck effect, with every field that is stated."""
+    return str(evidence.problem.choice.model.replace(name="coulomb_viscous"))

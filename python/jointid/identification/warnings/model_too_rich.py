@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
@@ -21,6 +22,7 @@ MODEL_TOO_RICH = FindingType(
 
 STATIC = ("static", "static_positive", "static_negative")
 SHAPES = ("stribeck", "stribeck_velocity", "stribeck_exponent")
+_LACKED = (*STATIC, *SHAPES)
 _COULOMB = ("coulomb", "coulomb_positive", "coulomb_negative")
 
 
@@ -53,6 +55,27 @@ def richness(evidence: Evidence) -> tuple[str, dict[str, Measured]] | None:
     return None
 
 
+def _without(evidence: Evidence) -> str:
+    """What to take away from the call: the simpler model refuses parameters that it lacks."""
+    stated = [
+        name
+        for name, found in evidence.parameters.items()
+        if name.partition("[")[0] in _LACKED and _stated_by_call(evidence, found)
+    ]
+    return f"without the values and bounds of {' and '.join(stated)}" if stated else ""
+
+
+def _stated_by_call(evidence: Evidence, found: ParameterEstimate) -> bool:
+    """Whether its bounds or its fixed value are neither the joint's nor computed from the recording."""
+    of_joint = evidence.joint.parameters.get(found.name) if evidence.joint is not None else None
+    if not found.vary:
+        return of_joint is None or of_joint.vary or of_joint.value != found.value
+    if of_joint is None:
+        return found.name not in evidence.bounds_from_data
+    given = ((of_joint.min, found.min), (of_joint.max, found.max))
+    return any(own is not None and own != used for own, used in given)
+
+
 def _find(evidence: Evidence) -> Iterator[Finding]:
     reason = richness(evidence)
     if reason is not None:
@@ -60,7 +83,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         named = (*_COULOMB, *STATIC, *SHAPES)
         yield MODEL_TOO_RICH.finding(
             f"the data do not determine the model '{evidence.model}': {text}",
-            Action("call", {"model": simpler_model(evidence)}),
+            Action("call", {"model": simpler_model(evidence)}, _without(evidence)),
             Action("record", text="slow motion through zero speed"),
             evidence=measured,
             parameters=tuple(name for name in named if name in evidence.parameters),

@@ -6,7 +6,7 @@ from importlib import import_module
 
 from jointid.identification.warnings.check import Check, FindingType
 
-# In the order in which findings are listed: the most severe first. Each file has a CHECK.
+# In the order in which findings of one severity are listed. Each file has a CHECK.
 FILES = (
     "stopped",
     "velocity",

@@ -7,13 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
-from jointid.identification.warnings.model_advice import model_with_ripple
+from jointid.identification.warnings.model_advice import add_ripple
 
 RIPPLE = FindingType(
     code="ripple",
@@ -73,7 +72,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             f"the residual oscillates with {peak.multiple:g} × motor angle: amplitude about {peak.amplitude:.2g} N·m, "
             f"{percent(peak.share)} of the residual's variance, as the ripple of a strain-wave gear does; it biases "
             "gain and static friction",
-            Action("call", {"model": model_with_ripple(evidence, peak.multiple)}),
+            add_ripple(evidence, peak.multiple),
             evidence={
                 "multiple": Measured(peak.multiple),
                 "amplitude": Measured(peak.amplitude, "N·m"),

@@ -26,7 +26,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             agreement is not None and abs(agreement.scale - 1.0) > MISMATCH
         ):
             continue  # what contradicts itself has no speed, and that is reported already
-        if gear > 1.0 and peak * gear > _MOTOR_SPEED:  # one outlier is no speed
+        if gear > 1.0 and peak * gear > _MOTOR_SPEED:  # one outlier is not a speed
             peak = float(np.percentile(np.abs(recording.velocity), 99.0))
         swing = inspected.found.swing
         travel = abs(float(recording.position[-1] - recording.position[0]))

@@ -1,4 +1,4 @@
-"""Residuals that are no noise."""
+"""Residuals that are not noise."""
 
 from collections.abc import Iterator
 

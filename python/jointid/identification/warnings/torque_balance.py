@@ -136,11 +136,16 @@ def _sensor_reversed(evidence: Evidence, free: Unbounded) -> Iterator[Finding]:
     if gain is None or gain.min < 0.0 or "sensor_gain" not in free.values:
         return
     if free.values["sensor_gain"] < 0.0 and free.sure("sensor_gain", 0.0):
-        bounds = {"min": -gain.max, "max": 0.0 - gain.min}
+        # Over what the call states: a value of the other sign would contradict the bounds.
+        flipped: dict[str, object] = (
+            {"value": None, "min": -gain.max, "max": 0.0 - gain.min, "vary": True}
+            if gain.vary
+            else {"value": -gain.value, "min": None, "max": None, "vary": False}
+        )
         yield REVERSED_SIGN.finding(
             "the sensor's reading falls where the link's torque rises: its sign is reversed",
             Action("inspect", text="the sensor's sign, and flip the column"),
-            Action("call", {"parameters": {"sensor_gain": bounds}}, text="a negative gain"),
+            Action("call", {"parameters": {"sensor_gain": flipped}}, text="a negative gain"),
             evidence={"unbounded_gain": Measured(free.values["sensor_gain"], gain.unit)},
             parameters=("sensor_gain",),
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 from jointid import _core
@@ -29,6 +29,7 @@ _LARGE_ERROR = 0.05
 _LARGE_SHIFT = 3.0
 _NOTICEABLE_SHIFT = 0.01
 _INSEPARABLE = 0.98
+_PAIRS = 5
 # Width between the regressions with the noise in the sensor and with the noise in the torque, over the gain.
 _WIDE = 0.0075
 
@@ -60,16 +61,27 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         for each in found
         for name, number in each.measured.items()
     }
-    for (first, second), correlation in evidence.correlations.items():
-        if abs(correlation) > _INSEPARABLE and {first, second} & reasons.keys():
-            cause += f"; {first} and {second} are indistinguishable (correlation {correlation:.3f})"
-            measured[f"{first}.{second}.correlation"] = Measured(correlation)
+    for (first, second), correlation in _worst_pairs(evidence.correlations, reasons):
+        cause += f"; {first} and {second} are indistinguishable (correlation {correlation:.3f})"
+        measured[f"{first}.{second}.correlation"] = Measured(correlation)
     yield UNDETERMINED.finding(
         cause,
         *_advice(evidence, reasons, guessed is not None),
         evidence=measured,
         parameters=tuple(name for name in evidence.parameters if name in reasons),
     )
+
+
+def _worst_pairs(
+    correlations: Mapping[tuple[str, str], float], names: Collection[str]
+) -> list[tuple[tuple[str, str], float]]:
+    """The pairs with one of the parameters `names` that the recording separates least; a few of possibly thousands."""
+    pairs = [
+        (pair, correlation)
+        for pair, correlation in correlations.items()
+        if abs(correlation) > _INSEPARABLE and set(pair) & set(names)
+    ]
+    return sorted(pairs, key=lambda entry: -abs(entry[1]))[:_PAIRS]
 
 
 def _advice(
