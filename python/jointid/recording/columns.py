@@ -207,6 +207,8 @@ def _wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputEr
     known = unit_names(dimensions(signal, kind))
     if column.unit is None:
         problem = f"has the unknown unit {column.unknown!r}"
+    elif column.unit.dimension == "raw reading":
+        problem = "is a raw reading"
     else:
         problem = f"is in {column.unit.name} ({column.unit.dimension})"
     if column.unit and column.unit.dimension in ("raw reading", "voltage"):
