@@ -12,6 +12,8 @@ from jointid import _core
 from jointid.base.errors import InputError
 from jointid.recording.signals import closest
 
+_LISTED = 10  # names in a message
+
 
 def check_parameter_name(name: object) -> None:
     """Refuse a name that no parameter has, with a suggestion."""
@@ -25,9 +27,13 @@ def check_parameter_name(name: object) -> None:
 
 
 def suggestion(name: object, known: Collection[str]) -> str:
-    """Return a phrase with the known name nearest to an unknown one, or with all known names."""
+    """Return a phrase with the known name nearest to an unknown one, or with the first known names."""
     close = closest(name, known)
-    return f"did you mean '{close}'?" if close else f"known are {', '.join(known)}"
+    if close:
+        return f"did you mean '{close}'?"
+    names = list(known)
+    rest = f", … ({len(names)} in all)" if len(names) > _LISTED else ""
+    return f"known are {', '.join(names[:_LISTED])}{rest}"
 
 
 def is_number(value: object) -> bool:
