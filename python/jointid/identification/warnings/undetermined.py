@@ -32,6 +32,8 @@ _INSEPARABLE = 0.98
 # Width between the regressions with the noise in the sensor and with the noise in the torque, over the gain.
 _WIDE = 0.0075
 
+_SHOWN = 4  # reasons, and pairs, in the sentence; the evidence has all
+
 
 @dataclass(frozen=True, slots=True)
 class _Reason:
@@ -53,17 +55,28 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if not reasons:
         return
     texts = [", and ".join(each.text for each in found) for found in reasons.values()]
-    cause = "not well determined by this recording: " + "; ".join(dict.fromkeys(texts))
+    shown = list(dict.fromkeys(texts))[:_SHOWN]
+    more = sum(text not in shown for text in texts)
+    cause = "not well determined by this recording: " + "; ".join(shown)
+    if more:
+        cause += f"; and {more} more parameter{'s' * (more > 1)}"
     measured = {
         name: number
         for found in reasons.values()
         for each in found
         for name, number in each.measured.items()
     }
+    pairs = []
     for (first, second), correlation in evidence.correlations.items():
         if abs(correlation) > _INSEPARABLE and {first, second} & reasons.keys():
-            cause += f"; {first} and {second} are indistinguishable (correlation {correlation:.3f})"
+            pairs.append(
+                f"; {first} and {second} are indistinguishable (correlation {correlation:.3f})"
+            )
             measured[f"{first}.{second}.correlation"] = Measured(correlation)
+    cause += "".join(pairs[:_SHOWN])
+    rest = len(pairs) - _SHOWN
+    if rest > 0:
+        cause += f"; and {rest} more pair{'s' * (rest > 1)}"
     yield UNDETERMINED.finding(
         cause,
         *_advice(evidence, reasons, guessed is not None),
