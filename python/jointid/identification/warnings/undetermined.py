@@ -67,6 +67,8 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         for name, number in each.measured.items()
     }
     pairs = []
+    if more:
+        measured["more_parameters"] = Measured(float(more))
     for (first, second), correlation in evidence.correlations.items():
         if abs(correlation) > _INSEPARABLE and {first, second} & reasons.keys():
             pairs.append(
@@ -76,6 +78,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     cause += "".join(pairs[:_SHOWN])
     rest = len(pairs) - _SHOWN
     if rest > 0:
+        measured["more_pairs"] = Measured(float(rest))
         cause += f"; and {rest} more pair{'s' * (rest > 1)}"
     yield UNDETERMINED.finding(
         cause,
