@@ -58,7 +58,7 @@ def test_accepted(kind: Kind, value: Any) -> None:
         (Number(infinite=True), "nan", "x: this is 'nan': a finite number"),
         (Number(undefined=True), "-inf", "x: this is '-inf': a finite number"),
         (Number(whole=True), 1.0, "x: this is 1.0: an integer is expected"),
-        (Text(), 1, "x: this is 1: a text is expected"),
+        (Text(), 1, "x: this is 1: text is expected"),
         (Text(longest=2), "abc", "x: 3 characters, at most 2"),
         (Text(known=("a", "b")), "c", "x: this is 'c': known are a, b"),
         (Text(), "\ud800", "x: half a character"),

@@ -132,3 +132,17 @@ def test_per_recording_is_a_list(run: jid.Recording, wrong: Any) -> None:
 def test_an_unknown_truth_is_not_passed_over(run: jid.Recording) -> None:
     sentence = message_of(lambda: jid.sweep(run, JOINT, grid=GRID, trials=1, truth={"colomb": 3.0}))
     assert sentence == "truth: colomb: there is no such parameter; did you mean 'coulomb'?"
+
+
+@pytest.mark.parametrize("wrong", [None, 3])
+def test_a_model_is_parsed_from_text(wrong: Any) -> None:
+    sentence = message_of(lambda: jid.Model.parse(wrong))
+    assert sentence == f"model is {wrong}: text is expected, like stribeck:ripple=2,4"
+
+
+def test_friction_at_what_is_no_number(estimate: jid.Estimate) -> None:
+    wrong: Any = "a"
+    assert message_of(lambda: estimate.friction(wrong)) == "velocity is 'a': numbers are expected"
+    assert message_of(lambda: estimate.friction(1.0, load=wrong)) == (
+        "load is 'a': a number is expected"
+    )

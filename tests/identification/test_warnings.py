@@ -270,3 +270,16 @@ def test_each_run_alone_is_as_the_simulator_says(runs: list[jid.Recording]) -> N
     assert np.abs(run.torque).max() < 160.0
     assert 0.7 < np.ptp(run.position) / (2 * np.radians(60.0)) < 1.3
     assert np.mean(run.velocity == 0.0) > 0.01  # it sticks now and then
+
+
+def test_many_undetermined_parameters_make_a_short_sentence() -> None:
+    run = jid.load(data_folder() / "well_excited.csv.gz").crop(stop=3.0)
+    orders = ",".join(map(str, range(2, 14)))
+    estimate = jid.identify(
+        run, jid.thesis_joint(), model=f"stribeck:ripple={orders}", search="separable"
+    )
+    found = warned(estimate, "undetermined")
+    assert len(found.parameters) > 8
+    assert re.search(r"; and \d+ more parameters", found.cause)
+    assert len(found.cause) < 1000
+    assert {name.rsplit(".", 1)[0] for name in found.evidence} >= set(found.parameters[:8])

@@ -437,6 +437,13 @@ def test_a_folder_that_is_missing_is_named(tmp_path: Path) -> None:
         thesis_joint().save(tmp_path)
 
 
+def test_another_ending_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "joint.txt"
+    with pytest.raises(InputError, match=r"path is 'joint.txt': a joint is saved as \.toml"):
+        thesis_joint().save(path)
+    assert not path.exists()
+
+
 # Joint file (behind `schema = 1`), and what the sentence says behind the file's name.
 BAD = [
     (
@@ -452,7 +459,7 @@ BAD = [
     ("[drives]", "drives: there is no such key; did you mean 'drive'?"),
     ("drive = 3", "drive is 3: a table [drive] is expected"),
     ("[[link]]", "link is [{}]: a table [link] is expected"),
-    ("name = 3", "name is 3: a text is expected"),
+    ("name = 3", "name is 3: text is expected"),
     ("kind = 'prismtic'", "kind is 'prismtic': it is unknown; did you mean 'prismatic'?"),
     ("[drive]\ngear_ratio = '101'", "[drive]: gear_ratio is '101': a number is expected"),
     ("[drive]\ngear_ratio = true", "[drive]: gear_ratio is True: a number is expected"),

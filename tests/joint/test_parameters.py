@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from jointid import _core
 from jointid.base.errors import InputError
+from jointid.joint.checks import suggestion
 from jointid.joint.parameters import Parameter, merge, parameter_table
 
 NAMES = st.sampled_from(_core.parameter_names())
@@ -177,3 +178,9 @@ def test_a_change_that_does_not_fit(change: Any, said: str) -> None:
     base = {"coulomb": Parameter(name="coulomb", value=5.0, min=1.0, max=9.0)}
     with pytest.raises(InputError, match=said):
         merge(base, {"coulomb": change})
+
+
+def test_a_suggestion_lists_ten_names() -> None:
+    names = [f"x{number}" for number in range(30)]
+    assert suggestion("qqq", names) == f"known are {', '.join(names[:10])}, … (30 in all)"
+    assert suggestion("qqq", names[:10]) == f"known are {', '.join(names[:10])}"

@@ -70,6 +70,24 @@ BAD: list[Bad] = [
         {},
         "line 1: no column is .* position; candidates are 'ax",
     ),
+    (
+        "a.csv",
+        headed("time_s,torque_Nm,x_Nm,y_A"),
+        {},
+        "line 1: the file has no position column; headers are 'time_s', 'torque_Nm', 'x_Nm', 'y_A'$",
+    ),
+    (
+        "a.csv",
+        headed("time_s,torque_Nm,x_A,y"),
+        {},
+        r"candidates are 'y'; load with columns=\{'position': 'y'\}$",
+    ),
+    (
+        "a.csv",
+        headed("time_s,torque_Nm,x,y"),
+        {"columns": {"position": "time_s"}},
+        "no column is left for time: 'time_s' is chosen as position$",
+    ),
     ("a.csv", headed("t,x,y,z"), {}, r"candidates are 'x', 'y', 'z'; .* columns=\{'position'"),
     (
         "a.csv",
@@ -180,7 +198,7 @@ BAD: list[Bad] = [
         "a.npz",
         {"position": np.ones(9)},
         {},
-        "no column is recognised as time; candidates are 'posi",
+        "the file has no time column; headers are 'position'$",
     ),
     (
         *("a.npz", {"time": np.arange(9), "position": np.array([None] * 9)}, {}),

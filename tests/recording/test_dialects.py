@@ -172,7 +172,7 @@ BAD: list[Bad] = [
     ("a.csv", "\n".join(GOOD).encode("utf-16-le"), {}, "line 1: a zero byte is not text"),
     (
         *("a.csv", headed("t_s,q_counts,v,x"), {}),
-        r"'q_counts': .* is in raw .raw reading.; angle .* load with scale=\{'position': 1\.0\} \(with the factor from",
+        r"'q_counts': .* is a raw reading; angle .* load with scale=\{'position': 1\.0\} \(with the factor from",
     ),
     (
         *("a.csv", headed("t_s,q_rad,tau [%],x"), {}),

@@ -128,6 +128,13 @@ def test_unknown_unit_lists_the_known_ones() -> None:
         unit_named("furlong", dimensions=("length",), place="run.csv")
 
 
+@pytest.mark.parametrize(("text", "meant"), [("degs", "deg"), (" Rads", "rad")])
+def test_a_plural_is_not_taken_for_a_velocity(text: str, meant: str) -> None:
+    with pytest.raises(InputError, match=f"not a known unit; did you mean {meant}\\?"):
+        unit_named(text, dimensions=("angle", "length"))
+    assert unit_named(text, dimensions=("angular velocity",)).name == f"{meant}_s"
+
+
 def test_names_by_dimension() -> None:
     assert unit_names(("current",)) == ("A", "mA")
     assert unit_names() == tuple(UNITS)

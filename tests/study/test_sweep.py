@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import os
 import signal
 import subprocess
@@ -9,6 +10,7 @@ import sys
 import time
 from collections.abc import Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -20,6 +22,7 @@ import jointid as jid
 from jointid import _core
 from jointid.cli.demo import data_folder
 from jointid.study.row import Row
+from jointid.study.summary import Summary
 
 GRID = {"ga.population": [8, 12], "ga.generations": [5, 15]}
 TRUTH = {
@@ -665,3 +668,24 @@ def test_a_plot_shows_each_cell(study: jid.Study) -> None:
             jid.plot.sweep(study, value="error.inertia")
     finally:
         pyplot.close("all")
+
+
+def test_one_trial_has_no_spread(study: jid.Study) -> None:
+    first = study.summary().cells[0]
+    alone = replace(first, trials=1, mean={"a": 25.0}, spread={"a": math.nan}, bias={})
+    known = replace(alone, bias={"a": 0.01}, scatter={"a": math.nan})
+    for cell in (alone, known):
+        assert "±" not in str(Summary(cells=(cell,), within=0.05))
+
+
+def test_what_the_table_leaves_out_is_named(study: jid.Study) -> None:
+    first = study.summary().cells[0]
+    cells = tuple(
+        replace(first, mean={"a": a, "b": 2.0}, spread={"a": 0.1, "b": 0.0}, bias={})
+        for a in (1.0, 2.0)
+    )
+    summary = Summary(cells=cells, within=0.05)
+    assert str(summary).endswith("\nnot shown: b (same in all cells)")
+    assert "<p>not shown: b (same in all cells)</p>" in summary.to_html()
+    same = replace(cells[0], spread={"a": 0.0, "b": 0.0})
+    assert "not shown" not in str(Summary(cells=(same,), within=0.05))

@@ -138,7 +138,7 @@ class Text:
     def read(self, value: Any, place: str) -> str:
         """Return the text."""
         if not isinstance(value, str):
-            _refuse(place, value, "a text is expected")
+            _refuse(place, value, "text is expected")
         if len(value) > self.longest:
             reason = f"{len(value)} characters, at most {self.longest} are expected"
             _refuse(place, NOT_GIVEN, reason)

@@ -118,14 +118,24 @@ class Estimate:
         -------
         FrictionCurve
 
+        Raises
+        ------
+        InputError
+            A velocity or a load that is not a number.
+
         Examples
         --------
         >>> estimate.friction([0.1, 0.2]).torque  # doctest: +SKIP
         array([34.36, 29.37])
         """
         from jointid.estimate.friction_map import friction_curve
+        from jointid.joint.checks import finite_number
 
-        return friction_curve(self, np.atleast_1d(np.asarray(velocity, dtype=np.float64)), load)
+        try:
+            velocities = np.atleast_1d(np.asarray(velocity, dtype=np.float64))
+        except (TypeError, ValueError):
+            raise InputError("numbers are expected", argument="velocity", value=velocity) from None
+        return friction_curve(self, velocities, finite_number("", "load", load))
 
     def predict(self, recording: Recording) -> Prediction:
         """Predict the window integrals of a recording, and compare them with the measured ones.
@@ -220,7 +230,7 @@ class Estimate:
         Raises
         ------
         InputError
-            Another ending, or an existing joint file that cannot be read.
+            Another ending, a folder that does not exist, or an existing joint file that cannot be read.
         OSError
             The file cannot be written.
         """

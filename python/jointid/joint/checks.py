@@ -13,6 +13,7 @@ from jointid.base.errors import InputError
 from jointid.recording.signals import closest
 
 _FEW = 5  # known names that fit into a sentence
+_LISTED = 10  # names in a message
 _MISSPELT, _SIMILAR = 0.75, 0.6  # likeness of two texts, as difflib counts it
 
 
@@ -28,12 +29,16 @@ def check_parameter_name(name: object) -> None:
 
 
 def suggestion(name: object, known: Collection[str]) -> str:
-    """Return a phrase with the known name nearest to an unknown one, or with all known names.
+    """Return a phrase with the known name nearest to an unknown one, or with the first known names.
 
     A short list is shorter than a wrong guess: only a misspelling is then answered with one name.
     """
     close = closest(name, known, _MISSPELT if len(known) <= _FEW else _SIMILAR)
-    return f"did you mean '{close}'?" if close else f"known are {', '.join(known)}"
+    if close:
+        return f"did you mean '{close}'?"
+    names = list(known)
+    rest = f", … ({len(names)} in all)" if len(names) > _LISTED else ""
+    return f"known are {', '.join(names[:_LISTED])}{rest}"
 
 
 def is_number(value: object) -> bool:

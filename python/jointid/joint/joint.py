@@ -95,7 +95,7 @@ class Joint:
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
-            raise InputError("a text is expected", argument="name", value=self.name, place="joint")
+            raise InputError("text is expected", argument="name", value=self.name, place="joint")
         if any("\ud800" <= letter <= "\udfff" for letter in self.name):
             raise InputError(
                 "it has characters that no file can store",
@@ -200,7 +200,8 @@ class Joint:
         Raises
         ------
         InputError
-            The folder does not exist, or the existing file is not a joint file.
+            Another ending than ``.toml``, a folder that does not exist, or an existing file that is not a
+            joint file.
         OSError
             The file cannot be written; an existing one is untouched.
         """

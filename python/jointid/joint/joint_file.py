@@ -60,12 +60,8 @@ def read_document(path: str | os.PathLike[str]) -> dict[str, Any]:
 def save_joint(joint: Joint, path: str | os.PathLike[str]) -> None:
     """Write a joint file: see `Joint.save`."""
     place = require_path("path", path)
-    if not place.parent.is_dir():
-        raise InputError(
-            f"the folder '{place.parent}' does not exist",
-            place=str(place),
-            remedy="create it first",
-        )
+    if place.suffix != ".toml" and not place.is_dir():
+        raise InputError("a joint is saved as .toml", argument="path", value=place.name)
     before = _text(place) if place.exists() else ""
     if before.strip():
         # An existing file is overwritten only if it is a joint file.

@@ -126,8 +126,12 @@ class Model:
         Raises
         ------
         InputError
-            An unknown option, or an option that is given twice.
+            No text, an unknown option, or an option that is given twice.
         """
+        if not isinstance(text, str):
+            raise InputError(
+                "text is expected, like stribeck:ripple=2,4", argument="model", value=text
+            )
         name, *parts = text.split(":")
         options: dict[str, Any] = {}
         for part in parts:

@@ -17,7 +17,7 @@ from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import output_torque
-from jointid.problem.terms import Request, TermChoice, choose_terms
+from jointid.problem.terms import Request, TermChoice, choose_terms, joint_in_words
 from jointid.recording.attributes import check_torque_hold
 from jointid.recording.recording import Recording
 
@@ -88,7 +88,7 @@ class Settings:
         joint = self.joint
         if joint is not None and joint.sensor and "sensor" not in signals:
             raise InputError(
-                f"joint '{joint.name}' has a torque sensor, but the samples have no signal sensor",
+                f"{joint_in_words(joint)} has a torque sensor, but the samples have no signal sensor",
                 argument="sensor",
                 place="samples",
                 remedy=("give its reading", Action("call", {"sensor": False}, function="Joint")),

@@ -17,6 +17,9 @@ Array = NDArray[np.float64]
 # Largest share of the intervals that may be gaps: above it the median interval is not the sample period.
 _MOST_GAPS = 0.1
 
+# Largest magnitudes of signals: their squares, and sums of these, are floats.
+_SMALLEST, _LARGEST = 1e-100, 1e100
+
 _RECORDING_EXPECTED = "a Recording is expected, or several; load reads one from a file"
 
 
@@ -26,7 +29,8 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
     Raises
     ------
     InputError
-        No recording, something else, too many gaps, or revolute and prismatic recordings mixed.
+        No recording, something else, too many gaps, a signal whose square no float can hold, or revolute
+        and prismatic recordings mixed.
     """
     if isinstance(recordings, Recording):
         recordings = (recordings,)
@@ -55,7 +59,22 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
                 place=place,
                 remedy="identify them separately",
             )
+        _check_magnitudes(run, place)
     return runs
+
+
+def _check_magnitudes(run: Recording, place: str) -> None:
+    for name in run.signals:
+        values = getattr(run, name)
+        largest = max(float(values.max()), -float(values.min()))
+        if name != "time" and largest != 0.0 and not _SMALLEST <= largest <= _LARGEST:
+            raise InputError(
+                "no measured signal has this as its largest magnitude",
+                argument=name,
+                value=largest,
+                place=place,
+                remedy="check unit and scale",
+            )
 
 
 def output_torque(recording: Recording, joint: Joint | None) -> Array:

@@ -124,10 +124,15 @@ def choose_terms(
     )
 
 
+def joint_in_words(joint: Joint) -> str:
+    """Return the subject of a sentence about a joint, which may have no name."""
+    return f"joint '{joint.name}'" if joint.name else "the joint"
+
+
 def _check_kind(recordings: Sequence[Recording], joint: Joint | None) -> None:
     if joint is not None and recordings[0].kind != joint.kind:
         raise InputError(
-            f"joint '{joint.name}' is {joint.kind}",
+            f"{joint_in_words(joint)} is {joint.kind}",
             argument="kind",
             value=recordings[0].kind,
             place="recording",
@@ -142,7 +147,7 @@ def _has_sensor(recordings: Sequence[Recording], joint: Joint | None) -> bool:
         for number, recording in enumerate(recordings):
             if recording.sensor is None:
                 raise InputError(
-                    f"joint '{joint.name}' has a torque sensor, but the recording has no signal sensor",
+                    f"{joint_in_words(joint)} has a torque sensor, but the recording has no signal sensor",
                     argument="sensor",
                     place=f"recording {number}",
                     remedy=(

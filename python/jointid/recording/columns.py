@@ -81,7 +81,7 @@ def match_columns(
     candidates = _candidates(table, columns or {})
     for signal in ("time", "position"):
         if not candidates.get(signal):
-            raise _missing(table, signal)
+            raise _missing(table, signal, candidates, kind)
     for signal, text in (units or {}).items():
         check_signal_name(signal, "units")
         _check_recognised(table, signal, candidates, f"units.{signal}")
@@ -207,6 +207,8 @@ def _wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputEr
     known = unit_names(dimensions(signal, kind))
     if column.unit is None:
         problem = f"has the unknown unit {column.unknown!r}"
+    elif column.unit.dimension == "raw reading":
+        problem = "is a raw reading"
     else:
         problem = f"is in {column.unit.name} ({column.unit.dimension})"
     if column.unit and column.unit.dimension in ("raw reading", "voltage"):
@@ -235,14 +237,35 @@ def _chosen(signal: str, column: Column) -> Action:
     return Action("call", {"columns": {signal: column.index}}, function="load")
 
 
-def _missing(table: Table, signal: str) -> InputError:
+def _missing(
+    table: Table, signal: str, candidates: Mapping[str, list[Column]], kind: str | None
+) -> InputError:
+    """Return the error for a signal without a column; its remedy is a column that may hold it."""
+    owners = {column.index: other for other, found in candidates.items() for column in found}
+    possible = []
+    for index, header in enumerate(table.headers):
+        name, unit, _ = parsed(header)
+        if index in owners:
+            if ALIASES.get(name) == signal:
+                return InputError(
+                    f"no column is left for {signal}: {header!r} is chosen as {owners[index]}",
+                    argument=f"columns.{owners[index]}",
+                    place=table.header_place,
+                )
+        elif unit is None or unit.dimension in dimensions(signal, kind):
+            possible.append(header)
+    if not possible:
+        return InputError(
+            f"the file has no {signal} column; headers are {listed(table.headers) or 'none'}",
+            place=table.header_place,
+        )
     likely = [
-        header for header in table.headers if any(part in plain(header) for part in _LIKELY[signal])
+        header for header in possible if any(part in plain(header) for part in _LIKELY[signal])
     ]
-    unrecognised = [header for header in table.headers if parsed(header)[0] not in ALIASES]
-    shown = likely or unrecognised or list(table.headers)
+    unrecognised = [header for header in possible if parsed(header)[0] not in ALIASES]
+    shown = likely or unrecognised or possible
     return InputError(
-        f"no column is recognised as {signal}; candidates are {listed(shown) or 'none'}",
+        f"no column is recognised as {signal}; candidates are {listed(shown)}",
         place=table.header_place,
-        remedy=Action("call", {"columns": {signal: shown[0]}}, function="load") if shown else (),
+        remedy=Action("call", {"columns": {signal: shown[0]}}, function="load"),
     )

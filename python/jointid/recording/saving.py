@@ -28,12 +28,6 @@ def save_recording(recording: "Recording", path: str | os.PathLike[str]) -> None
     """Write a recording to a file: see `Recording.save`."""
     target = require_path("path", path)
     writer = _WRITERS[ending_of(target, ENDINGS)]
-    if not target.parent.is_dir():
-        raise InputError(
-            f"the folder '{target.parent}' does not exist",
-            place=str(target),
-            remedy="create it first",
-        )
     if target.is_dir():
         raise InputError("this is a folder; a file name is expected", place=str(target))
     write_whole(target, writer(recording))

@@ -128,6 +128,7 @@ _ALIASES: dict[str, str] = {
     }.items()
     for alias in aliases.split()
 }
+_PLURALS = {"degs": "deg", "rads": "rad"}  # per second among velocities; else a plural
 _BY_FOLDED: dict[str, Unit] = {name.casefold(): unit for name, unit in UNITS.items()}
 
 
@@ -161,9 +162,17 @@ def unit_named(
     Raises
     ------
     InputError
-        The unit is unknown.
+        The unit is unknown, or it is `degs` or `rads` where no velocity is expected.
     """
     unit = find_unit(text) if isinstance(text, str) else None
+    meant = _PLURALS.get(text.strip().casefold()) if isinstance(text, str) else None
+    if unit and meant and dimensions and unit.dimension not in dimensions:
+        raise InputError(
+            f"this is not a known unit; did you mean {meant}?",
+            argument=argument,
+            value=text,
+            place=place,
+        )
     if unit is None:
         raise InputError(
             f"unknown unit; known are {', '.join(unit_names(dimensions))}",

@@ -136,7 +136,7 @@ def save_report(
     Raises
     ------
     InputError
-        The path is no file name.
+        The path is no file name, or its folder does not exist.
     OSError
         The file cannot be written; an existing one is untouched.
     """

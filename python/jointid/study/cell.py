@@ -104,7 +104,7 @@ def _check_setting(name: str, value: object, present: object) -> None:
         check_flag("grid", name, value)
     elif isinstance(present, str):
         if not isinstance(value, str):
-            raise InputError("a text is expected", argument=name, value=value, place="grid")
+            raise InputError("text is expected", argument=name, value=value, place="grid")
     elif not isinstance(present, int):
         finite_number("grid", name, value)
     elif not (

@@ -101,7 +101,8 @@ class Summary:
             if cell.refused:
                 labels = ", ".join(f"{name} {label}" for name, label in cell.labels.items())
                 lines.append(f"{labels}: {cell.refused} refused: {cell.reason}")
-        return "\n".join(line.rstrip() for line in lines)
+        lines += [_left_out(self)]
+        return "\n".join(line.rstrip() for line in lines if line)
 
     def to_html(self) -> str:
         """Return the table that `print` shows, as HTML for a notebook."""
@@ -110,7 +111,10 @@ class Summary:
         rows = (
             "<tr>" + "".join(f"<td>{escape(text)}</td>" for text in line) + "</tr>" for line in body
         )
-        return f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table>"
+        left_out = _left_out(self)
+        note = f"<p>{escape(left_out)}</p>" if left_out else ""
+        table = f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table>"
+        return table + note
 
 
 def summarise(study: Study, within: float) -> Summary:
@@ -193,8 +197,7 @@ def _texts(summary: Summary) -> tuple[list[str], list[list[str]]]:
     """Return header and lines; a parameter as bias ± scatter [%] if its truth is known, else mean ± spread."""
     cells = summary.cells
     swept = list(cells[0].labels) if cells else []
-    names = list(dict.fromkeys(name for cell in cells for name in cell.mean))
-    names = [name for name in names if not _fixed(cells, name)] or names
+    names = _varying(cells)
     success = any(cell.success is not None for cell in cells)
     tracking = list(dict.fromkeys(name for cell in cells for name in cell.tracking))
     header = [*swept, "trials", "converged", "penalty"]
@@ -212,6 +215,23 @@ def _texts(summary: Summary) -> tuple[list[str], list[list[str]]]:
     return header, body
 
 
+def _names(cells: Sequence[CellSummary]) -> list[str]:
+    return list(dict.fromkeys(name for cell in cells for name in cell.mean))
+
+
+def _varying(cells: Sequence[CellSummary]) -> list[str]:
+    """Return the parameters that the table shows: all, if none varies."""
+    names = _names(cells)
+    return [name for name in names if not _fixed(cells, name)] or names
+
+
+def _left_out(summary: Summary) -> str:
+    """Return a line with the parameters that the table does not show."""
+    varying = _varying(summary.cells)
+    left_out = [name for name in _names(summary.cells) if name not in varying]
+    return f"not shown: {', '.join(left_out)} (same in all cells)" if left_out else ""
+
+
 def _fixed(cells: Sequence[CellSummary], name: str) -> bool:
     """Return whether a parameter has the same value, but for rounding, in all cells."""
     means = [cell.mean[name] for cell in cells if name in cell.mean]
@@ -221,10 +241,15 @@ def _fixed(cells: Sequence[CellSummary], name: str) -> bool:
 
 def _parameter(cell: CellSummary, name: str) -> str:
     if name in cell.bias:
-        return f"{100.0 * cell.bias[name]:+.2f} ± {100.0 * cell.scatter[name]:.2f}"
+        return f"{100.0 * cell.bias[name]:+.2f}" + _after(100.0 * cell.scatter[name], ".2f")
     if name in cell.mean:
-        return f"{cell.mean[name]:.4g} ± {cell.spread[name]:.2g}"
+        return f"{cell.mean[name]:.4g}" + _after(cell.spread[name], ".2g")
     return ""
+
+
+def _after(spread: float, form: str) -> str:
+    """Return the spread behind a value; nothing if it is not known, with one trial."""
+    return "" if math.isnan(spread) else f" ± {spread:{form}}"
 
 
 def _percent(share: float | None) -> str:

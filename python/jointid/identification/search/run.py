@@ -111,7 +111,7 @@ def _genetic(search: Search, engine: Engine, domain: SearchDomain) -> _core.GaRe
             else functools.partial(_write_state, search),
         )
     except InputError as error:
-        if state is None:
+        if state is None or error.place == str(search.checkpoint):
             raise
         raise error.at(str(search.resume)) from error
     if search.checkpoint is not None and result.state is not None:

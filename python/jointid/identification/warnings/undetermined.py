@@ -33,6 +33,8 @@ _PAIRS = 5
 # Width between the regressions with the noise in the sensor and with the noise in the torque, over the gain.
 _WIDE = 0.0075
 
+_SHOWN = 4  # reasons, and pairs, in the sentence; the evidence has all
+
 
 @dataclass(frozen=True, slots=True)
 class _Reason:
@@ -54,13 +56,19 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if not reasons:
         return
     texts = [", and ".join(each.text for each in found) for found in reasons.values()]
-    cause = "not well determined by this recording: " + "; ".join(dict.fromkeys(texts))
+    shown = list(dict.fromkeys(texts))[:_SHOWN]
+    more = sum(text not in shown for text in texts)
+    cause = "not well determined by this recording: " + "; ".join(shown)
+    if more:
+        cause += f"; and {more} more parameter{'s' * (more > 1)}"
     measured = {
         name: number
         for found in reasons.values()
         for each in found
         for name, number in each.measured.items()
     }
+    if more:
+        measured["more_parameters"] = Measured(float(more))
     for (first, second), correlation in _worst_pairs(evidence.correlations, reasons):
         cause += f"; {first} and {second} are indistinguishable (correlation {correlation:.3f})"
         measured[f"{first}.{second}.correlation"] = Measured(correlation)

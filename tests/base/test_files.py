@@ -1,0 +1,39 @@
+"""Writing a file whole: a target that cannot be written is named, never the temporary file."""
+
+from pathlib import Path
+
+import pytest
+
+import jointid.base.files
+from jointid import InputError
+from jointid.base.files import write_whole
+
+
+def test_a_folder_that_does_not_exist_is_bad_input(tmp_path: Path) -> None:
+    target = tmp_path / "none" / "e.json"
+    with pytest.raises(InputError) as refused:
+        write_whole(target, b"x")
+    error = refused.value
+    assert error.reason == f"the folder '{target.parent}' does not exist"
+    assert (error.place, error.remedy) == (str(target), ("create it first",))
+
+
+def test_a_link_into_a_folder_that_does_not_exist_is_bad_input(tmp_path: Path) -> None:
+    link = tmp_path / "e.json"
+    link.symlink_to(tmp_path / "none" / "e.json")
+    with pytest.raises(InputError, match=r"e\.json: the folder '.*none' does not exist"):
+        write_whole(link, b"x")
+
+
+def test_an_error_names_the_target(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(_descriptor: int) -> None:
+        raise OSError(28, "No space left on device", ".e.json.x7")
+
+    monkeypatch.setattr(jointid.base.files.os, "fsync", full)
+    target = tmp_path / "e.json"
+    target.write_bytes(b"old")
+    with pytest.raises(OSError, match="No space left") as refused:
+        write_whole(target, b"x")
+    assert refused.value.filename == str(target)
+    assert target.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [target]

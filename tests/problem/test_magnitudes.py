@@ -1,0 +1,27 @@
+"""Signals of impossible magnitude, and joints without a name, are refused in one sentence."""
+
+import warnings
+
+import pytest
+
+import jointid as jid
+from jointid.cli.demo import data_folder
+
+PATH = data_folder() / "well_excited.csv.gz"
+
+
+@pytest.mark.parametrize("factor", [1e300, -1e150, 1e-300])
+def test_a_magnitude_without_a_square_is_refused(factor: float) -> None:
+    run = jid.load(PATH, scale={"torque": factor})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(jid.InputError, match=r"check unit and scale$") as refused:
+            jid.identify(run, jid.thesis_joint())
+    assert refused.value.argument == "torque"
+    assert refused.value.value == abs(run.torque).max()
+
+
+def test_a_joint_without_a_name_is_the_joint() -> None:
+    run = jid.load(PATH)
+    with pytest.raises(jid.InputError, match=r": the joint is prismatic;"):
+        jid.identify(run, jid.Joint(kind="prismatic", inertia=1.0))
