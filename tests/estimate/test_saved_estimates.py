@@ -217,3 +217,10 @@ def test_a_file_is_read_and_named(tmp_path: Path) -> None:
         jid.Estimate.load(path)
     with pytest.raises(jid.InputError, match="No such file"):
         jid.Estimate.load(tmp_path / "none.json")
+
+
+@pytest.mark.parametrize("order", ["9" * 400, "1_0", "9" * 5000])
+def test_a_saved_model_with_an_order_that_is_no_number(order: str) -> None:
+    record = document()
+    record["settings"]["model"] = f"stribeck:ripple={order}"
+    assert read(json.dumps(record)) is None
