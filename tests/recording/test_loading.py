@@ -271,8 +271,8 @@ def test_several_runs_are_refused_with_a_remedy(shared_data: Path) -> None:
 
 def test_a_file_name_that_is_not_utf8_is_replaced_once(tmp_path: Path) -> None:
     original = tmp_path / "run.csv"
-    time = np.linspace(0.0, 1.0, 101)
-    Recording(time=time, position=time**2, torque=time).save(original)
+    table = (f"{0.01 * i},{1e-4 * i * i},{i}" for i in range(101))
+    original.write_text("\n".join(["time_s,position_rad,torque_Nm", *table, ""]))
     odd = tmp_path / os.fsdecode(b"caf\xe9.csv")
     try:
         original.rename(odd)
