@@ -72,6 +72,8 @@ BAD_ROWS = [
     {"penalty": "1"},
     {"values": {"viscous": 1.0}},
     {"values": None},
+    {"values": {"coulomb": math.inf}},
+    {"penalty": -math.inf},
     {"status": 3},
 ]
 

@@ -13,11 +13,11 @@ REFUSED = "refused"
 
 @dataclass(frozen=True, slots=True)
 class _Measured:
-    """A number that may be infinite or undefined, in JSON as Python writes it: NaN, Infinity."""
+    """A number that may be infinite or undefined, in JSON as Python writes it: Infinity, NaN."""
 
     def read(self, value: Any, place: str) -> float:
         """Return a float."""
-        if isinstance(value, float) and not math.isfinite(value):
+        if isinstance(value, float) and (math.isnan(value) or value == math.inf):
             return value
         return float(Number().read(value, place))
 
@@ -29,7 +29,8 @@ _ROW = Record(
         "seed": Number(low=0, high=2**65, whole=True),
         **dict.fromkeys(("status", "message"), Text(longest=1_000_000)),
         "penalty": _Measured(),
-        **dict.fromkeys(("values", "stderr", "tracking"), TableOf(_Measured())),
+        "values": TableOf(Number()),
+        **dict.fromkeys(("stderr", "tracking"), TableOf(_Measured())),
     },
     other=Plain(),
 )
