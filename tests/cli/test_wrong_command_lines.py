@@ -133,3 +133,22 @@ def test_the_detector_finds_python(sentence: str) -> None:
 )
 def test_the_detector_passes_plain_sentences(sentence: str) -> None:
     assert not python_in(sentence)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "identify good.csv --model stribeck:ripple=",
+        "identify good.csv --set inertia=",
+        "identify good.csv --scale position=",
+        "simulate true.toml --duration ",
+        "sweep good.csv --grid windows=",
+    ],
+)
+def test_numbers_beyond_all_floats(
+    line: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(folder)
+    code, text = answer(shlex.split(line + "9" * 400), capsys)
+    assert code == 2, text
+    assert "Traceback" not in text

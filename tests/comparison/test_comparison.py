@@ -245,9 +245,48 @@ def test_a_default_model_that_is_one_with_the_sensors_offset_is_left_out(
         "coulomb_viscous:asymmetric",
         "stribeck:asymmetric",
     }
-    assert "not compared: stribeck:asymmetric: asymmetric Coulomb friction and" in found.report()
+    assert "asymmetric Coulomb friction and" in found.report()
+    for model, reason in found.settings["left_out"].items():
+        with pytest.raises(InputError) as refused:
+            jid.compare_models(well_excited, jid.thesis_joint(), models=model)
+        error = refused.value.__cause__
+        assert isinstance(error, InputError)
+        assert reason.startswith(f"{error.argument}"), "the argument is named"
+        assert error.argument
+        assert error.remedy[0]
+        assert str(error.remedy[0]) not in reason
     with pytest.raises(InputError, match="sensor_offset are indistinguishable"):
         jid.compare_models(well_excited, jid.thesis_joint(), models="stribeck:asymmetric")
+
+
+def test_a_rows_model_repeats_its_fit_with_an_asymmetric_joint() -> None:
+    joint = jid.Joint(model=jid.Model("stribeck", asymmetric=True))
+    recording = simulated(3)
+    found = jid.compare_models(recording, joint, models="coulomb_viscous", folds=2)
+    assert found.winner == found.rows[0].model == "coulomb_viscous"
+    again = jid.identify(
+        recording,
+        joint,
+        model=found.rows[0].spec,
+        search="separable",
+        windows=found.settings["windows"],
+    )
+    assert again.parameters.keys() == found.estimate.parameters.keys()
+    assert again.penalty == found.estimate.penalty
+
+
+def test_a_symmetric_model_is_the_same_however_it_is_stated() -> None:
+    with pytest.raises(InputError, match="given twice"):
+        jid.compare_models(
+            simulated(3), models=["coulomb_viscous", "coulomb_viscous:asymmetric=false"]
+        )
+
+
+def test_a_report_has_no_control_characters() -> None:
+    joint = jid.Joint(name="a\x1b[2Jb")
+    report = jid.compare_models(simulated(3), joint, models="coulomb_viscous", folds=2).report()
+    assert "\x1b" not in report
+    assert "a\ufffd[2Jb" in report
 
 
 def test_an_asymmetric_model_takes_the_joints_offset_along() -> None:

@@ -231,3 +231,10 @@ def test_what_a_finding_may_hold_is_read_again() -> None:
     )
     again = jid.Estimate.from_json(dataclasses.replace(estimate, findings=(found,)).to_json())
     assert again.findings == (found,)
+
+
+@pytest.mark.parametrize("order", ["9" * 400, "1_0", "9" * 5000])
+def test_a_saved_model_with_an_order_that_is_no_number(order: str) -> None:
+    record = document()
+    record["settings"]["model"] = f"stribeck:ripple={order}"
+    assert read(json.dumps(record)) is None

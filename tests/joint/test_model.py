@@ -124,3 +124,15 @@ def test_what_cannot_be_is_refused(fields: dict[str, Any], argument: str) -> Non
 def test_a_text_that_says_nothing_is_refused(text: str) -> None:
     with pytest.raises(InputError):
         Model.parse(text)
+
+
+DIGITS = ["9" * 400, "-" + "9" * 400, "9" * 5000, "1_0", "2_5.0"]
+
+
+@pytest.mark.parametrize("digits", DIGITS)
+@pytest.mark.parametrize("key", ["ripple", "harmonics", "gravity", "asymmetric"])
+def test_digits_that_state_no_number_are_refused(key: str, digits: str) -> None:
+    with pytest.raises(InputError) as refused:
+        Model.parse(f"stribeck:{key}={digits}")
+    assert refused.value.argument == key
+    assert len(str(refused.value)) < 300

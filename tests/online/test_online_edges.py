@@ -167,3 +167,17 @@ def test_the_motors_torque_will_do(excited: jid.Recording) -> None:
         found = identifier.wait(30.0)
     assert found is not None
     assert found.parameters["coulomb"].value == pytest.approx(25.0, rel=0.01)
+
+
+@pytest.mark.parametrize("name", ["window", "update", "windows"])
+def test_a_duration_beyond_all_floats_is_refused(name: str) -> None:
+    durations = {"window": 10.0, "update": 1.0} | {name: 10**400}
+    with pytest.raises(jid.InputError, match=f"{name} is inf: a duration above 0 and finite"):
+        jid.OnlineIdentifier(None, **durations)  # type: ignore[arg-type]
+
+
+def test_a_simulation_beyond_all_floats_is_refused() -> None:
+    from jointid.simulation.arguments import finite
+
+    with pytest.raises(jid.InputError, match="duration is inf: a finite number is expected"):
+        finite("duration", 10**400)

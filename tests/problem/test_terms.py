@@ -211,6 +211,52 @@ def test_offset_of_each_recording() -> None:
     assert jid.Estimate.from_json(estimate.to_json()).parameters == estimate.parameters
 
 
+def two_runs() -> list[jid.Recording]:
+    base = {"inertia": 0.8, "coulomb": 2.0, "viscous": 4.0}
+    return [
+        smooth({**base, "torque_offset": offset}, seed=seed)
+        for seed, offset in enumerate((0.5, -0.9))
+    ]
+
+
+def test_what_a_call_has_apart_is_not_a_property_of_the_joint() -> None:
+    runs = two_runs()
+    apart = jid.Model(per_recording=("torque_offset",))
+    for base in (None, jid.Joint(name="axis")):
+        joint = jid.identify(runs, base, model=apart, search="separable").joint
+        assert joint.model.per_recording is None
+        jid.OnlineIdentifier(joint).close()
+        alone = jid.identify(runs[0], joint, search="separable")
+        assert "torque_offset" in alone.parameters
+        assert jid.compare_models(runs[0], joint, folds=2).winner == "coulomb_viscous"
+
+
+def test_what_the_joint_has_apart_stays_and_may_not_apply() -> None:
+    runs = two_runs()
+    joint = jid.Joint(model=jid.Model(per_recording=("torque_offset", "static")))
+    both = jid.identify(runs, joint, search="separable")
+    assert {"torque_offset[0]", "torque_offset[1]"} <= both.parameters.keys()
+    assert both.joint.model.per_recording == joint.model.per_recording
+    alone = jid.identify(runs[0], joint, search="separable")
+    assert "torque_offset" in alone.parameters
+    assert alone.joint.model.per_recording == joint.model.per_recording
+    jid.OnlineIdentifier(joint).close()
+
+
+@pytest.mark.parametrize("count", [1, 2])
+@pytest.mark.parametrize("joint", [None, jid.Joint(model=jid.Model(per_recording=("static",)))])
+def test_what_a_call_has_apart_is_among_the_terms(count: int, joint: jid.Joint | None) -> None:
+    with pytest.raises(jid.InputError, match="static is not among the terms; known are inertia"):
+        jid.identify(two_runs()[:count], joint, model=jid.Model(per_recording=("static",)))
+
+
+def test_a_joint_without_a_name_is_called_joint() -> None:
+    with pytest.raises(jid.InputError, match=r"^recording 0: sensor: joint has a torque sensor"):
+        jid.identify(two_runs()[0], jid.Joint(sensor=True))
+    with pytest.raises(jid.InputError, match="joint is prismatic"):
+        jid.identify(two_runs()[0], jid.Joint(kind="prismatic"))
+
+
 def test_cumulative_windows_are_the_running_integral(well_excited: jid.Recording) -> None:
     estimate = jid.identify(
         well_excited, jid.thesis_joint(), windows="cumulative", search="separable"

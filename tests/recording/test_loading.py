@@ -1,6 +1,7 @@
 """Loading: the files people have, and one helpful sentence for those that cannot be used."""
 
 import math
+import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -266,3 +267,19 @@ def test_several_runs_are_refused_with_a_remedy(shared_data: Path) -> None:
         "; load with where={'run_index': 0} (one run) or load_runs with by='run_index'"
         in error_text
     )
+
+
+def test_a_file_name_that_is_not_utf8_is_replaced_once(tmp_path: Path) -> None:
+    original = tmp_path / "run.csv"
+    table = (f"{0.01 * i},{1e-4 * i * i},{i}" for i in range(101))
+    original.write_text("\n".join(["time_s,position_rad,torque_Nm", *table, ""]))
+    odd = tmp_path / os.fsdecode(b"caf\xe9.csv")
+    try:
+        original.rename(odd)
+    except OSError:
+        pytest.skip("this file system has no such names")
+    loaded = load(odd)
+    assert loaded.name == "caf\ufffd"
+    for ending in (".npz", ".csv"):
+        loaded.save(tmp_path / f"again{ending}")
+    assert load(tmp_path / "again.npz").name == loaded.name

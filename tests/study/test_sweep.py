@@ -689,3 +689,25 @@ def test_what_the_table_leaves_out_is_named(study: jid.Study) -> None:
     assert "<p>not shown: b (same in all cells)</p>" in summary.to_html()
     same = replace(cells[0], spread={"a": 0.0, "b": 0.0})
     assert "not shown" not in str(Summary(cells=(same,), within=0.05))
+
+
+def test_a_swept_model_keeps_what_the_study_states(
+    recording: jid.Recording, joint: jid.Joint
+) -> None:
+    found = jid.sweep(
+        recording,
+        joint.replace(sensor=False),
+        model=jid.Model(load_friction=True),
+        grid={"model": ["coulomb_viscous", "coulomb_viscous:load_friction=false"]},
+        trials=1,
+        search="separable",
+    )
+    assert [("load_friction" in row.values) for row in found.rows] == [True, False]
+
+
+def test_a_summary_has_no_control_characters(recording: jid.Recording, joint: jid.Joint) -> None:
+    found = jid.sweep(
+        recording, joint, grid={"windows": {"a\x1b[2J": 50}}, trials=1, search="separable"
+    )
+    assert "\x1b" not in str(found)
+    assert "a\ufffd[2J" in str(found)

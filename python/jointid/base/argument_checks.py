@@ -66,3 +66,16 @@ def whole_number(name: str, value: object, lowest: int, highest: int) -> int:
 
 def _article(noun: str) -> str:
     return f"{'an' if noun[0] in 'AEIOaeio' else 'a'} {noun}"
+
+
+def number_in(text: str) -> int | float | None:
+    """Return the number that a text states, or None; an integer beyond all floats is infinite."""
+    for kind in (int, float):
+        try:
+            number = kind(text)
+            float(number)
+        # Not a number; an integer beyond all floats; an integer of more digits than Python reads.
+        except (OverflowError, ValueError):
+            continue
+        return number
+    return None

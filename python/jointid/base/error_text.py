@@ -1,4 +1,4 @@
-"""Parts of error messages: another library's reason in brief, and names as alternatives."""
+"""Parts of messages: another library's reason in brief, names as alternatives, text for a terminal."""
 
 from collections.abc import Sequence
 
@@ -19,3 +19,8 @@ def alternatives(names: Sequence[str]) -> str:
     """
     *others, last = names
     return f"{', '.join(others)} or {last}" if others else last
+
+
+def printable(text: str) -> str:
+    """Return text without control characters, which a file's labels could send to a terminal."""
+    return "".join(c if c == "\n" or c.isprintable() else "\ufffd" for c in text)

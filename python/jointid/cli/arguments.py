@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from jointid.base.argument_checks import number_in
 from jointid.base.errors import InputError
 
 if TYPE_CHECKING:
@@ -80,12 +81,8 @@ def by_name(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str, str]:
 
 def number_or_text(text: str) -> Any:
     """An int, else a float, else the text."""
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            continue
-    return text
+    number = number_in(text)
+    return text if number is None else number
 
 
 def whole(text: str) -> int:

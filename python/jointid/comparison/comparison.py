@@ -45,11 +45,11 @@ class ComparisonStep:
 
 def default_models() -> tuple[Model, ...]:
     """Return the models compared by default: Coulomb + viscous and Stribeck, each also asymmetric."""
-    return tuple(Model(name, asymmetric=side or None) for side in (False, True) for name in _MODELS)
+    return tuple(Model(name, asymmetric=side) for side in (False, True) for name in _MODELS)
 
 
 def compared_models(models: object) -> tuple[Model, ...]:
-    """Return the models of a call: one or several, each as `Model.of` accepts it.
+    """Return the models of a call: one or several, each as `Model.of` accepts it; symmetric unless stated.
 
     Raises
     ------
@@ -59,14 +59,15 @@ def compared_models(models: object) -> tuple[Model, ...]:
     alone = isinstance(models, str | Model | Mapping)
     if not alone and not isinstance(models, Iterable):
         raise InputError("a list of models is expected", argument="models", value=models)
-    entries = tuple(Model.of(each) for each in ((models,) if alone else tuple(models)))  # type: ignore[arg-type]
+    given = (models,) if alone else tuple(models)  # type: ignore[arg-type]
+    entries = tuple(Model.of(each).over(Model(asymmetric=False)) for each in given)
     if not entries:
         raise InputError("at least one is expected, e.g. stribeck", argument="models", value=[])
     for index, model in enumerate(entries):
         if model.name is None:
-            raise InputError("a compared model needs a name", argument="models", value=str(model))
+            raise InputError("a compared model needs a name", argument="models", value=_text(model))
         if model in entries[:index]:
-            raise InputError("it is given twice", argument="models", value=str(model))
+            raise InputError("it is given twice", argument="models", value=_text(model))
     return entries
 
 
@@ -151,7 +152,10 @@ def compare_models(
         except InputError as error:
             if models is not None or spec == specs[0]:
                 raise
-            left_out[str(spec)] = error.reason
+            cause = error.__cause__
+            left_out[_text(spec)] = _without_remedy(
+                cause if isinstance(cause, InputError) else error
+            )
             fitter.total -= 1 + parts
     # Residuals over windows of different duration cannot be compared: all models get the shortest.
     duration = min(estimate.settings["windows"] for estimate in whole.values())
@@ -205,17 +209,16 @@ class _Fitter:
     def fit(
         self, spec: Model, training: Sequence[Recording], windows: Windows, where: str = ""
     ) -> Estimate:
-        model = spec.over(Model(asymmetric=False))
         joint = self._joint
-        if joint is not None and joint.torque_offset and model.asymmetric:
+        if joint is not None and joint.torque_offset and spec.asymmetric:
             joint = joint.replace(torque_offset=False)
         try:
-            estimate = identify(training, joint, model=model, windows=windows, **self._common)
+            estimate = identify(training, joint, model=spec, windows=windows, **self._common)
         except InputError as error:
-            raise error.at(f"model '{spec}'{where}") from error
+            raise error.at(f"model '{_text(spec)}'{where}") from error
         self._done += 1
         if self._callback is not None:
-            self._callback(ComparisonStep(number=self._done, total=self.total, model=str(spec)))
+            self._callback(ComparisonStep(number=self._done, total=self.total, model=_text(spec)))
         return estimate
 
     def scores(self, spec: Model, splits: Sequence[Fold], windows: Windows) -> list[float]:
@@ -226,8 +229,20 @@ class _Fitter:
             try:
                 found.append(split.residual(estimate))
             except InputError as error:
-                raise error.at(f"model '{spec}'{where}") from error
+                raise error.at(f"model '{_text(spec)}'{where}") from error
         return found
+
+
+def _text(spec: Model) -> str:
+    """Return a compared model's text; a symmetric one's does not say so."""
+    return str(spec if spec.asymmetric else spec.replace(asymmetric=None))
+
+
+def _without_remedy(error: InputError) -> str:
+    """Return an error's sentence; the caller did not choose this model, and cannot act on it."""
+    return str(
+        InputError(error.reason, argument=error.argument, value=error.value, place=error.place)
+    )
 
 
 def _cumulative(windows: Windows) -> bool:
@@ -238,7 +253,7 @@ def _cumulative(windows: Windows) -> bool:
 def _row(spec: Model, estimate: Estimate, scores: Sequence[float]) -> ComparedModel:
     reason = refusal(estimate)
     return ComparedModel(
-        model=str(spec),
+        model=_text(spec),
         spec=spec,
         parameters=sum(parameter.vary for parameter in estimate.parameters.values()),
         score=float(np.mean(scores)),

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any
 
+from jointid.base.error_text import printable
 from jointid.estimate.estimate import Estimate
 from jointid.joint.model import Model
 
@@ -102,7 +103,7 @@ class Comparison:
             f"not compared: {model}: {reason}"
             for model, reason in self.settings["left_out"].items()
         ]
-        return "\n".join([*lines, f"winner: {self.winner}", self.reason])
+        return printable("\n".join([*lines, f"winner: {self.winner}", self.reason]))
 
     def _repr_html_(self) -> str:
         head = "".join(f"<th>{escape(cell)}</th>" for cell in _HEAD)

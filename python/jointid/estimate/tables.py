@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from jointid.base.advice import Action
+from jointid.base.error_text import printable
 from jointid.estimate.derived import DerivedValue
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.settings import model_description, residual_unit
@@ -114,9 +115,4 @@ def text_report(estimate: Estimate, action: Callable[[Action], str] = str) -> st
     lines += [
         f"{found.severity} ({found.code}): {found.worded(action)}" for found in estimate.findings
     ]
-    return _printable("\n".join(lines))
-
-
-def _printable(text: str) -> str:
-    """The text without control characters, which a saved estimate could send to a terminal."""
-    return "".join(c if c == "\n" or c.isprintable() else "\ufffd" for c in text)
+    return printable("\n".join(lines))

@@ -139,7 +139,9 @@ def prepare(
         )
     stated = Model.of(model)
     if joint is not None:
-        joint = joint.replace(model=stated.over(joint.model))
+        merged = stated.over(joint.model)
+        # What only this call's recordings have apart does not become a property of the joint.
+        joint = joint.replace(model=merged.replace(per_recording=joint.model.per_recording))
     request = Request(model=stated, residual=residual)
     problem = Problem(
         recordings=runs,

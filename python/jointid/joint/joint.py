@@ -103,7 +103,7 @@ class Joint:
                 value=self.name,
                 place="joint",
             )
-        owner = self._owner
+        owner = self.owner
         check_choice(owner, "kind", self.kind, get_args(Kind))
         if self.torque_hold is not None:
             check_choice(owner, "torque_hold", self.torque_hold, get_args(TorqueHold))
@@ -135,7 +135,8 @@ class Joint:
         self._check_gravity(owner)
 
     @property
-    def _owner(self) -> str:
+    def owner(self) -> str:
+        """The joint as messages name it."""
         return f"joint '{self.name}'" if self.name else "joint"
 
     def _check_inertia(self, owner: str) -> None:
@@ -266,7 +267,7 @@ class Joint:
             raise InputError(
                 "the torque of gravity needs a link",
                 argument="link",
-                place=self._owner,
+                place=self.owner,
                 remedy="give the link's mass and centre_of_mass",
             )
         weight = self.link.mass * self.link.gravity * self.link.centre_of_mass
@@ -306,7 +307,7 @@ class Joint:
             raise InputError(
                 "the recording has only the current, and the joint has no torque constant",
                 argument="torque_constant",
-                place=self._owner,
+                place=self.owner,
                 remedy="give the joint's torque_constant in N·m/A",
             )
         return recording.current * (self.torque_constant * self.gear_ratio)

@@ -9,6 +9,7 @@ from dataclasses import KW_ONLY, dataclass, fields, replace
 from typing import Any, Literal, Self, get_args
 
 from jointid import _core
+from jointid.base.argument_checks import number_in
 from jointid.base.errors import InputError
 from jointid.joint.checks import check_choice, check_flag, finite_number, suggestion
 
@@ -282,13 +283,8 @@ def _number_or_text(key: str, text: str) -> Any:
     """Return a number, or the text where it is none."""
     if key == "per_recording":
         return text
-    for kind in (int, float):
-        try:
-            number = kind(text)
-        except ValueError:
-            continue
-        return number if math.isfinite(number) else text
-    return text
+    number = None if "_" in text else number_in(text)  # Python reads 1_0 as 10
+    return text if number is None or not math.isfinite(number) else number
 
 
 def _written(value: Any) -> str:

@@ -13,11 +13,12 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.identification.prepared import require_joint
 from jointid.identification.search.stated_bounds import parameter_bounds
+from jointid.joint.checks import finite_number, is_number
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import output_torque
-from jointid.problem.terms import Request, TermChoice, choose_terms, joint_in_words
+from jointid.problem.terms import Request, TermChoice, choose_terms
 from jointid.recording.attributes import check_torque_hold
 from jointid.recording.recording import Recording
 
@@ -44,7 +45,8 @@ class Settings:
     def __post_init__(self) -> None:
         require_joint(self.joint)
         if self.joint is not None:
-            model = self.request.model.over(self.joint.model)
+            own = self.joint.model
+            model = self.request.model.over(own).replace(per_recording=own.per_recording)
             object.__setattr__(self, "joint", self.joint.replace(model=model))
         for name in ("window", "update", "windows"):
             _check_duration(name, getattr(self, name), optional=name == "windows")
@@ -88,7 +90,7 @@ class Settings:
         joint = self.joint
         if joint is not None and joint.sensor and "sensor" not in signals:
             raise InputError(
-                f"{joint_in_words(joint)} has a torque sensor, but the samples have no signal sensor",
+                f"{joint.owner} has a torque sensor, but the samples have no signal sensor",
                 argument="sensor",
                 place="samples",
                 remedy=("give its reading", Action("call", {"sensor": False}, function="Joint")),
@@ -125,11 +127,11 @@ class Settings:
                 value=chosen.name,
                 remedy="use the model stribeck",
             )
-        if chosen.per_recording:
+        if model.per_recording:
             raise InputError(
                 "there is only one recording on line",
                 argument="per_recording",
-                value=list(chosen.per_recording),
+                value=list(model.per_recording),
             )
         with_sensor = ("time", "position", "torque", "sensor")
         if self.joint is not None:
@@ -144,9 +146,13 @@ class Settings:
 def _check_duration(name: str, value: object, *, optional: bool) -> None:
     if optional and value is None:
         return
-    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+    if not is_number(value):
         raise InputError("a duration in seconds is expected", argument=name, value=value)
-    if not 0.0 < float(value) < float("inf"):
+    try:
+        seconds = finite_number("", name, value)
+    except InputError as error:
+        value, seconds = error.value, 0.0
+    if seconds <= 0.0:
         raise InputError(
             "a duration above 0 and finite [s] is expected", argument=name, value=value
         )

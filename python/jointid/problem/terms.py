@@ -71,8 +71,8 @@ def choose_terms(
     Raises
     ------
     InputError
-        A sensor residual without a sensor; indistinguishable terms; a coefficient of `per_recording`
-        that is not among the terms.
+        A sensor residual without a sensor; indistinguishable terms; a coefficient of the call's
+        `per_recording` that is not among the terms. Those of the joint's are left out.
     """
     base = joint if joint is not None else Joint()
     stated = request.model.over(base.model)
@@ -95,7 +95,7 @@ def choose_terms(
             value=list(model.ripple),
             remedy="give a joint with its gear_ratio",
         )
-    if model.gravity != "none" and joint is None and model.gravity == "known":
+    if model.gravity == "known" and joint is None:
         raise InputError(
             "there is no joint whose link is known",
             argument="gravity",
@@ -110,13 +110,15 @@ def choose_terms(
     wanted.update(("load_friction",) if model.load_friction else ())
     wanted.update(("torque_offset",) if offset else ())
     terms = _ordered(wanted, model.ripple, model.harmonics)
-    _check_per_recording(model.per_recording, terms)
-    several = len(recordings) > 1
+    apart = stated.per_recording
+    if request.model.per_recording is not None:
+        _check_per_recording(request.model.per_recording, terms)
+    elif apart is not None:  # the joint's, which other recordings and other terms may use
+        known = _coefficients(terms)
+        apart = tuple(name for name in apart if name in known)
     return TermChoice(
         terms=terms,
-        model=stated.replace(
-            name=model.name, per_recording=stated.per_recording if several else None
-        ),
+        model=stated.replace(name=model.name, per_recording=apart if len(recordings) > 1 else None),
         residual=residual,
         sensor=sensor,
         gear_ratio=base.gear_ratio,
@@ -124,15 +126,10 @@ def choose_terms(
     )
 
 
-def joint_in_words(joint: Joint) -> str:
-    """Return the subject of a sentence about a joint, which may have no name."""
-    return f"joint '{joint.name}'" if joint.name else "the joint"
-
-
 def _check_kind(recordings: Sequence[Recording], joint: Joint | None) -> None:
     if joint is not None and recordings[0].kind != joint.kind:
         raise InputError(
-            f"{joint_in_words(joint)} is {joint.kind}",
+            f"{joint.owner} is {joint.kind}",
             argument="kind",
             value=recordings[0].kind,
             place="recording",
@@ -147,7 +144,7 @@ def _has_sensor(recordings: Sequence[Recording], joint: Joint | None) -> bool:
         for number, recording in enumerate(recordings):
             if recording.sensor is None:
                 raise InputError(
-                    f"{joint_in_words(joint)} has a torque sensor, but the recording has no signal sensor",
+                    f"{joint.owner} has a torque sensor, but the recording has no signal sensor",
                     argument="sensor",
                     place=f"recording {number}",
                     remedy=(
@@ -207,12 +204,18 @@ def _ordered(
     return tuple(keys)
 
 
+def _coefficients(terms: tuple[str, ...]) -> dict[str, str]:
+    """Return the names of the terms' coefficients, by name and by the term's key."""
+    names = {key: _core.term(key).name for key in terms}
+    return names | {name: name for name in names.values()}
+
+
 def _check_per_recording(names: tuple[str, ...], terms: tuple[str, ...]) -> None:
-    known = [_core.term(key).name for key in terms]
+    known = _coefficients(terms)
     for name in names:
-        if name not in known and name not in terms:
+        if name not in known:
             raise InputError(
-                f"{name} is not among the terms; known are {', '.join(known)}",
+                f"{name} is not among the terms; known are {', '.join(dict.fromkeys(known.values()))}",
                 argument="per_recording",
                 value=list(names),
             )

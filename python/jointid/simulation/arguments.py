@@ -1,6 +1,5 @@
 """Checks of a simulation's arguments; single values are repeated to one list length."""
 
-import math
 from collections.abc import Iterable
 from typing import Any, get_args
 
@@ -8,6 +7,7 @@ import numpy as np
 
 from jointid import _core
 from jointid.base.errors import InputError
+from jointid.joint.checks import finite_number
 from jointid.joint.joint import Joint
 
 Controller = (
@@ -60,11 +60,7 @@ def side_by_side(
 
 def finite(what: str, value: Any) -> float:
     """Return an argument as a float, or raise an error."""
-    if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
-        raise InputError("a number is expected", argument=what, value=value)
-    if not math.isfinite(value):
-        raise InputError("a finite number is expected", argument=what, value=float(value))
-    return float(value)
+    return finite_number("", what, value)
 
 
 def positive(what: str, value: Any) -> float:

@@ -54,7 +54,7 @@ class Cell:
         """Return arguments of `prepare`: the study's, overridden by this cell's."""
         chosen = dict(common)
         fixed: dict[str, Any] = _changes(common.get("parameters"))
-        model = Model.of(self.values.get("model", common.get("model")))
+        model = Model.of(self.values.get("model")).over(Model.of(common.get("model")))
         for name, value in self.values.items():
             part, _, inside = name.partition(".")
             if part == "parameters" and inside:

@@ -11,7 +11,7 @@ from jointid import _core
 from jointid.base.errors import InputError
 from jointid.joint.checks import finite_number, suggestion
 from jointid.simulation.scenario import Scenario
-from jointid.study import study_file
+from jointid.study.saved_header import FORMAT, SCHEMA
 from jointid.study.work import Work
 
 
@@ -45,8 +45,8 @@ def header_of_work(work: Work, trials: int, truth: Mapping[str, float] | None) -
         "version": _core.__version__,
     }
     header = {
-        "format": study_file.FORMAT,
-        "schema": study_file.SCHEMA,
+        "format": FORMAT,
+        "schema": SCHEMA,
         "version": _core.__version__,
         "swept": list(work.cells[0].labels),
         "cells": [cell.labels for cell in work.cells],

@@ -6,7 +6,34 @@ import math
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
+from jointid.base.schema import Number, Plain, Record, TableOf, Text
+
 REFUSED = "refused"
+
+
+@dataclass(frozen=True, slots=True)
+class _Measured:
+    """A number that may be infinite or undefined, in JSON as Python writes it: Infinity, NaN."""
+
+    def read(self, value: Any, place: str) -> float:
+        """Return a float."""
+        if isinstance(value, float) and (math.isnan(value) or value == math.inf):
+            return value
+        return float(Number().read(value, place))
+
+
+_COUNT = Number(low=0, high=2**63 - 1, whole=True)
+_ROW = Record(
+    fields={
+        **dict.fromkeys(("cell", "trial", "evaluations", "generations"), _COUNT),
+        "seed": Number(low=0, high=2**65, whole=True),
+        **dict.fromkeys(("status", "message"), Text(longest=1_000_000)),
+        "penalty": _Measured(),
+        "values": TableOf(Number()),
+        **dict.fromkeys(("stderr", "tracking"), TableOf(_Measured())),
+    },
+    other=Plain(),
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,19 +83,18 @@ class Row:
         return asdict(self)
 
     @classmethod
-    def of(cls, record: dict[str, Any]) -> Row:
+    def of(cls, record: object) -> Row:
         """Return the row of a record.
+
+        Parameters
+        ----------
+        record : object
+            Of JSON's types; further keys are ignored.
 
         Raises
         ------
-        KeyError, TypeError, ValueError, AttributeError
+        InputError
             The record is not that of a row.
         """
-        numbers = {"values", "stderr", "tracking"}
-        known: dict[str, Any] = {item.name: record[item.name] for item in fields(cls)}
-        for name in numbers:
-            known[name] = {key: float(value) for key, value in known[name].items()}
-        for name in ("cell", "trial", "seed", "evaluations", "generations"):
-            known[name] = int(known[name])
-        known["penalty"] = float(known["penalty"])
-        return cls(**known)
+        known = _ROW.read(record, "")
+        return cls(**{item.name: known[item.name] for item in fields(cls)})

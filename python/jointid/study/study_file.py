@@ -12,15 +12,13 @@ from typing import Any, Self
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.study.row import Row
-
-FORMAT = "jointid-study"
-SCHEMA = 1
+from jointid.base.schema import read_json
+from jointid.study.row import REFUSED, Row
+from jointid.study.saved_header import EXPECTED, read_header
 
 _SYNC = 1.0  # [s]; a loss of power costs at most this much work
 
 
-_EXPECTED = "a file that a sweep wrote is expected"
 _ANOTHER = Action("call", {"output": ...}, text="another file", function="sweep")
 
 
@@ -126,40 +124,42 @@ def read(path: Path) -> tuple[dict[str, Any], list[Row], int]:
     length = content.rfind(b"\n") + 1
     header: dict[str, Any] | None = None
     rows: dict[tuple[int, int], Row] = {}
+    first: dict[int, Row] = {}  # of each cell that has results
     for number, line in enumerate(content[:length].split(b"\n")[:-1], 1):
         try:
-            record = json.loads(line)
-            if isinstance(record, dict) and record.get("format") == FORMAT:
-                header = _checked(path, record)
+            record = read_json(_text(line))
+            if header is None or (isinstance(record, dict) and "format" in record):
+                header = read_header(record, header)
             else:
                 row = Row.of(record)
+                _check_row(row, header, first)
                 rows.setdefault(row.place, row)
-        except (ValueError, TypeError, KeyError, AttributeError) as error:
-            if isinstance(error, InputError):
-                raise
-            raise InputError(
-                f"this is not a line of a study; {_EXPECTED}", place=f"{path}, line {number}"
-            ) from error
-        if header is None:
-            raise InputError(
-                f"this is not the first line of a study; {_EXPECTED}", place=f"{path}, line 1"
-            )
+        except InputError as error:
+            raise error.at(f"{path}, line {number}") from None
     if header is None:
-        raise InputError(f"the file has no whole line; {_EXPECTED}", place=str(path))
+        raise InputError(f"the file has no whole line; {EXPECTED}", place=str(path))
     return header, [rows[place] for place in sorted(rows)], length
 
 
-def _checked(path: Path, header: dict[str, Any]) -> dict[str, Any]:
-    if header.get("schema") != SCHEMA:
+def _text(line: bytes) -> str:
+    try:
+        return line.decode()
+    except UnicodeDecodeError:
+        raise InputError(f"this is not text in UTF-8; {EXPECTED}") from None
+
+
+def _check_row(row: Row, header: dict[str, Any], first: dict[int, Row]) -> None:
+    """Refuse a row of no cell of the study, or with other columns than the first row of its cell."""
+    if row.cell >= len(header["cells"]):
         raise InputError(
-            f"this version of jointid reads {SCHEMA}",
-            argument="schema",
-            value=header.get("schema"),
-            place=str(path),
+            f"the study has {len(header['cells'])} cells", argument="cell", value=row.cell
         )
-    for name in ("fingerprint", "trials", "seed", "cells", "swept", "truth", "truths", "settings"):
-        header[name]  # a KeyError refuses the line
-    return header
+    if row.status == REFUSED:
+        return
+    other = first.setdefault(row.cell, row)
+    for name in ("values", "tracking"):
+        if getattr(row, name).keys() != getattr(other, name).keys():
+            raise InputError("its names differ from those of the cell's other rows", argument=name)
 
 
 def _difference(known: dict[str, Any], wanted: dict[str, Any]) -> str:

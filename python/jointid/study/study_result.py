@@ -15,6 +15,7 @@ from jointid.base.errors import InputError
 from jointid.joint.checks import suggestion
 from jointid.study import study_file, tables
 from jointid.study.row import Row
+from jointid.study.saved_header import FORMAT, SCHEMA
 from jointid.study.summary import Summary, summarise
 
 if TYPE_CHECKING:
@@ -177,8 +178,8 @@ def study_of(header: Mapping[str, Any], rows: list[Row], seconds: float = 0.0) -
 def header_of(study: Study, fingerprint: str = "") -> dict[str, Any]:
     """Return the first line of a study's file."""
     return {
-        "format": study_file.FORMAT,
-        "schema": study_file.SCHEMA,
+        "format": FORMAT,
+        "schema": SCHEMA,
         "version": study.settings.get("version", ""),
         "fingerprint": fingerprint or study.settings.get("fingerprint", ""),
         "swept": list(study.swept),

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from jointid.base.error_text import printable
 from jointid.base.errors import InputError
 from jointid.study.row import REFUSED, Row
 from jointid.study.tables import data_frame
@@ -102,7 +103,7 @@ class Summary:
                 labels = ", ".join(f"{name} {label}" for name, label in cell.labels.items())
                 lines.append(f"{labels}: {cell.refused} refused: {cell.reason}")
         lines += [_left_out(self)]
-        return "\n".join(line.rstrip() for line in lines if line)
+        return printable("\n".join(line.rstrip() for line in lines if line))
 
     def to_html(self) -> str:
         """Return the table that `print` shows, as HTML for a notebook."""

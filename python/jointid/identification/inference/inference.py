@@ -152,4 +152,5 @@ def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Join
     if inertia is not None and inertia.vary and base.reflected_inertia is not None:
         # The estimate replaces the joint's own value.
         base = base.replace(inertia=inertia.value, rotor_inertia=None)
-    return base.replace(parameters=table, model=choice.model)
+    model = choice.model.replace(per_recording=base.model.per_recording)
+    return base.replace(parameters=table, model=model)

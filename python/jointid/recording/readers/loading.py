@@ -1,6 +1,7 @@
 """Loading recordings from files."""
 
 import os
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,8 @@ from jointid.recording.readers.registry import endings, reader_of
 from jointid.recording.recording import Recording
 from jointid.recording.runs import one_run
 from jointid.recording.table import Table
+
+_SURROGATE = re.compile("[\ud800-\udfff]")
 
 
 def load(
@@ -174,6 +177,8 @@ def _table(file: Path) -> Table:
 
 def _name(file: Path, fields: Mapping[str, Any], name: str | None) -> Any:
     stem = file.name[: -len(ending_of(file, endings()))]
+    # Bytes of a file name that are not UTF-8 reach Python as surrogates, which no file can hold.
+    stem = _SURROGATE.sub("\ufffd", stem)
     return fields.get("name", stem) if name is None else name
 
 

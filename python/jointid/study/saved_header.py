@@ -1,0 +1,91 @@
+"""The first line of a study's file as it is read again: what it must hold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from jointid.base.errors import InputError
+from jointid.base.schema import LARGEST, ListOf, Number, Plain, Record, TableOf, Text
+
+FORMAT = "jointid-study"
+SCHEMA = 1
+EXPECTED = "a file that a sweep wrote is expected"
+
+
+@dataclass(frozen=True, slots=True)
+class _Value:
+    """A label or a setting, which is only shown and compared: of any length, and perhaps not finite."""
+
+    def read(self, value: Any, place: str) -> Any:
+        """Return the value."""
+        if isinstance(value, str):
+            return Text(longest=LARGEST).read(value, place)
+        if isinstance(value, list):
+            return ListOf(self).read(value, place)
+        if isinstance(value, dict):
+            return TableOf(self).read(value, place)
+        return value
+
+
+@dataclass(frozen=True, slots=True)
+class _Label:
+    """A label of a swept value."""
+
+    def read(self, value: Any, place: str) -> Any:
+        """Return the value."""
+        if isinstance(value, list | dict):
+            raise InputError("a text or a number is expected", value=value, place=place)
+        return _Value().read(value, place)
+
+
+_HEADER = Record(
+    fields={
+        "format": Text(),
+        "schema": Number(low=SCHEMA, high=SCHEMA, whole=True),
+        "fingerprint": Text(),
+        "trials": Number(low=1, high=1e9, whole=True),
+        "seed": Number(low=0, high=2**64 - 1, whole=True),
+        "swept": ListOf(Text()),
+        "cells": ListOf(TableOf(_Label()), shortest=1),
+        "truth": TableOf(Number()),
+        "truths": ListOf(TableOf(Number())),
+        "settings": TableOf(_Value()),
+    },
+    optional={"version": Text()},
+    other=Plain(),
+)
+
+
+def read_header(record: object, before: dict[str, Any] | None) -> dict[str, Any]:
+    """Return the checked header.
+
+    Parameters
+    ----------
+    record : object
+        Of JSON's types.
+    before : dict or None
+        An earlier header of the same file, which another number of trials follows.
+
+    Raises
+    ------
+    InputError
+        The record is not the header of a study, of this schema, or of the same study as before.
+    """
+    if not isinstance(record, dict) or record.get("format") != FORMAT:
+        raise InputError(f"this is not the first line of a study; {EXPECTED}")
+    if record.get("schema") != SCHEMA:
+        raise InputError(
+            f"this version of jointid reads {SCHEMA}",
+            argument="schema",
+            value=record.get("schema"),
+        )
+    header = _HEADER.read(record, "")
+    if any(cell.keys() != set(header["swept"]) for cell in header["cells"]):
+        raise InputError("a value of each swept setting is expected", argument="cells")
+    if len(header["truths"]) not in (0, len(header["cells"])):
+        raise InputError("one for each cell is expected", argument="truths")
+    for name in ("fingerprint", "swept", "cells"):
+        if before is not None and header[name] != before[name]:
+            raise InputError("it differs from that of the first line", argument=name)
+    return header
