@@ -1,10 +1,10 @@
 """Writing a file whole: a target that cannot be written is named, never the temporary file."""
 
+import os
 from pathlib import Path
 
 import pytest
 
-import jointid.base.files
 from jointid import InputError
 from jointid.base.files import write_whole
 
@@ -29,7 +29,7 @@ def test_an_error_names_the_target(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     def full(_descriptor: int) -> None:
         raise OSError(28, "No space left on device", ".e.json.x7")
 
-    monkeypatch.setattr(jointid.base.files.os, "fsync", full)
+    monkeypatch.setattr(os, "fsync", full)
     target = tmp_path / "e.json"
     target.write_bytes(b"old")
     with pytest.raises(OSError, match="No space left") as refused:

@@ -119,7 +119,7 @@ def test_a_checkpoint_is_refused_before_the_search(tmp_path: Path) -> None:
     foreign.write_text("not a checkpoint")
     error = refused(PLAIN, search=jid.Search(resume=foreign))
     assert (error.argument, error.place) == ("resume", str(foreign))
-    assert "bytes" in error.reason
+    assert "not a checkpoint file" in error.reason
 
 
 def test_an_error_in_the_callback_is_not_bad_input() -> None:

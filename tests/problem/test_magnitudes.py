@@ -18,10 +18,11 @@ def test_a_magnitude_without_a_square_is_refused(factor: float) -> None:
         with pytest.raises(jid.InputError, match=r"check unit and scale$") as refused:
             jid.identify(run, jid.thesis_joint())
     assert refused.value.argument == "torque"
+    assert run.torque is not None
     assert refused.value.value == abs(run.torque).max()
 
 
 def test_a_joint_without_a_name_is_the_joint() -> None:
     run = jid.load(PATH)
-    with pytest.raises(jid.InputError, match=r": the joint is prismatic;"):
+    with pytest.raises(jid.InputError, match=r": joint is prismatic;"):
         jid.identify(run, jid.Joint(kind="prismatic", inertia=1.0))

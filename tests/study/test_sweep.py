@@ -372,7 +372,7 @@ def test_what_cannot_be_used_here_is_refused_there_only(
         ({"grid": {"ga.population": ["many"]}}, "grid: ga.population is 'many': a whole number"),
         ({"grid": {"ga.population": [True]}}, "ga.population is True: a whole number"),
         ({"grid": {"ga.population": [10**30]}}, "ga.population is 10*: a whole number below"),
-        ({"grid": {"ga.coding": [3]}}, "ga.coding is 3: a text"),
+        ({"grid": {"ga.coding": [3]}}, "ga.coding is 3: text"),
         ({"grid": {"ga.polish": [1]}}, "ga.polish is 1: true or false"),
         ({"grid": {"ga.tolerance": ["small"]}}, "ga.tolerance is 'small': a number"),
         ({"grid": {"ga.tolerance": [float("nan")]}}, "ga.tolerance is nan: a finite number"),
