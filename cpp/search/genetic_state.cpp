@@ -150,7 +150,8 @@ std::string to_bytes(const GaState& s) {
 }
 
 GaState state_from_bytes(std::string_view bytes) {
-  if (!bytes.starts_with(kMagic)) refuse("this is not a checkpoint file, or one of another version");
+  if (!bytes.starts_with(kMagic))
+    refuse("this is not a checkpoint file, or one of another version");
   if (bytes.size() < kMagic.size() + sizeof(std::uint64_t)) refuse("it is cut off");
   const std::string_view body = bytes.substr(0, bytes.size() - sizeof(std::uint64_t));
   std::uint64_t sum = 0;
