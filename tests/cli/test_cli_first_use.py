@@ -19,7 +19,7 @@ from jointid.identification.search.search import METHODS
 from jointid.joint.checks import suggestion
 
 WELL = str(data_folder() / "well_excited.csv.gz")
-BENCH = data_folder().parent / "hardware" / "joint.toml"
+BENCH = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
 
 
 @pytest.fixture
