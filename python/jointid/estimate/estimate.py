@@ -23,6 +23,7 @@ from jointid.problem.window_table import Prediction, WindowTable
 
 if TYPE_CHECKING:
     from jointid.estimate.derived import DerivedValue
+    from jointid.estimate.follow_up import FollowUp
     from jointid.joint.joint import Joint
     from jointid.recording.recording import Recording
 
@@ -68,6 +69,8 @@ class Estimate:
         Everything needed to repeat the run: method, residual, terms, options, seed, versions, fingerprints.
     seconds : float
         Wall time.
+    follow_up : FollowUp or None
+        Answers questions that need the recordings; None in an estimate that was read from a file.
     """
 
     parameters: Mapping[str, ParameterEstimate]
@@ -86,6 +89,7 @@ class Estimate:
     joint: Joint
     settings: Mapping[str, Any]
     seconds: float = field(repr=False)
+    follow_up: FollowUp | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:
         values = ", ".join(f"{p.name}={p.value:.6g}" for p in self.parameters.values())

@@ -31,7 +31,8 @@ def write_estimate(estimate: Estimate) -> str:
     """The estimate as JSON text; an infinite number is the string "inf"."""
     document: dict[str, Any] = {"schema": SCHEMA, "kind": _KIND}
     for item in fields(Estimate):
-        document[item.name] = _plain(getattr(estimate, item.name))
+        if item.name != "follow_up":  # it holds the recordings, which have files of their own
+            document[item.name] = _plain(getattr(estimate, item.name))
     document["derived"] = _plain(estimate.derived)
     for entry, found in zip(document["findings"], estimate.findings, strict=True):
         entry["message"] = found.message  # for readers that are not ours

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from jointid.base.argument_checks import whole_number
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.identification.conclusion import infer
+from jointid.identification.follow_up import EstimateSource
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Outcome
 from jointid.identification.search.search import Search
@@ -59,7 +60,7 @@ class Prepared:
         started : float
             Reading of `time.perf_counter` at the start of the identification.
         """
-        return infer(
+        estimate = infer(
             problem=self.problem,
             penalty=self.penalty,
             domain=self.domain,
@@ -71,6 +72,10 @@ class Prepared:
             settings=self._settings(search),
             seconds=time.perf_counter() - started,
         )
+        source = EstimateSource(
+            problem=self.problem, domain=self.domain, windows=self.windows, search=search
+        )
+        return replace(estimate, follow_up=source)
 
     def _settings(self, search: Search) -> dict[str, Any]:
         problem, penalty, choice = self.problem, self.penalty, self.problem.choice

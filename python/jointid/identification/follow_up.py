@@ -1,0 +1,40 @@
+"""Answers to questions about an estimate that need its recordings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from jointid.identification.search.domain import SearchDomain
+    from jointid.identification.search.search import Search
+    from jointid.problem.problem import Problem
+    from jointid.problem.windows import Windows
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EstimateSource:
+    """What an estimate was made from; it shares the recordings' arrays and keeps no array per window.
+
+    Attributes
+    ----------
+    problem : Problem
+    domain : SearchDomain
+    windows : int, float, str, WindowOptions or None
+        As given in the call.
+    search : Search
+    """
+
+    problem: Problem
+    domain: SearchDomain
+    windows: Windows
+    search: Search
+
+    def __reduce__(self) -> tuple[Callable[[], None], tuple[()]]:
+        """Leave the recordings out of a pickled estimate."""
+        return _nothing, ()
+
+
+def _nothing() -> None:
+    return None
