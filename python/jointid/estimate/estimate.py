@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from jointid.base.argument_checks import require_kind, require_path
 from jointid.base.errors import InputError
 from jointid.estimate.findings import Finding
+from jointid.estimate.selection import Selection
 from jointid.estimate.statistics import (
     Convergence,
     FrictionCurve,
@@ -69,6 +70,8 @@ class Estimate:
         Everything needed to repeat the run: method, residual, terms, options, seed, versions, fingerprints.
     seconds : float
         Wall time.
+    selection : Selection or None
+        How the model was chosen; None if it was named.
     follow_up : FollowUp or None
         Answers questions that need the recordings; None in an estimate that was read from a file.
     """
@@ -89,6 +92,7 @@ class Estimate:
     joint: Joint
     settings: Mapping[str, Any]
     seconds: float = field(repr=False)
+    selection: Selection | None = field(default=None, repr=False)
     follow_up: FollowUp | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:
