@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.identification.selection.block_sums import BlockSums, Fitted
-from jointid.identification.selection.candidates import Candidate
 from jointid.identification.selection.columns import ShapedColumns
+from jointid.identification.selection.rivals import Candidate
 
 Array = NDArray[np.float64]
 
