@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from jointid.estimate.estimate import Estimate
+    from jointid.estimate.self_test import SelfTest
     from jointid.identification.search.domain import SearchDomain
     from jointid.identification.search.search import Search
     from jointid.problem.problem import Problem
@@ -30,6 +32,14 @@ class EstimateSource:
     domain: SearchDomain
     windows: Windows
     search: Search
+
+    def selftest(self, estimate: Estimate, trials: int, seed: int) -> SelfTest:
+        """Inject known parameters into the recorded motion, and identify them again."""
+        from jointid.identification.self_test.testing import self_test
+
+        return self_test(
+            self.problem, self.domain, self.windows, self.search, estimate, trials, seed
+        )
 
     def __reduce__(self) -> tuple[Callable[[], None], tuple[()]]:
         """Leave the recordings out of a pickled estimate."""
