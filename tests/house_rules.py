@@ -72,7 +72,8 @@ FOLDERS: dict[str, Folder] = {
     ),
     # It identifies again, and is imported when an estimate is asked for it.
     "identification/self_test": Folder(
-        may_use={*_SOUGHT, "identification/inference"}, packages={"numpy"}
+        may_use={*(_FOUND - {"joint"}), *("identification/search", "identification/inference")},
+        packages={"numpy"},
     ),
     "identification/inference": Folder(
         may_use={*_FOUND, "identification/search"} - {"base"}, packages={"numpy", "scipy"}

@@ -123,6 +123,11 @@ def _add_identify(commands: Any) -> None:
             "stribeck:asymmetric:ripple=2,4"
         ),
     )
+    identify.add_argument(
+        "--selftest",
+        action="store_true",
+        help="inject the result into the recorded motion, with noise as recorded, and identify it again",
+    )
     identify.add_argument("--population", type=whole, help="individuals of the genetic algorithm")
     identify.add_argument("--generations", type=whole, help="generations of the genetic algorithm")
     identify.add_argument(

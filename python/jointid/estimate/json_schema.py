@@ -102,6 +102,6 @@ ESTIMATE: dict[int, Kind] = {
     # What is derived is computed again.
     2: Record(
         {**_FIELDS, "findings": ListOf(_FINDING)},
-        {"derived": Plain(), "selection": OrNull(SELECTION)},
+        {"derived": Plain(), "selection": OrNull(SELECTION), "selftest": Plain()},
     ),
 }

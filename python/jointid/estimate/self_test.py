@@ -139,9 +139,7 @@ class SelfTest:
         return printable("\n".join([*lines, "", self.verdict]))
 
     def _repr_html_(self) -> str:
-        body: list[list[Html | str]] = []
-        for row in self.rows:
-            body.append([str(row.trial + 1), *_cells(row)])
+        body: list[list[Html | str]] = [[str(row.trial + 1), *_cells(row)] for row in self.rows]
         shown = table(body, head=["trial", *_HEAD])
         return str(
             element("div", element("b", "jointid self-test"), shown, element("p", self.verdict))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -20,6 +21,7 @@ from jointid.identification.conclusion import infer
 from jointid.identification.follow_up import EstimateSource
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Outcome
+from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Search
 from jointid.identification.selection.selecting import select_model
 from jointid.joint.joint import Joint
@@ -79,9 +81,21 @@ class Prepared:
             seconds=time.perf_counter() - started,
         )
         source = EstimateSource(
-            problem=self.problem, domain=self.domain, windows=self.windows, search=search
+            problem=self.problem,
+            domain=self.domain,
+            windows=self.windows,
+            search=search,
+            again=functools.partial(self._again, search),
         )
         return replace(estimate, follow_up=source, selection=self.selection)
+
+    def _again(self, search: Search, recordings: tuple[Recording, ...]) -> Estimate:
+        """Return the estimate from other recordings with the same terms, windows and domain."""
+        started = time.perf_counter()
+        problem = replace(self.problem, recordings=recordings)
+        other = replace(self, problem=problem, penalty=problem.penalty(self.windows))
+        quick = Search("separable", seed=search.seed, threads=search.threads)
+        return other.estimate(quick, run_search(quick, other.penalty, other.domain), started)
 
     def _settings(self, search: Search) -> dict[str, Any]:
         problem, penalty, choice = self.problem, self.penalty, self.problem.choice

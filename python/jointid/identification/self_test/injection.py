@@ -149,6 +149,15 @@ class Injection:
             made.append(self._recorded(run, torque, theta, number, rng))
         return tuple(made)
 
+    def sizes(self, theta: Array) -> Array:
+        """Return the change of the torque for one unit of each parameter, as a share; infinite for shapes."""
+        columns = self._fine.columns(theta[self._fine.coefficients :])
+        level = float(np.sqrt(np.sum(np.square(columns @ theta[: self._fine.coefficients]))))
+        sizes = np.full(len(theta), np.inf)
+        if level > 0.0:
+            sizes[: self._fine.coefficients] = np.sqrt(np.square(columns).sum(axis=0)) / level
+        return sizes
+
     def _torque(self, run: _Run, bounds: NDArray[np.int64], needed: Array) -> Array:
         """Return a torque at the samples with these integrals; where there are none, the recorded one."""
         time, recorded = run.true.time, run.true.torque

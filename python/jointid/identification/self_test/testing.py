@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import time
-from dataclasses import replace
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,13 +11,11 @@ from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.self_test import SelfTest, SelfTestRow
 from jointid.estimate.statistics import ParameterEstimate
-from jointid.identification.prepared import Prepared
 from jointid.identification.search.domain import SearchDomain
-from jointid.identification.search.run import run_search
-from jointid.identification.search.search import Search
 from jointid.identification.self_test.injection import Injection
 from jointid.problem.problem import Problem
 from jointid.problem.windows import Windows
+from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
@@ -32,7 +29,7 @@ def self_test(
     problem: Problem,
     domain: SearchDomain,
     windows: Windows,
-    search: Search,
+    again: Callable[[tuple[Recording, ...]], Estimate],
     estimate: Estimate,
     trials: int,
     seed: int,
@@ -41,40 +38,31 @@ def self_test(
 
     Parameters
     ----------
-    problem, domain, windows, search
+    problem, domain, windows
         What the estimate was made from.
+    again : callable
+        Returns the estimate from other recordings, with the same settings.
     """
     theta = np.array([estimate.parameters[name].value for name in domain.names])
     stream = np.random.SeedSequence(seed).spawn(trials + 1)
     injection = Injection(
         problem, windows, domain.names, theta, estimate.windows, np.random.default_rng(stream[-1])
     )
-    quick = Search("separable", seed=search.seed, threads=search.threads)
     rows: list[SelfTestRow] = []
     for trial in range(trials):
         rng = np.random.default_rng(stream[trial])
         truth = theta if trial == 0 else _drawn(estimate, domain, theta, rng)
-        started = time.perf_counter()
-        recordings = injection.recordings(truth, rng)
         try:
-            prepared = _prepared(replace(problem, recordings=recordings), windows, domain)
-            outcome = run_search(quick, prepared.penalty, prepared.domain)
-            found = prepared.estimate(quick, outcome, started)
+            found = again(injection.recordings(truth, rng))
         except InputError as error:
             return SelfTest(rows=tuple(rows), trials=trials, seed=seed, failed=error.reason)
-        sizes = _sizes(prepared, truth)
+        sizes = injection.sizes(truth)
         rows += [
             _row(trial, found.parameters[name], float(truth[index]), float(sizes[index]))
             for index, name in enumerate(domain.names)
             if not domain.fixed(name)
         ]
     return SelfTest(rows=tuple(rows), trials=trials, seed=seed)
-
-
-def _prepared(problem: Problem, windows: Windows, domain: SearchDomain) -> Prepared:
-    return Prepared(
-        problem=problem, penalty=problem.penalty(windows), domain=domain, windows=windows
-    )
 
 
 def _drawn(
@@ -99,17 +87,6 @@ def _drawn(
 def _near(value: float, drawn: float) -> float:
     ends = sorted((value / _FACTOR, value * _FACTOR))
     return min(max(drawn, ends[0]), ends[1]) if value != 0.0 else drawn
-
-
-def _sizes(prepared: Prepared, truth: Array) -> Array:
-    """Return the change of the torque for one unit of each coefficient, as a share; infinite for shapes."""
-    penalty = prepared.penalty
-    columns = penalty.columns(truth[penalty.coefficients :])
-    level = float(np.linalg.norm(penalty.target))
-    sizes = np.full(len(truth), np.inf)
-    if level > 0.0:
-        sizes[: penalty.coefficients] = np.linalg.norm(columns, axis=0) / level
-    return sizes
 
 
 def _row(trial: int, found: ParameterEstimate, truth: float, size: float) -> SelfTestRow:
