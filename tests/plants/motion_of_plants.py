@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from plants.columns import Array
@@ -44,44 +42,37 @@ class MovingPlants:
         self._has_load = bool(np.any(plant.load_friction))
         self._has_pose = bool(np.any(plant.pose_inertia))
         self._drifts = bool(np.any(plant.coulomb_drift) or np.any(plant.viscous_drift))
-        self._others = self._other_torques()
-        self.coulomb, self.viscous = plant.coulomb.copy(), plant.viscous.copy()
+        others = ("constant", "harmonic_torque", "bump", "coupling")
+        self._has = {name: bool(np.any(getattr(plant, name))) for name in others}
+        self.coulomb, self.viscous = np.asarray(plant.coulomb), np.asarray(plant.viscous)
 
     def _weight(self, position: Array) -> Array:
         return np.asarray(self.plant.gravity * np.cos(position + self.plant.gravity_angle))
 
-    def _other_torques(self) -> list[Callable[[float, Array], Array]]:
+    def _other_torques(self, time: float, position: Array) -> Array | float:
         """Torques that depend on time or angle, those that any run has."""
         plant = self.plant
-        found: list[Callable[[float, Array], Array]] = []
-        if np.any(plant.constant):
-            found.append(lambda t, q: plant.constant)
-        if np.any(plant.harmonic_torque):
-            found.append(
-                lambda t, q: (
-                    plant.harmonic_torque * np.sin(plant.harmonic_order * q + plant.harmonic_phase)
-                )
-            )
-        if np.any(plant.bump):
-            found.append(
-                lambda t, q: (
-                    plant.bump
-                    * np.sin(np.pi * np.clip((t - plant.bump_time) / plant.bump_width, 0.0, 1.0))
-                )
-            )
-        if np.any(plant.coupling):
-            found.append(
-                lambda t, q: plant.coupling * np.sin(plant.coupling_rate * t + plant.coupling_phase)
-            )
-        return found
+        total: Array | float = 0.0
+        if self._has["constant"]:
+            total = total + plant.constant
+        if self._has["harmonic_torque"]:
+            angle = plant.harmonic_order * position + plant.harmonic_phase
+            total = total + plant.harmonic_torque * np.sin(angle)
+        if self._has["bump"]:
+            part = np.clip((time - plant.bump_time) / plant.bump_width, 0.0, 1.0)
+            total = total + plant.bump * np.sin(np.pi * part)
+        if self._has["coupling"]:
+            beat = np.sin(plant.coupling_rate * time + plant.coupling_phase)
+            total = total + plant.coupling * beat
+        return total
 
     def advance(self, time: float, torque: Array, step: float, steps: int) -> None:
         """Move on with a held torque."""
         plant = self.plant
         if self._drifts:
             share = time / self.duration
-            self.coulomb = plant.coulomb * (1.0 + plant.coulomb_drift * share)
-            self.viscous = plant.viscous * (1.0 + plant.viscous_drift * share)
+            self.coulomb = np.asarray(plant.coulomb * (1.0 + plant.coulomb_drift * share))
+            self.viscous = np.asarray(plant.viscous * (1.0 + plant.viscous_drift * share))
         advance = self._elastic_step if self._elastic else self._rigid_step
         for k in range(steps):
             advance(time + (k + 0.5) * step, torque, step)
@@ -97,8 +88,11 @@ class MovingPlants:
             weight = weight - plant.pose_inertia * np.sin(2.0 * middle) * middle_velocity**2
         load = weight + link_mass * self._acceleration if self._has_load else None
         after = self._moved(
-            *(plant.inertia + link_mass, torque - weight, load, time, step),
-            *(middle, v, middle_velocity),
+            np.asarray(plant.inertia + link_mass),
+            torque - weight,
+            load,
+            (time, step),
+            (middle, v, middle_velocity),
         )
         self._acceleration = (after - v) / step
         self.position = q + 0.5 * step * (v + after)
@@ -114,8 +108,11 @@ class MovingPlants:
         gear = np.where(wound == 0.0, 0.0, plant.gear_stiffness * wound + plant.gear_damping * rate)
         middle_velocity = v + 0.5 * step * self._acceleration
         after = self._moved(
-            *(plant.inertia, torque - gear, gear if self._has_load else None, time, step),
-            *(middle, v, middle_velocity),
+            np.asarray(plant.inertia),
+            torque - gear,
+            gear if self._has_load else None,
+            (time, step),
+            (middle, v, middle_velocity),
         )
         self._acceleration = (after - v) / step
         self.position = q + 0.5 * step * (v + after)
@@ -135,16 +132,14 @@ class MovingPlants:
         mass: Array,
         torque: Array,
         load: Array | None,
-        time: float,
-        step: float,
-        q: Array,
-        v: Array,
-        middle: Array,
+        when: tuple[float, float],
+        state: tuple[Array, Array, Array],
     ) -> Array:
-        """The velocity after a step; middle quantities carry the order of the method."""
+        """The velocity after a step, from position, velocity and velocity in the middle of the step."""
         plant = self.plant
-        for other in self._others:
-            torque = torque - other(time, q)
+        time, step = when
+        q, v, middle = state
+        torque = np.asarray(torque - self._other_torques(time, q))
         if self._usual_exponent:
             decay = np.exp(-plant.stribeck * middle**2)
         else:

@@ -33,12 +33,13 @@ class Signals:
 
     @property
     def samples(self) -> int:
-        return self.position.shape[0]
+        return len(self.position)
 
     def write(self, i: int, chosen: NDArray[np.intp], *values: Array) -> None:
-        kept = (self.position, self.exact_velocity, self.velocity)
-        kept += (self.torque, self.sensed, self.reference)
-        for signal, value in zip(kept, values, strict=True):
+        of_drive = (self.position, self.exact_velocity, self.velocity)
+        for signal, value in zip(
+            (*of_drive, self.torque, self.sensed, self.reference), values, strict=True
+        ):
             signal[i, chosen] = value
 
 
@@ -59,8 +60,8 @@ def _recording(
     taken = ticks[:: int(log["every"])]
     period = s.tick * int(log["every"])
     if log["sample_jitter"]:
-        late = rng.normal(0.0, log["sample_jitter"], taken.size)
-        taken = taken + np.clip(late, -0.45 * period, 0.45 * period)
+        moved = rng.normal(0.0, log["sample_jitter"], taken.size)
+        taken = taken + np.clip(moved, -0.45 * period, 0.45 * period)
         taken[0] = 0.0
     exact = not log["sample_jitter"]
 
@@ -68,7 +69,7 @@ def _recording(
         if exact and abs(delay / s.tick - round(delay / s.tick)) < 1e-9:
             index = np.clip(np.rint((taken - delay) / s.tick).astype(int), 0, s.samples - 1)
             return np.asarray(signal[index])
-        return np.interp(taken - delay, ticks, signal)
+        return np.asarray(np.interp(taken - delay, ticks, signal))
 
     sensed = s.sensed[:, run]
     if log["sensor_cutoff"]:

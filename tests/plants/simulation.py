@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import jointid as jid
-from plants.columns import Array
+from plants.control import Controller, Sensors
 from plants.law import Law
 from plants.log import Log
 from plants.motion_of_plants import MovingPlants
@@ -18,7 +18,6 @@ from plants.plant import Plant
 from plants.recorder import Signals, recordings
 
 _BLOCK = 500  # ticks of a block of references and noise
-COUNTS = 2.0 * np.pi
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,8 +64,9 @@ def simulate(
     finer : int
         Integration steps a tick.
     """
-    plant, law, log = (x.spread(bench.runs) for x in (bench.plant, bench.law, bench.log))
-    signals = Signals.empty(bench.runs, round(duration / tick) + 1, tick)
+    runs = bench.runs
+    plant, law, log = bench.plant.spread(runs), bench.law.spread(runs), bench.log.spread(runs)
+    signals = Signals.empty(runs, round(duration / tick) + 1, tick)
     elastic = plant.gear_stiffness > 0.0
     for number, chosen in enumerate((np.flatnonzero(~elastic), np.flatnonzero(elastic))):
         if chosen.size:
@@ -89,55 +89,23 @@ def _run(
     rng: np.random.Generator,
 ) -> None:
     """The loop over ticks, of runs that are all rigid or all elastic; writes their columns of the signals."""
-    runs, tick, samples = chosen.size, signals.tick, signals.samples
-    start = [x[0, chosen] for x in motion.at(np.zeros(1))]
-    moving = MovingPlants(plant, start[0], start[1], duration)
-    period = law.every * tick
-    cutoff = np.where(log.velocity_cutoff > 0.0, log.velocity_cutoff, 1.0)
-    follow = np.where(log.velocity_cutoff > 0.0, 1.0 - np.exp(-COUNTS * cutoff * period), 1.0)
-    quantum = np.where(log.counts > 0.0, COUNTS / np.maximum(log.counts, 1.0), 1.0)
-    command, integral = np.zeros(runs), np.zeros(runs)
-    measured, measured_velocity = start[0].copy(), start[1].copy()
-    for block in range(0, samples, _BLOCK):
-        ticks = np.arange(block, min(block + _BLOCK, samples))
-        references = [x[:, chosen] for x in motion.at(ticks * tick)]
-        noises = rng.standard_normal((4, ticks.size, runs))
-        noises *= np.array(
-            [log.sensor_noise, log.velocity_noise, log.position_noise, log.torque_noise]
-        )[:, None, :]
+    tick = signals.tick
+    position, velocity, _ = (x[0, chosen] for x in motion.at(np.zeros(1)))
+    moving = MovingPlants(plant, position, velocity, duration)
+    sensors = Sensors(log, law.every * tick, position, velocity)
+    controller = Controller(law, tick)
+    levels = np.array([log.sensor_noise, log.velocity_noise, log.position_noise, log.torque_noise])
+    for block in range(0, signals.samples, _BLOCK):
+        ticks = range(block, min(block + _BLOCK, signals.samples))
+        references = [x[:, chosen] for x in motion.at(np.array(ticks) * tick)]
+        noises = rng.standard_normal((4, len(ticks), chosen.size)) * levels[:, None, :]
         for k, i in enumerate(ticks):
-            q, v, link = moving.position, moving.velocity, moving.link_torque
-            wanted, wanted_velocity, wanted_acceleration = (x[k] for x in references)
-            torque_sensed = link + noises[0, k]
-            torque_sensed = torque_sensed + log.ripple * np.sin(
-                log.ripple_order * q + log.ripple_phase
-            )
-            torque_sensed += (
-                log.nonlinearity * log.full_scale * (torque_sensed / log.full_scale) ** 3
-            )
-            seen = q + noises[2, k]
-            seen = np.where(log.counts > 0.0, quantum * np.floor(seen / quantum), seen)
-            now = i % law.every == 0
-            if now.any():
-                raw = np.where(log.differenced > 0.0, (seen - measured) / period, v + noises[1, k])
-                if i == 0:
-                    raw = v
-                held = measured_velocity + follow * (raw - measured_velocity)
-                measured_velocity = np.where(now, held, measured_velocity)
-                measured = np.where(now, seen, measured)
-                error, error_rate = seen - wanted, measured_velocity - wanted_velocity
-                integral = np.where(now, integral + period * error, integral)
-                slip = np.where(law.on_reference > 0.0, wanted_velocity, measured_velocity)
-                friction = law.coulomb + law.static * np.exp(-law.stribeck * slip**2)
-                pulled = wanted_acceleration - law.stiffness * (
-                    2.0 * error_rate + law.stiffness * error
-                )
-                torque = law.inertia * pulled - law.integral * integral
-                torque += friction * np.sign(slip) + law.viscous * slip
-                reading = (torque_sensed - log.offset) / log.gain
-                torque += law.feedback * reading + law.feedback_offset
-                torque += law.gravity * np.cos(wanted + law.gravity_angle)
-                command = np.where(now, np.clip(torque, -law.limit, law.limit), command)
-            signals.write(i, chosen, seen, v, measured_velocity, command, torque_sensed, wanted)
+            wanted = references[0][k], references[1][k], references[2][k]
+            noise = noises[0, k], noises[1, k], noises[2, k]
+            v, now = moving.velocity, np.asarray(i % law.every == 0)
+            sensors.measure(moving.position, v, moving.link_torque, noise, now)
+            command = controller.command(sensors, wanted, now)
+            seen = sensors.position, v, sensors.velocity, command, sensors.torque, wanted[0]
+            signals.write(i, chosen, *seen)
             signals.noise[i, chosen] = noises[3, k]
             moving.advance(i * tick, command * plant.torque_scale, tick / finer, finer)
