@@ -112,19 +112,16 @@ def _recording(
 
 
 def truth_of(plant: dict[str, Any], log: dict[str, Any]) -> dict[str, float]:
-    """True parameters by the package's names: what the recorded torque is made of."""
-    scale = plant["torque_scale"]
-    truth = {
-        name: plant[name] / (1.0 if name == "stribeck" else scale)
-        for name in ("inertia", "coulomb", "static", "stribeck", "viscous")
-    }
+    """The joint's parameters by the package's names; of what drifts, the mean over the run."""
+    truth = {name: plant[name] for name in ("inertia", "static", "stribeck")}
+    for name in ("coulomb", "viscous"):
+        truth[name] = plant[name] * (1.0 + 0.5 * plant[f"{name}_drift"])
     if log["sensor"]:
-        truth |= {"sensor_gain": log["gain"] / scale, "sensor_offset": log["offset"] / scale}
-        return truth
-    truth["inertia"] = (plant["inertia"] + plant["link_inertia"]) / scale
-    truth["gravity_cos"] = plant["gravity"] * np.cos(plant["gravity_angle"]) / scale
-    truth["gravity_sin"] = -plant["gravity"] * np.sin(plant["gravity_angle"]) / scale
-    truth["torque_offset"] = plant["constant"] / scale
+        return truth | {"sensor_gain": log["gain"], "sensor_offset": log["offset"]}
+    truth["inertia"] = plant["inertia"] + plant["link_inertia"]
+    truth["gravity_cos"] = plant["gravity"] * np.cos(plant["gravity_angle"])
+    truth["gravity_sin"] = -plant["gravity"] * np.sin(plant["gravity_angle"])
+    truth["torque_offset"] = plant["constant"]
     # The cosine of 90° is not quite 0.
     return {name: 0.0 if abs(value) < 1e-12 else float(value) for name, value in truth.items()}
 
