@@ -10,7 +10,8 @@ from typing import Any
 import jointid as jid
 from jointid.base.advice import Action
 
-_MERGED = ("columns", "units", "scale", "parameters")  # others replace what the call has
+# As `Action` says; others replace what the call has.
+_MERGED = ("columns", "units", "scale", "parameters")
 
 
 @dataclass(frozen=True, kw_only=True)
