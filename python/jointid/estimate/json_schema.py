@@ -5,6 +5,7 @@ from typing import get_args
 from jointid.base.advice import Kind as ActionKind
 from jointid.base.schema import Flag, Kind, ListOf, Number, OrNull, Plain, Record, TableOf, Text
 from jointid.estimate.findings import Severity
+from jointid.estimate.selection import SELECTION
 from jointid.estimate.settings import SETTINGS
 
 _VALUE = Number(low=-1e100, high=1e100)  # far beyond any joint, and its square is still a number
@@ -99,5 +100,8 @@ _FIELDS: dict[str, Kind] = {
 ESTIMATE: dict[int, Kind] = {
     1: Record({**_FIELDS, "warnings": ListOf(_WARNING)}),
     # What is derived is computed again.
-    2: Record({**_FIELDS, "findings": ListOf(_FINDING)}, {"derived": Plain()}),
+    2: Record(
+        {**_FIELDS, "findings": ListOf(_FINDING)},
+        {"derived": Plain(), "selection": OrNull(SELECTION), "selftest": Plain()},
+    ),
 }
