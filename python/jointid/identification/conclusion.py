@@ -17,6 +17,7 @@ from jointid.identification.inference.inference import (
     parameters_of,
     statistics_of,
 )
+from jointid.identification.inference.segments import motion_segments
 from jointid.identification.inference.systematic import systematic_errors
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.warnings.diagnosis import diagnose
@@ -68,7 +69,10 @@ def infer(
     free_jacobian = jacobian[:, free]
     del jacobian
     centre = _centre(penalty, columns, free)
-    by_chance = parameter_covariance(free_jacobian, residual, centre, threads=threads)
+    segments = motion_segments(problem, penalty)
+    by_chance = parameter_covariance(
+        free_jacobian, residual, centre, threads=threads, segments=segments
+    )
     systematic = systematic_errors(problem, penalty, best, free, free_jacobian, columns, shifts)
     del free_jacobian
     spread = widened(by_chance, systematic)
