@@ -17,7 +17,7 @@ from jointid.identification.inference.inference import (
     parameters_of,
     statistics_of,
 )
-from jointid.identification.inference.segments import motion_segments
+from jointid.identification.inference.segments import Motion, motion_segments
 from jointid.identification.inference.systematic import systematic_errors
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.warnings.diagnosis import diagnose
@@ -69,7 +69,7 @@ def infer(
     free_jacobian = jacobian[:, free]
     del jacobian
     centre = _centre(penalty, columns, free)
-    segments = motion_segments(problem, penalty)
+    segments = motion_segments(Motion.of(problem, penalty))
     by_chance = parameter_covariance(
         free_jacobian, residual, centre, threads=threads, segments=segments
     )

@@ -6,7 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from jointid.identification.inference.bootstrap import block_bootstrap
+
 if TYPE_CHECKING:
+    from jointid.estimate.bootstrap import Bootstrap
+    from jointid.estimate.estimate import Estimate
     from jointid.identification.search.domain import SearchDomain
     from jointid.identification.search.search import Search
     from jointid.problem.problem import Problem
@@ -30,6 +34,11 @@ class EstimateSource:
     domain: SearchDomain
     windows: Windows
     search: Search
+
+    def bootstrap(self, estimate: Estimate, n: int, seed: int) -> Bootstrap:
+        """Draw stretches of the recordings anew, and refit the parameters to each draw."""
+        penalty = self.problem.penalty(self.windows)
+        return block_bootstrap(self.problem, penalty, self.domain, estimate, n, seed)
 
     def __reduce__(self) -> tuple[Callable[[], None], tuple[()]]:
         """Leave the recordings out of a pickled estimate."""

@@ -43,26 +43,56 @@ class Segments:
     cuts: tuple[Cuts, Cuts]
 
 
-def motion_segments(problem: Problem, penalty: _core.Penalty) -> Segments:
-    """Return the segments of a penalty's windows: between reversals, merged or divided to a usual length."""
-    bounds, run = np.asarray(penalty.windows), np.asarray(penalty.recording_of)
-    start, stop, travel = np.empty((3, run.size))
-    for number, recording in enumerate(problem.recordings):
-        mine = slice(*np.searchsorted(run, (number, number + 1)))
-        first, last = bounds[mine, 0], bounds[mine, 1]
-        start[mine], stop[mine] = recording.time[first], recording.time[last]
-        travel[mine] = recording.position[last] - recording.position[first]
-    return segments_of(start, stop, travel, run)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Motion:
+    """How the joint moves in each window.
+
+    Attributes
+    ----------
+    start, stop : ndarray, shape (windows,)
+        [s], on the recording's clock.
+    travel : ndarray, shape (windows,)
+        [rad or m]
+    recording : ndarray of int
+    """
+
+    start: Array
+    stop: Array
+    travel: Array
+    recording: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, problem: Problem, penalty: _core.Penalty) -> Motion:
+        """Return the motion in a penalty's windows."""
+        bounds, run = np.asarray(penalty.windows), np.asarray(penalty.recording_of)
+        start, stop, travel = np.empty((3, run.size))
+        for number, recording in enumerate(problem.recordings):
+            mine = slice(*np.searchsorted(run, (number, number + 1)))
+            first, last = bounds[mine, 0], bounds[mine, 1]
+            start[mine], stop[mine] = recording.time[first], recording.time[last]
+            travel[mine] = recording.position[last] - recording.position[first]
+        return cls(start=start, stop=stop, travel=travel, recording=run)
+
+    @property
+    def moved(self) -> Array:
+        """Duration of each window [s]."""
+        return self.stop - self.start
+
+    @property
+    def segment_length(self) -> float:
+        """What a segment of this motion should last [s]."""
+        return usual_length(float(np.sum(self.moved)))
 
 
-def segments_of(start: Array, stop: Array, travel: Array, recording: NDArray[np.integer]) -> Segments:
-    """Return the segments of windows with these limits [s], ways and recordings."""
-    length = usual_length(float(np.sum(stop - start)))
+def motion_segments(motion: Motion) -> Segments:
+    """Return the segments of a motion: between reversals, merged or divided to a usual length."""
+    length = motion.segment_length
     cuts = [0]
-    for number in np.unique(recording):
-        first, last = np.searchsorted(recording, (number, number + 1))
+    for number in np.unique(motion.recording):
+        first, last = np.searchsorted(motion.recording, (number, number + 1))
         mine = slice(first, last)
-        cuts += [int(first) + each for each in _cut(start[mine], stop[mine], travel[mine], length)]
+        ends = _cut(motion.start[mine], motion.stop[mine], motion.travel[mine], length)
+        cuts += [int(first) + each for each in ends]
     whole = np.array(cuts)
     return Segments(length=length, cuts=(whole, _between(whole)))
 
