@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence
-from jointid.identification.inference.covariance import parameter_covariance, widened
+from jointid.identification.inference.covariance import parameter_covariance
 from jointid.identification.inference.inference import (
     freedom_of,
     joint_of,
@@ -70,17 +70,14 @@ def infer(
     del jacobian
     centre = _centre(penalty, columns, free)
     segments = motion_segments(Motion.of(problem, penalty))
-    by_chance = parameter_covariance(
+    spread = parameter_covariance(
         free_jacobian, residual, centre, threads=threads, segments=segments
     )
-    systematic = systematic_errors(problem, penalty, best, free, free_jacobian, columns, shifts)
+    parts = systematic_errors(problem, penalty, best, free, free_jacobian, columns, shifts)
     del free_jacobian
-    spread = widened(by_chance, systematic)
     at_best = regressor(penalty, columns, threads)
     del columns
-    parameters = parameters_of(
-        problem, penalty, domain, best, freedom, spread, len(residual), shifts
-    )
+    parameters = parameters_of(problem, penalty, domain, best, freedom, spread, parts, shifts)
     statistics = statistics_of(problem, penalty, table)
     named = sorted(zip(free, np.abs(spread.weakest), strict=True), key=lambda pair: -pair[1])
     weakest = tuple(domain.names[i] for i, share in named if share > _NAMED)
@@ -93,7 +90,7 @@ def infer(
             residual=residual,
             table=table,
             parameters=parameters,
-            chance=dict(zip((domain.names[i] for i in free), by_chance.stderr, strict=True)),
+            chance=dict(zip((domain.names[i] for i in free), spread.stderr, strict=True)),
             residuals=statistics,
             torque_level=torque_level,
             status=status,

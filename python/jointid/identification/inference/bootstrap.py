@@ -44,9 +44,7 @@ def block_bootstrap(
     freedom = max(1, cells.blocks - 1)
     return Bootstrap(
         parameters={
-            name: _parameter(
-                estimate.parameters[name], moved[:, i], (below[i], above[i]), freedom
-            )
+            name: _parameter(estimate.parameters[name], moved[:, i], (below[i], above[i]), freedom)
             for i, name in enumerate(names)
         },
         samples=here + moved,

@@ -136,9 +136,7 @@ def _clustered(jacobian: Array, residual: Array, whitening: Array, cuts: Cuts) -
     )
 
 
-def _sums(
-    jacobian: Array, residual: Array, whitening: Array, cuts: Cuts
-) -> tuple[Array, Array]:
+def _sums(jacobian: Array, residual: Array, whitening: Array, cuts: Cuts) -> tuple[Array, Array]:
     """Products of the determined directions over each segment, with each other and with the residual."""
     directions = len(whitening)
     shares = np.empty((len(cuts) - 1, directions, directions))

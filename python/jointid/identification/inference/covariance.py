@@ -1,6 +1,6 @@
 """Uncertainty of a least-squares estimate: covariance, correlations and the least determined direction."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -152,18 +152,3 @@ def parameter_covariance(
         condition=float(values[0] / values[-1]) if values[-1] > 0.0 else float("inf"),
         weakest=vectors[-1],
     )
-
-
-def widened(spread: Covariance, systematic: Array) -> Covariance:
-    """Return the covariance with systematic errors added to each parameter's own; correlations stay.
-
-    Parameters
-    ----------
-    systematic : ndarray, shape (p,)
-        Sizes of the systematic errors, as standard errors.
-    """
-    known = np.isfinite(spread.stderr) & (spread.stderr > 0.0)
-    chance = np.where(known, spread.stderr, 1.0)
-    stretch = np.where(known, np.hypot(chance, systematic) / chance, 1.0)
-    matrix = spread.matrix * np.outer(stretch, stretch)
-    return replace(spread, matrix=matrix, stderr=np.sqrt(np.diag(matrix)))
