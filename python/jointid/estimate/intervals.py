@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _NORMAL = 1.959964
+_TINY = 1e-100  # a file may hold any number
 
 
 def squared_half_widths(estimate: Estimate) -> Array:
@@ -24,6 +25,6 @@ def squared_half_widths(estimate: Estimate) -> Array:
     scale = np.full(len(estimate.free), _NORMAL)
     for i, name in enumerate(estimate.free):
         p = estimate.parameters[name]
-        if p.interval is not None and p.stderr is not None and 0.0 < p.stderr < np.inf:
+        if p.interval is not None and p.stderr is not None and _TINY < p.stderr < np.inf:
             scale[i] = 0.5 * (p.interval[1] - p.interval[0]) / p.stderr
     return np.asarray(estimate.covariance * np.outer(scale, scale))

@@ -82,6 +82,7 @@ _FINDING = Record(
 _FIELDS: dict[str, Kind] = {
     "schema": _COUNT,
     "kind": Text(),
+    "parameters": TableOf(_PARAMETER),
     "free": ListOf(Text()),
     "status": Text(),
     "message": Text(),
@@ -97,16 +98,10 @@ _FIELDS: dict[str, Kind] = {
     "settings": SETTINGS,
     "seconds": _NOT_NEGATIVE,
 }
-_OLD_PARAMETERS = TableOf(Record(_OLD_PARAMETER))
+_OLD_FIELDS: dict[str, Kind] = {**_FIELDS, "parameters": TableOf(Record(_OLD_PARAMETER))}
 ESTIMATE: dict[int, Kind] = {
-    1: Record({**_FIELDS, "parameters": _OLD_PARAMETERS, "warnings": ListOf(_WARNING)}),
+    1: Record({**_OLD_FIELDS, "warnings": ListOf(_WARNING)}),
     # What is derived is computed again.
-    2: Record(
-        {**_FIELDS, "parameters": _OLD_PARAMETERS, "findings": ListOf(_FINDING)},
-        {"derived": Plain()},
-    ),
-    3: Record(
-        {**_FIELDS, "parameters": TableOf(_PARAMETER), "findings": ListOf(_FINDING)},
-        {"derived": Plain()},
-    ),
+    2: Record({**_OLD_FIELDS, "findings": ListOf(_FINDING)}, {"derived": Plain()}),
+    3: Record({**_FIELDS, "findings": ListOf(_FINDING)}, {"derived": Plain()}),
 }

@@ -7,6 +7,7 @@ give a parameter (Satterthwaite), which is few where few segments determine it.
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -141,7 +142,7 @@ def _sums(jacobian: Array, residual: Array, whitening: Array, cuts: Cuts) -> tup
     directions = len(whitening)
     shares = np.empty((len(cuts) - 1, directions, directions))
     scores = np.empty((len(cuts) - 1, directions))
-    for i, (first, last) in enumerate(zip(cuts[:-1], cuts[1:], strict=True)):
+    for i, (first, last) in enumerate(itertools.pairwise(cuts)):
         rows = np.einsum("ip,rp->ir", jacobian[first:last], whitening)
         shares[i] = np.einsum("ir,iq->rq", rows, rows)
         scores[i] = np.einsum("ir,i->r", rows, residual[first:last])

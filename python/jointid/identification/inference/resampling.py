@@ -7,6 +7,7 @@ the estimate, inside the bounds of the search: exact for all coefficients, to fi
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -72,7 +73,7 @@ def cells_of(
         cuts = np.unique([0, *(i for i in inner if i < last - first), last - first]) + first
         # A recording shorter than a block is one with what follows.
         starts += range(len(limits), len(limits) + max(1, len(cuts) - CELLS))
-        limits += [(int(a), int(b)) for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
+        limits += [(int(a), int(b)) for a, b in itertools.pairwise(cuts)]
     count = len(limits)
     square = np.empty((count, jacobian.shape[1], jacobian.shape[1]))
     gradient = np.empty((count, jacobian.shape[1]))
