@@ -39,6 +39,7 @@ def infer(
     domain: SearchDomain,
     best: Array,
     shifts: tuple[Array | None, Array | None],
+    given: Array | None,
     convergence: Convergence | None,
     status: str,
     message: str,
@@ -51,6 +52,8 @@ def infer(
     ----------
     shifts : tuple of ndarray or None
         Change of each parameter when the windows are halved and doubled.
+    given : ndarray or None
+        Change of each parameter when the given facts are at the limits of their tolerances.
     """
     threads = problem.threads
     # First, before arrays of one value per window are allocated, and these are freed early: a recording
@@ -74,6 +77,8 @@ def infer(
         free_jacobian, residual, centre, threads=threads, segments=segments
     )
     parts = systematic_errors(problem, penalty, best, free, free_jacobian, columns, shifts)
+    if given is not None:
+        parts["given"] = given
     del free_jacobian
     at_best = regressor(penalty, columns, threads)
     del columns
