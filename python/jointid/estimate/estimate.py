@@ -23,6 +23,7 @@ from jointid.estimate.statistics import (
 from jointid.problem.window_table import Prediction, WindowTable
 
 if TYPE_CHECKING:
+    from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.derived import DerivedValue
     from jointid.estimate.follow_up import FollowUp
     from jointid.estimate.self_test import SelfTest
@@ -205,6 +206,40 @@ class Estimate:
         trials = whole_number("trials", trials, 1, 1000)
         seed = whole_number("seed", seed, 0, 2**64 - 1)
         return self._with_recordings("selftest").selftest(self, trials, seed)
+
+    def bootstrap(self, n: int = 1000, seed: int = 0) -> Bootstrap:
+        """Draw stretches of the recordings anew, and refit the parameters to each draw (block bootstrap).
+
+        A check of the standard errors that does not rest on their formula. The blocks are as long as a segment
+        of motion: an eighth of the motion, between 0.25 and 1 s, and longer on recordings over 10 min. A draw is
+        refitted inside the bounds of the search, with the torque balance linearised at the estimate.
+
+        Parameters
+        ----------
+        n : int
+            Draws, 20 to 1,000,000. Default 1000.
+        seed : int
+            The same seed gives the same bits, on any number of threads. Default 0.
+
+        Returns
+        -------
+        Bootstrap
+
+        Raises
+        ------
+        InputError
+            The estimate was read from a file, which does not hold the recordings; or another number.
+        KeyboardInterrupt
+            Ctrl-C; it is raised within 0.1 s.
+
+        Examples
+        --------
+        >>> estimate.bootstrap().parameters["coulomb"].ratio  # doctest: +SKIP
+        1.04
+        """
+        n = whole_number("n", n, 20, 1_000_000)
+        seed = whole_number("seed", seed, 0, 2**64 - 1)
+        return self._with_recordings("bootstrap").bootstrap(self, n, seed)
 
     def _with_recordings(self, question: str) -> FollowUp:
         """Return what answers questions that need the recordings."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
+    from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.estimate import Estimate
     from jointid.estimate.self_test import SelfTest
 
@@ -14,4 +15,8 @@ class FollowUp(Protocol):
 
     def selftest(self, estimate: Estimate, trials: int, seed: int) -> SelfTest:
         """Answer `Estimate.selftest`."""
+        ...
+
+    def bootstrap(self, estimate: Estimate, n: int, seed: int) -> Bootstrap:
+        """Answer `Estimate.bootstrap`."""
         ...

@@ -22,8 +22,9 @@ from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_document, joint_from_document
 from jointid.problem.window_table import WindowTable
 
-SCHEMA = 2
-"""Raised when a reader of the old form would misread the new one. 2: findings in place of warnings."""
+SCHEMA = 3
+"""Raised when a reader of the old form would misread the new one. 2: findings in place of warnings; 3: a standard
+error is of chance alone, its systematic parts are beside it."""
 
 _KIND = "jointid estimate"
 

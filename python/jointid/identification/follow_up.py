@@ -6,9 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from jointid.identification.inference.bootstrap import block_bootstrap
 from jointid.identification.self_test.testing import self_test
 
 if TYPE_CHECKING:
+    from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.estimate import Estimate
     from jointid.estimate.self_test import SelfTest
     from jointid.identification.search.domain import SearchDomain
@@ -44,6 +46,11 @@ class EstimateSource:
         return self_test(
             self.problem, self.domain, self.windows, self.again, estimate, trials, seed
         )
+
+    def bootstrap(self, estimate: Estimate, n: int, seed: int) -> Bootstrap:
+        """Draw stretches of the recordings anew, and refit the parameters to each draw."""
+        penalty = self.problem.penalty(self.windows)
+        return block_bootstrap(self.problem, penalty, self.domain, estimate, n, seed)
 
     def __reduce__(self) -> tuple[Callable[[], None], tuple[()]]:
         """Leave the recordings out of a pickled estimate."""

@@ -19,6 +19,7 @@ from jointid.estimate.estimate import Estimate
 from jointid.estimate.selection import Selection
 from jointid.identification.conclusion import infer
 from jointid.identification.follow_up import EstimateSource
+from jointid.identification.inference.given import of_given_facts
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Outcome
 from jointid.identification.search.run import run_search
@@ -74,6 +75,7 @@ class Prepared:
             domain=self.domain,
             best=outcome.best,
             shifts=self._window_shifts(outcome.best),
+            given=of_given_facts(self.problem, self.windows, self.domain, outcome.best),
             convergence=outcome.convergence,
             status=outcome.status,
             message=outcome.message,

@@ -48,7 +48,7 @@ def parameter_bounds(
     """
     if changes is not None:
         check_mapping("", "parameters", changes)
-    table = merge(_known_values(joint), joint.parameters if joint is not None else {})
+    table = merge(known_values(joint), joint.parameters if joint is not None else {})
     table = merge(
         table, {name: _freed(table, name, entry) for name, entry in (changes or {}).items()}
     )
@@ -62,7 +62,7 @@ def parameter_bounds(
     return table
 
 
-def _known_values(joint: Joint | None) -> dict[str, Parameter]:
+def known_values(joint: Joint | None) -> dict[str, Parameter]:
     """Return parameters that the joint's data fix: reflected inertia, and gravity when it is known."""
     values: dict[str, Parameter] = {}
     if joint is None:
