@@ -138,7 +138,7 @@ void bind_penalty(py::module_& m) {
           "Penalty, window residuals with the reading itself, and the derivatives of the penalty's "
           "residuals, in one pass: what the sandwich of an estimate's covariance is made of.")
       .def(
-          "observed_residuals",
+          "residuals",
           [](const Penalty& p, const Eigen::VectorXd& theta) {
             const py::gil_scoped_release nogil;
             Eigen::VectorXd residual;
@@ -146,8 +146,19 @@ void bind_penalty(py::module_& m) {
             p.observe(theta, residual);
             return residual;
           },
-          py::arg("theta"),
-          "Window residuals with the reading itself, also where the penalty has its projection.")
+          py::arg("theta"), "Residuals of the windows, with the reading itself.")
+      .def(
+          "columns",
+          [](const Penalty& p, const Eigen::VectorXd& shapes) {
+            const py::gil_scoped_release nogil;
+            Eigen::MatrixXd columns;
+            p.columns(shapes, columns);
+            if (p.first_stage()) columns.col(p.gain_index()) = p.reading();
+            return columns;
+          },
+          py::arg("shapes"),
+          "Window integrals of all coefficients, shape (windows, coefficients), of the reading "
+          "itself.")
       .def(
           "project_reading",
           [](Penalty& p, const std::vector<Eigen::Index>& free, int threads) {
@@ -163,8 +174,6 @@ void bind_penalty(py::module_& m) {
           "the torque before.")
       .def_property_readonly("first_stage", &Penalty::first_stage,
                              "How the motion explains the reading; None if it is not projected.")
-      .def_property_readonly("reading", &Penalty::reading,
-                             "Integrals of the sensor's reading itself.")
       .def(
           "torque_steps",
           [](const Penalty& p, const Recordings& recordings, bool mask_standstill) {

@@ -386,6 +386,12 @@ class Penalty(PenaltyFunction):
         per_recording: collections.abc.Sequence[str] = [],
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
     ) -> None: ...
+    def columns(
+        self, shapes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Window integrals of all coefficients, shape (windows, coefficients), of the reading itself.
+        """
     def linearised(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> tuple[
@@ -396,12 +402,6 @@ class Penalty(PenaltyFunction):
         """
         Penalty, window residuals with the reading itself, and the derivatives of the penalty's residuals, in one pass: what the sandwich of an estimate's covariance is made of.
         """
-    def observed_residuals(
-        self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
-    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Window residuals with the reading itself, also where the penalty has its projection.
-        """
     def project_reading(
         self,
         free: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
@@ -410,6 +410,12 @@ class Penalty(PenaltyFunction):
     ) -> None:
         """
         Replace the gain's column by the part of the reading that the motion explains; `free` are the parameters that vary. Only with the residual 'instruments', which is that of the torque before.
+        """
+    def residuals(
+        self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Residuals of the windows, with the reading itself.
         """
     def torque_steps(
         self, recordings: collections.abc.Sequence[Recording], mask_standstill: bool
@@ -428,11 +434,6 @@ class Penalty(PenaltyFunction):
     def noise_limited(self) -> bool: ...
     @property
     def noise_share(self) -> float: ...
-    @property
-    def reading(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-        """
-        Integrals of the sensor's reading itself.
-        """
     @property
     def recording_of(self) -> list[int]:
         """

@@ -13,7 +13,7 @@ namespace {
 
 // Decays at these shares of the largest speed span those of any shape well enough: their columns
 // must hold no more of the reading's noise than the balance's own do.
-constexpr std::array<double, 5> kShares{0.6, 0.3, 0.15, 0.07, 0.03};
+constexpr std::array<double, 8> kShares{0.6, 0.33, 0.18, 0.1, 0.055, 0.03, 0.017, 0.009};
 constexpr std::size_t kRows = 4096;  // of a block
 // Each recording's link has columns of its own while windows outnumber all columns by this.
 constexpr std::size_t kPerColumn = 50;
@@ -88,12 +88,13 @@ Eigen::MatrixXd Penalty::instrument_rows(const Instruments& instruments,
 Eigen::MatrixXd Penalty::instrument_triangle(const Instruments& instruments,
                                              base::Pool* pool) const {
   const auto parts = blocks();
+  const Eigen::VectorXd observed = reading();
   std::vector<Eigen::MatrixXd> triangles(parts.size());
   for_each(parts.size(), pool, [&](std::size_t i) {
     const auto rows = static_cast<Eigen::Index>(parts[i].end - parts[i].begin);
     Eigen::MatrixXd both(rows, instruments.size() + 1);
     both.leftCols(instruments.size()) = instrument_rows(instruments, parts[i]);
-    both.rightCols(1) = reading().segment(static_cast<Eigen::Index>(parts[i].begin), rows);
+    both.rightCols(1) = observed.segment(static_cast<Eigen::Index>(parts[i].begin), rows);
     triangles[i] = square_triangle(both);
   });
   return fold(triangles);

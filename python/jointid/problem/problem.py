@@ -110,13 +110,13 @@ class Problem:
         penalty : Penalty
         theta : ndarray, shape (p,)
         known : tuple of ndarray, optional
-            Residuals with the reading itself, and columns of the penalty, at `theta`. Default: computed here.
+            Residuals and columns of the penalty at `theta`. Default: computed here.
         """
         if penalty.cumulative:
             apart = _core.WindowOptions(duration=penalty.window_duration)
             penalty, known = self.penalty(apart), None
         if known is None:
-            known = penalty.observed_residuals(theta), penalty.columns(theta[penalty.coefficients :])
+            known = penalty.residuals(theta), penalty.columns(theta[penalty.coefficients :])
         residual, columns = known
         names = penalty.names[: penalty.coefficients]
         bounds = penalty.windows
@@ -134,7 +134,7 @@ class Problem:
             fitted = measured + residual
             torque_residual = residual * theta[names.index("sensor_gain")]
         elif self.choice.residual == "instruments":  # the gain is known: in terms of the reading, too
-            measured = penalty.reading
+            measured = columns[:, names.index("sensor_gain")].copy()
             fitted = measured + residual / theta[names.index("sensor_gain")]
             torque_residual = residual
         else:
