@@ -61,7 +61,8 @@ def select_model(
     entries: list[Entry] = []
     energy = 0.0
     if len(rivals) > 1:
-        widest = replace(problem, choice=rivals[-1].choice)
+        # The torque is what all predict, whatever the residual compares.
+        widest = replace(problem, choice=replace(rivals[-1].choice, residual="torque"))
         try:
             penalty = widest.penalty(None if windows == "cumulative" else windows)
         except (

@@ -66,7 +66,11 @@ class Injection:
             self._run(number, recording, table)
             for number, recording in enumerate(problem.recordings)
         ]
-        true = replace(problem, recordings=tuple(run.true for run in self._runs))
+        true = replace(
+            problem,
+            recordings=tuple(run.true for run in self._runs),
+            choice=replace(problem.choice, residual="torque"),
+        )
         period = min(recording.sample_period for recording in problem.recordings)
         self._fine = true.penalty(_core.WindowOptions(duration=period))
         shapes = self._fine.columns(theta[self._fine.coefficients :])
