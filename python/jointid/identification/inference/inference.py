@@ -150,7 +150,9 @@ def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Join
         table[name] = Parameter(name=name, value=found.value, min=low, max=high, vary=vary)
     inertia = parameters.get("inertia")
     if inertia is not None and inertia.vary and base.reflected_inertia is not None:
-        # The estimate replaces the joint's own value.
-        base = base.replace(inertia=inertia.value, rotor_inertia=None)
+        # The estimate replaces the joint's own value, which is the drive's alone.
+        drive = inertia.value - (0.0 if base.sensor else base.link_inertia)
+        if drive > 0.0:
+            base = base.replace(inertia=drive, rotor_inertia=None)
     model = choice.model.replace(per_recording=base.model.per_recording)
     return base.replace(parameters=table, model=model)
