@@ -49,7 +49,8 @@ def friction_curve(estimate: Estimate, velocity: Array, load: float = 0.0) -> Fr
         sensitivity[:, column] = (above - below) / (2.0 * step)
     # An infinite variance must not meet a sensitivity of exactly zero.
     finite = np.where(np.isfinite(estimate.covariance), estimate.covariance, 0.0)
-    unknown = ~np.isfinite(np.diag(estimate.covariance))
+    errors = [estimate.parameters[name].stderr for name in estimate.free]
+    unknown = np.array([error is None or not np.isfinite(error) for error in errors], dtype=bool)
     variance = np.einsum("ij,jk,ik->i", sensitivity, finite, sensitivity)
     variance[np.any(np.abs(sensitivity[:, unknown]) > 0.0, axis=1)] = np.inf
     freedom = max(1, estimate.residuals.windows - len(estimate.free))

@@ -18,10 +18,12 @@ from jointid.identification.inference.inference import (
     statistics_of,
 )
 from jointid.identification.inference.systematic import systematic_errors
+from jointid.identification.inference.undivided import divided, with_undivided
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.warnings.diagnosis import diagnose
 from jointid.identification.warnings.evidence import Evidence, regressor
 from jointid.identification.warnings.inspection import inspect
+from jointid.problem.constant_torque import undivided
 from jointid.problem.inner_products import columns_with, size
 from jointid.problem.problem import Problem
 
@@ -65,13 +67,17 @@ def infer(
     freedom = freedom_of(domain, best, columns_with(jacobian, residual), alone)
     free = list(freedom.indices)
     table = problem.table(penalty, best, (residual, columns))
-    free_jacobian = jacobian[:, free]
+    names = list(domain.names)
+    groups = undivided([names[index] for index in free])
+    kept = divided(free, names, groups)
+    free_jacobian = jacobian[:, kept]
     del jacobian
-    centre = _centre(penalty, columns, free)
+    centre = _centre(penalty, columns, kept)
     by_chance = parameter_covariance(free_jacobian, residual, centre, threads=threads)
-    systematic = systematic_errors(problem, penalty, best, free, free_jacobian, columns, shifts)
+    systematic = systematic_errors(problem, penalty, best, kept, free_jacobian, columns, shifts)
     del free_jacobian
-    spread = widened(by_chance, systematic)
+    spread = with_undivided(widened(by_chance, systematic), kept, free, names, groups)
+    by_chance = with_undivided(by_chance, kept, free, names, groups)
     at_best = regressor(penalty, columns, threads)
     del columns
     parameters = parameters_of(

@@ -22,6 +22,7 @@ from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
+from jointid.problem.constant_torque import balanced, undivided
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import listed
 from jointid.problem.terms import Request, choose_terms
@@ -60,12 +61,14 @@ class Prepared:
         started : float
             Reading of `time.perf_counter` at the start of the identification.
         """
+        domain = self.domain
+        best = balanced(domain.names, domain.lower, domain.upper, outcome.best)
         estimate = infer(
             problem=self.problem,
             penalty=self.penalty,
-            domain=self.domain,
-            best=outcome.best,
-            shifts=self._window_shifts(outcome.best),
+            domain=domain,
+            best=best,
+            shifts=self._window_shifts(best),
             convergence=outcome.convergence,
             status=outcome.status,
             message=outcome.message,
@@ -102,6 +105,11 @@ class Prepared:
         """Return the change of the parameters when windows are halved and doubled; None where that is impossible."""
         problem, domain = self.problem, self.domain
         options = problem.window_options(self.windows)
+        lower, upper = domain.lower.copy(), domain.upper.copy()
+        free = [name for name in domain.names if not domain.fixed(name)]
+        for each in undivided(free):  # what cannot be told must not wander
+            place = domain.names.index(each.offset)
+            lower[place] = upper[place] = best[place]
         shifts: list[Array | None] = []
         for factor in (0.5, 2.0):
             try:
@@ -112,7 +120,7 @@ class Prepared:
             if other.window_count == self.penalty.window_count:
                 shifts.append(None)
                 continue
-            found = other.refit(domain.lower, domain.upper, best, threads=problem.threads)
+            found = other.refit(lower, upper, best, threads=problem.threads)
             shifts.append(found - best)
         return shifts[0], shifts[1]
 

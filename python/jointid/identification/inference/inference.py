@@ -135,9 +135,7 @@ def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Join
             name=recording.name,
             kind=recording.kind,
             sensor=choice.sensor,
-            torque_offset=None
-            if choice.model.resolved.asymmetric
-            else "torque_offset" in choice.terms,
+            torque_offset="torque_offset" in choice.terms,
         )
     table = dict(base.parameters)
     for name, found in parameters.items():

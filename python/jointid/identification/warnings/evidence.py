@@ -13,6 +13,7 @@ from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.identification.inference.covariance import Triangle
 from jointid.identification.warnings.inspection import Inspected
 from jointid.joint.joint import Joint
+from jointid.problem.constant_torque import Undivided, undivided
 from jointid.problem.problem import Problem
 from jointid.problem.window_table import WindowTable
 from jointid.recording.recording import Recording
@@ -103,6 +104,13 @@ class Evidence:
     def model(self) -> str:
         """Name of the friction model."""
         return self.problem.choice.model.resolved.name
+
+    @property
+    def undivided(self) -> tuple[Undivided, ...]:
+        """Directions along which nothing tells an offset from the difference of Coulomb frictions."""
+        return undivided(
+            [p.name for p in self.parameters.values() if p.vary and p.at_bound is None]
+        )
 
     @property
     def sensor_parameters(self) -> tuple[str, ...]:
