@@ -85,6 +85,17 @@ void bind_penalty(py::module_& m) {
             return columns;
           },
           py::arg("shapes"), "Columns of all coefficients, shape (rows, coefficients).")
+      .def(
+          "linear_columns",
+          [](const PenaltyFunction& p, const Eigen::VectorXd& shapes) {
+            Eigen::MatrixXd columns;
+            p.linear_columns(shapes, columns);
+            return columns;
+          },
+          py::arg("shapes"),
+          "Columns of a linear balance near one that is not linear; else the same as columns.")
+      .def_property_readonly("is_linear", &PenaltyFunction::is_linear,
+                             "Whether the balance is linear in the coefficients for given shapes.")
       .def_property_readonly("target", &PenaltyFunction::target,
                              "What the columns add up to [N m s], one a row.")
       .def_property_readonly("names", &PenaltyFunction::names)

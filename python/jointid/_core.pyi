@@ -325,6 +325,12 @@ class PenaltyFunction:
         """
         Derivatives of the residuals, shape (rows, parameters).
         """
+    def linear_columns(
+        self, shapes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Columns of a linear balance near one that is not linear; else the same as columns.
+        """
     def residuals(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
@@ -333,6 +339,11 @@ class PenaltyFunction:
         """
     @property
     def coefficients(self) -> int: ...
+    @property
+    def is_linear(self) -> bool:
+        """
+        Whether the balance is linear in the coefficients for given shapes.
+        """
     @property
     def names(self) -> list[str]: ...
     @property

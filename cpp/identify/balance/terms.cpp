@@ -14,6 +14,7 @@ namespace {
 using model::Direction;
 using model::SpeedBasis;
 
+constexpr const char* kLoads = "motion that drives a load and is driven by it, such as up and down";
 constexpr const char* kSlow = "slow motion through speeds near zero, in both directions";
 
 // A row made here is neither simulated nor accepted by controllers until `simulated` says so.
@@ -99,8 +100,8 @@ std::vector<Term> base_rows() {
                 .non_negative = true,
                 .unit = "1",
                 .unit_prismatic = "1",
-                .meaning = "friction per transmitted torque",
-                .advice = "motion with different loads",
+                .meaning = "friction per torque of the drive",
+                .advice = kLoads,
                 .option = "load_friction"};
   };
   const auto gain = [&] {
@@ -200,6 +201,14 @@ const std::vector<Shape>& shape_table() {
        .advice = kSlow,
        .lower = 0.5,
        .upper = 4.0},
+      // At 1 a joint locks by itself in one quadrant.
+      {.name = "load_friction",
+       .unit = "1",
+       .unit_prismatic = "1",
+       .meaning = "friction per torque of the drive",
+       .advice = kLoads,
+       .lower = 0.0,
+       .upper = 0.95},
   };
   return table;
 }

@@ -5,12 +5,18 @@
 #include <stdexcept>
 
 #include "base/input_error.hpp"
+#include "identify/balance/load_friction.hpp"
 
 namespace jointid::identify {
 
 void Penalty::add_term(const std::string& key) {
   const Term term = find_term(key);
   const auto coefficients = static_cast<std::ptrdiff_t>(terms_.size());
+  if (needs_load(term)) {  // it acts on the sum of the other terms
+    load_ = static_cast<Eigen::Index>(names_.size() - terms_.size());
+    names_.push_back(term.name);
+    return;
+  }
   const auto begin = names_.begin();
   if (std::find(begin, begin + coefficients, term.name) != begin + coefficients) {
     throw std::invalid_argument("term '" + term.name + "' is listed twice");
@@ -31,6 +37,17 @@ void Penalty::add_term(const std::string& key) {
 }
 
 namespace {
+
+/// Usable intervals in which the joint moves backward on the whole.
+std::vector<std::uint8_t> backward_intervals(const RecordingView& r,
+                                             const std::vector<std::uint8_t>& usable) {
+  std::vector<std::uint8_t> result(usable.size());
+  for (std::size_t k = 0; k < usable.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    result[k] = usable[k] != 0 && r.velocity[i] + r.velocity[i + 1] < 0.0 ? 1 : 0;
+  }
+  return result;
+}
 
 std::vector<std::shared_ptr<const MaskedRecording>> masked(const std::vector<Recording>& recordings,
                                                            bool mask_standstill) {
@@ -82,10 +99,14 @@ Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms
   cut(recordings, options);
   integrate_all(recordings, gear_ratio, pool);
   own_columns(per_recording, recordings.size());
-  if (cumulative_) {
-    accumulate(target_);
-    for (Eigen::Index j = 0; j < columns_.cols(); ++j) accumulate(columns_.col(j));
-  }
+  accumulate_all();
+}
+
+void Penalty::accumulate_all() {
+  if (!cumulative_) return;
+  accumulate(target_);
+  if (load_ >= 0) return;  // there it is the sum's residuals that are accumulated
+  for (Eigen::Index j = 0; j < columns_.cols(); ++j) accumulate(columns_.col(j));
 }
 
 void Penalty::cut(const Masked& recordings, WindowOptions wanted) {
@@ -137,6 +158,15 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
   columns_.setZero(rows, static_cast<Eigen::Index>(terms_.size()));
   target_.resize(rows);
   usable_duration_.resize(rows);
+  std::vector<std::vector<std::uint8_t>> backward;
+  if (load_ >= 0) {
+    backward_.setZero(rows, columns_.cols());
+    forward_target_.setZero(rows);
+    backward_target_.setZero(rows);
+    for (const auto& masked : recordings) {
+      backward.push_back(backward_intervals(masked->recording(), masked->usable()));
+    }
+  }
   struct Block {  // windows of one recording
     std::size_t begin;
     std::size_t end;
@@ -167,15 +197,27 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
       integrate(terms_[j], gear_ratio, r, masked.usable(), windows,
                 columns_.col(static_cast<Eigen::Index>(j)).segment(first, count));
     }
+    if (load_ < 0) return;
+    const auto& usable = backward[static_cast<std::size_t>(recording_of_[block.begin])];
+    integrate_torque(r, usable, windows, backward_target_.segment(first, count));
+    forward_target_.segment(first, count) =
+        target_.segment(first, count) - backward_target_.segment(first, count);
+    for (std::size_t j = 0; j < terms_.size(); ++j) {
+      if (!terms_[j].shapes.empty()) continue;
+      integrate(terms_[j], gear_ratio, r, usable, windows,
+                backward_.col(static_cast<Eigen::Index>(j)).segment(first, count));
+    }
   };
   if (pool == nullptr) {
     for (const auto& block : blocks) linear(block);
-    collect_nodes(recordings, cancel);
+    collect_nodes(recordings, cancel, false);
+    if (load_ >= 0) collect_nodes(recordings, cancel, true);
   } else {  // the nodes are one task, the longest: it goes first
     pool->for_each(blocks.size() + 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         if (i == 0) {
-          collect_nodes(recordings, cancel);
+          collect_nodes(recordings, cancel, false);
+          if (load_ >= 0) collect_nodes(recordings, cancel, true);
         } else {
           linear(blocks[i - 1]);
         }
@@ -208,9 +250,10 @@ Eigen::VectorXd Penalty::torque_steps(const Masked& recordings) const {
   return steps;
 }
 
-void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel) {
+void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel, bool backward) {
   if (shaped_.empty()) return;
-  auto& all = nodes_[0];
+  auto& store = backward ? backward_nodes_ : nodes_;
+  auto& all = store[0];
   std::size_t samples = windows_.size();
   for (const auto& window : windows_)
     samples += static_cast<std::size_t>(window.end - window.begin);
@@ -224,16 +267,18 @@ void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel
     while (end < windows_.size() && end - w < kWindows && recording_of_[end] == recording_of_[w])
       ++end;
     const auto& masked = *recordings[static_cast<std::size_t>(recording_of_[w])];
-    append_nodes(masked.recording(), masked.usable(), std::span(windows_).subspan(w, end - w), all);
+    const auto& r = masked.recording();
+    append_nodes(r, backward ? backward_intervals(r, masked.usable()) : masked.usable(),
+                 std::span(windows_).subspan(w, end - w), all);
     w = end;
   }
   bool both = false;
   for (const auto& shaped : shaped_) {
-    auto& nodes = nodes_[static_cast<std::size_t>(shaped.term.direction)];
-    if (nodes.first.size() == 1) nodes = nodes_of(shaped.term.direction, nodes_[0]);
+    auto& nodes = store[static_cast<std::size_t>(shaped.term.direction)];
+    if (nodes.first.size() == 1) nodes = nodes_of(shaped.term.direction, store[0]);
     both = both || shaped.term.direction == model::Direction::both;
   }
-  if (!both) nodes_[0] = {};
+  if (!both) store[0] = {};
 }
 
 void Penalty::own_columns(const std::vector<std::string>& per_recording, std::size_t recordings) {
@@ -249,14 +294,18 @@ void Penalty::own_columns(const std::vector<std::string>& per_recording, std::si
     }
     const auto at = static_cast<Eigen::Index>(found - terms_.begin());
     const auto extra = static_cast<Eigen::Index>(recordings) - 1;
-    const Eigen::Index old = columns_.cols();
-    Eigen::MatrixXd wider = Eigen::MatrixXd::Zero(columns_.rows(), old + extra);
-    wider.leftCols(at) = columns_.leftCols(at);
-    wider.rightCols(old - at - 1) = columns_.rightCols(old - at - 1);
-    for (Eigen::Index row = 0; row < columns_.rows(); ++row) {
-      wider(row, at + recording_of_[static_cast<std::size_t>(row)]) = columns_(row, at);
-    }
-    columns_ = std::move(wider);
+    const auto widen = [&](Eigen::MatrixXd& columns) {
+      const Eigen::Index old = columns.cols();
+      Eigen::MatrixXd wider = Eigen::MatrixXd::Zero(columns.rows(), old + extra);
+      wider.leftCols(at) = columns.leftCols(at);
+      wider.rightCols(old - at - 1) = columns.rightCols(old - at - 1);
+      for (Eigen::Index row = 0; row < columns.rows(); ++row) {
+        wider(row, at + recording_of_[static_cast<std::size_t>(row)]) = columns(row, at);
+      }
+      columns = std::move(wider);
+    };
+    widen(columns_);
+    if (load_ >= 0) widen(backward_);
     const Term term = *found;
     terms_.insert(terms_.begin() + at, static_cast<std::size_t>(extra), term);
     names_.insert(names_.begin() + at, static_cast<std::size_t>(extra), name);
@@ -318,6 +367,92 @@ void Penalty::columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
   for (const auto& s : shaped_) {
     shaped_column(s, shapes.data(), kValue, cancel, result.col(s.coefficient));
   }
+  if (cumulative_ && load_ >= 0) {
+    for (Eigen::Index j = 0; j < result.cols(); ++j) {
+      if (!is_shaped(j)) accumulate(result.col(j));
+    }
+  }
+}
+
+void Penalty::plain_columns(const double* shapes, bool backward, const base::Cancel* cancel,
+                            Eigen::MatrixXd& result) const {
+  result = backward ? backward_ : columns_;
+  for (const auto& s : shaped_) {
+    const auto& nodes =
+        (backward ? backward_nodes_ : nodes_)[static_cast<std::size_t>(s.term.direction)];
+    std::array<double, 4> own{};
+    for (std::size_t i = 0; i < s.shapes.size(); ++i) own[i] = shapes[s.shapes[i]];
+    integrate_friction(s.term, nodes, own.data(), kValue, cancel, result.col(s.coefficient));
+  }
+}
+
+void Penalty::linear_columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
+                             const base::Cancel* cancel) const {
+  if (load_ < 0) {
+    columns(shapes, result, cancel);
+    return;
+  }
+  // The sign of the torque is taken from the measured one: where they differ both are near zero.
+  plain_columns(shapes.data(), false, cancel, result);
+  Eigen::MatrixXd back;
+  plain_columns(shapes.data(), true, cancel, back);
+  for (Eigen::Index row = 0; row < result.rows(); ++row) {
+    const double forward = loaded_torque(forward_target_[row], 1.0, shapes[load_]).by_torque;
+    const double backward = loaded_torque(backward_target_[row], -1.0, shapes[load_]).by_torque;
+    result.row(row) = forward * (result.row(row) - back.row(row)) + backward * back.row(row);
+  }
+  if (cumulative_) {
+    for (Eigen::Index j = 0; j < result.cols(); ++j) accumulate(result.col(j));
+  }
+}
+
+void Penalty::loaded_residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                               Eigen::MatrixXd* jacobian, const base::Cancel* cancel) const {
+  const Eigen::Index p = coefficients();
+  const double* shapes = theta.data() + p;
+  const double load = shapes[load_];
+  Eigen::MatrixXd all;
+  Eigen::MatrixXd back;
+  plain_columns(shapes, false, cancel, all);
+  plain_columns(shapes, true, cancel, back);
+  Eigen::VectorXd whole = all * theta.head(p);
+  const Eigen::VectorXd behind = back * theta.head(p);
+  Eigen::VectorXd forward_gain(whole.size());
+  Eigen::VectorXd backward_gain(whole.size());
+  Eigen::VectorXd by_load(whole.size());
+  for (Eigen::Index row = 0; row < whole.size(); ++row) {
+    const auto forward = loaded_torque(whole[row] - behind[row], 1.0, load);
+    const auto backward = loaded_torque(behind[row], -1.0, load);
+    whole[row] = forward.value + backward.value;
+    forward_gain[row] = forward.by_torque;
+    backward_gain[row] = backward.by_torque - forward.by_torque;
+    by_load[row] = forward.by_coefficient + backward.by_coefficient;
+  }
+  if (cumulative_) accumulate(whole);
+  residual = target_ - whole;
+  if (jacobian == nullptr) return;
+  const auto weighted = [&](const Eigen::VectorXd& every, const Eigen::VectorXd& part) {
+    return (-(forward_gain.cwiseProduct(every) + backward_gain.cwiseProduct(part))).eval();
+  };
+  jacobian->setZero(window_count(), parameters());
+  for (Eigen::Index j = 0; j < p; ++j) jacobian->col(j) = weighted(all.col(j), back.col(j));
+  jacobian->col(p + load_) = -by_load;
+  Eigen::VectorXd every(window_count());
+  Eigen::VectorXd part(window_count());
+  for (const auto& s : shaped_) {
+    std::array<double, 4> own{};
+    for (std::size_t i = 0; i < s.shapes.size(); ++i) own[i] = shapes[s.shapes[i]];
+    const auto direction = static_cast<std::size_t>(s.term.direction);
+    for (std::size_t i = 0; i < s.shapes.size(); ++i) {
+      const int which = static_cast<int>(i);
+      integrate_friction(s.term, nodes_[direction], own.data(), which, cancel, every);
+      integrate_friction(s.term, backward_nodes_[direction], own.data(), which, cancel, part);
+      jacobian->col(p + s.shapes[i]) += theta[s.coefficient] * weighted(every, part);
+    }
+  }
+  if (cumulative_) {
+    for (Eigen::Index j = 0; j < jacobian->cols(); ++j) accumulate(jacobian->col(j));
+  }
 }
 
 double Penalty::operator()(const Eigen::VectorXd& theta, const base::Cancel* cancel) const {
@@ -330,6 +465,11 @@ void Penalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
                         Eigen::MatrixXd* jacobian, const base::Cancel* cancel) const {
   check(theta);
   const Eigen::Index p = coefficients();
+  if (load_ >= 0) {
+    loaded_residuals(theta, residual, jacobian, cancel);
+    divide_by_gain(theta, residual, jacobian);
+    return;
+  }
   if (jacobian != nullptr) {
     jacobian->setZero(window_count(), parameters());
     jacobian->leftCols(p) = -columns_;
@@ -349,6 +489,11 @@ void Penalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
       jacobian->col(p + s.shapes[i]) -= coefficient * column;
     }
   }
+  divide_by_gain(theta, residual, jacobian);
+}
+
+void Penalty::divide_by_gain(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                             Eigen::MatrixXd* jacobian) const {
   if (residual_ == Residual::torque) return;
   const double scale = 1.0 / theta[gain_index_];
   residual *= scale;

@@ -19,6 +19,7 @@ namespace jointid::identify {
 /// that over sensor_gain. Parameters are ordered as `names()`: coefficients in the order given,
 /// then shapes. A coefficient of `per_recording` is one a recording, "name[0]", "name[1]", ...
 /// With cumulative windows r is the running sum of the windows' residuals, within each recording.
+/// Load friction acts on that sum of terms, F, in each direction of motion: see load_friction.hpp.
 class Penalty final : public PenaltyFunction {
  public:
   using Masked = std::vector<std::shared_ptr<const MaskedRecording>>;
@@ -64,6 +65,9 @@ class Penalty final : public PenaltyFunction {
                 base::Pool& pool) const override;
   void columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
                const base::Cancel* cancel = nullptr) const override;
+  [[nodiscard]] bool is_linear() const override { return load_ < 0; }
+  void linear_columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
+                      const base::Cancel* cancel = nullptr) const override;
   /// Integrals of the torque.
   [[nodiscard]] const Eigen::VectorXd& target() const override { return target_; }
   /// Columns without the shaped ones, which are zero here.
@@ -97,12 +101,20 @@ class Penalty final : public PenaltyFunction {
           double gear_ratio);  ///< terms only; no windows yet
   void cut(const Masked& recordings, WindowOptions options);
   void integrate_all(const Masked& recordings, double gear_ratio, base::Pool* pool);
-  void collect_nodes(const Masked& recordings, const base::Cancel* cancel);
+  void collect_nodes(const Masked& recordings, const base::Cancel* cancel, bool backward);
   void own_columns(const std::vector<std::string>& per_recording, std::size_t recordings);
   /// A shaped term's column, or its derivative by the term's shape number `which`.
   void shaped_column(const Shaped& shaped, const double* shapes, int which,
                      const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) const;
+  /// All columns, not accumulated; of the intervals with negative velocity, or of all.
+  void plain_columns(const double* shapes, bool backward, const base::Cancel* cancel,
+                     Eigen::MatrixXd& result) const;
   void accumulate(Eigen::Ref<Eigen::VectorXd> values) const;
+  void accumulate_all();
+  void divide_by_gain(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                      Eigen::MatrixXd* jacobian) const;
+  void loaded_residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                        Eigen::MatrixXd* jacobian, const base::Cancel* cancel) const;
 
   std::vector<std::string> names_;  ///< coefficients, then shapes
   std::vector<Term> terms_;
@@ -113,6 +125,11 @@ class Penalty final : public PenaltyFunction {
   Eigen::MatrixXd columns_;  ///< windows x coefficients; shaped ones stay zero here
   Eigen::VectorXd target_;
   std::array<FrictionNodes, 3> nodes_;  ///< by model::Direction, as far as needed
+  Eigen::Index load_ = -1;              ///< load friction, among the shapes; -1 without it
+  Eigen::MatrixXd backward_;  ///< of columns_, the part of intervals with negative velocity
+  Eigen::VectorXd forward_target_;  ///< of the torque's integrals, the parts by direction
+  Eigen::VectorXd backward_target_;
+  std::array<FrictionNodes, 3> backward_nodes_;
   std::vector<Window> windows_;
   std::vector<int> recording_of_;
   Eigen::VectorXd usable_duration_;

@@ -98,7 +98,7 @@ Eigen::VectorXd solve_ratio(const PenaltyFunction& penalty, const Reduced& r,
 Eigen::VectorXd best_coefficients(const PenaltyFunction& penalty, const Eigen::VectorXd& shapes,
                                   const search::Domain& domain, const base::Cancel* cancel) {
   Eigen::MatrixXd columns;
-  penalty.columns(shapes, columns, cancel);
+  penalty.linear_columns(shapes, columns, cancel);
   const Eigen::Index p = penalty.coefficients();
   const Eigen::Index gain = penalty.gain_index();
   Eigen::VectorXd start = domain.lower.head(p);

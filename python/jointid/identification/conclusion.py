@@ -78,6 +78,8 @@ def infer(
     del free_jacobian
     spread = with_undivided(widened(by_chance, systematic), kept, free, names, groups)
     by_chance = with_undivided(by_chance, kept, free, names, groups)
+    if not penalty.is_linear:
+        columns = penalty.linear_columns(best[penalty.coefficients :])
     at_best = regressor(penalty, columns, threads)
     del columns
     parameters = parameters_of(

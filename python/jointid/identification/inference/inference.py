@@ -87,6 +87,8 @@ def _terms_and_shapes(penalty: _core.Penalty) -> dict[str, _core.Term | _core.Sh
     for name, term in zip(penalty.names, penalty.terms, strict=False):
         known[name] = term
         known.update({shape: shapes[shape] for shape in term.shapes if shape not in known})
+    # What acts on the sum of all terms belongs to none of them.
+    known.update({name: shapes[name] for name in penalty.names if name not in known})
     return known
 
 

@@ -123,7 +123,7 @@ class Evidence:
         if best is None:
             return self.at_best
         count = self.penalty.coefficients
-        columns = self.penalty.columns(best[count:])
+        columns = self.penalty.linear_columns(best[count:])
         return regressor(self.penalty, columns, self.problem.threads)
 
 
