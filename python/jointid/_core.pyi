@@ -326,10 +326,10 @@ class PenaltyFunction:
         Derivatives of the residuals, shape (rows, parameters).
         """
     def linear_columns(
-        self, shapes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+        self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
         """
-        Columns of a linear balance near one that is not linear; else the same as columns.
+        Columns of the balance made linear there, shape (rows, coefficients).
         """
     def residuals(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
@@ -369,6 +369,7 @@ class Penalty(PenaltyFunction):
         gear_ratio: typing.SupportsFloat | typing.SupportsIndex = 1.0,
         per_recording: collections.abc.Sequence[str] = [],
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
+        link_share: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> None: ...
     def linearised(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
@@ -471,6 +472,7 @@ class PenaltyParts:
         gear_ratio: typing.SupportsFloat | typing.SupportsIndex = 1.0,
         per_recording: collections.abc.Sequence[str] = [],
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
+        link_share: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> None: ...
     def refit(
         self,

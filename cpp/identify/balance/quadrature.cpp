@@ -139,6 +139,7 @@ void integrate(const Term& term, double gear_ratio, const RecordingView& r,
       trapezoid(r, usable, windows, result, [&](Eigen::Index k) { return r.sensor[k]; });
       return;
     case Integral::load_friction:
+    case Integral::link_friction:
       throw std::logic_error("load friction has no integral of its own");
     case Integral::friction:
       break;

@@ -104,6 +104,13 @@ std::vector<Term> base_rows() {
                 .advice = kLoads,
                 .option = "load_friction"};
   };
+  const auto link_friction = [&] {
+    Term term = load_friction();
+    term.key = "load_friction_link";
+    term.integral = Integral::link_friction;
+    term.meaning = "friction per torque behind the gear";
+    return term;
+  };
   const auto gain = [&] {
     Term term =
         torque("sensor_gain", "sensor", Integral::sensor, "gain of the torque sensor", link);
@@ -125,6 +132,7 @@ std::vector<Term> base_rows() {
           Control::refused),
       simulated(viscous(), Control::compensated),
       simulated(load_friction(), Control::refused),
+      link_friction(),
       simulated(torque("torque_offset", "torque_offset", Integral::duration,
                        "constant offset of the torque",
                        "as much motion in one direction as in the other"),
@@ -205,7 +213,7 @@ const std::vector<Shape>& shape_table() {
       {.name = "load_friction",
        .unit = "1",
        .unit_prismatic = "1",
-       .meaning = "friction per torque of the drive",
+       .meaning = "friction per load",
        .advice = kLoads,
        .lower = 0.0,
        .upper = 0.95},
@@ -228,7 +236,7 @@ bool is_friction(const Term& term) {
 }
 
 bool needs_load(const Term& term) {
-  return term.integral == Integral::load_friction;
+  return term.integral == Integral::load_friction || term.integral == Integral::link_friction;
 }
 
 model::Decay decay_of(const Term& term) {

@@ -14,6 +14,7 @@ void Penalty::add_term(const std::string& key) {
   const auto coefficients = static_cast<std::ptrdiff_t>(terms_.size());
   if (needs_load(term)) {  // it acts on the sum of the other terms
     load_ = static_cast<Eigen::Index>(names_.size() - terms_.size());
+    link_load_ = term.integral == Integral::link_friction;
     names_.push_back(term.name);
     return;
   }
@@ -92,14 +93,34 @@ Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms
 
 Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms,
                  const WindowOptions& options, Residual residual, double gear_ratio,
-                 const std::vector<std::string>& per_recording, base::Pool* pool)
+                 const std::vector<std::string>& per_recording, base::Pool* pool, double link_share)
     : Penalty(recordings, terms, residual, gear_ratio) {
   options.validate();
+  link_share_ = link_share;
   cumulative_ = options.cumulative;
   cut(recordings, options);
   integrate_all(recordings, gear_ratio, pool);
   own_columns(per_recording, recordings.size());
+  weigh_link();
   accumulate_all();
+}
+
+void Penalty::weigh_link() {
+  link_weights_.setZero(coefficients());
+  for (Eigen::Index j = 0; j < coefficients(); ++j) {
+    const auto& term = terms_[static_cast<std::size_t>(j)];
+    if (term.option == "sensor" || (term.option == "gravity" && gain_index_ < 0)) {
+      link_weights_[j] = 1.0;
+    } else if (term.integral == Integral::velocity_change) {
+      link_weights_[j] = link_share_;
+    }
+  }
+  if (link_load_ && load_ >= 0 && !(link_weights_.cwiseAbs().maxCoeff() > 0.0)) {
+    throw base::InputError(
+        "there is no torque behind the gear that friction could depend on: neither a sensor nor "
+        "gravity",
+        "load_friction", "link");
+  }
 }
 
 void Penalty::accumulate_all() {
@@ -161,8 +182,6 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
   std::vector<std::vector<std::uint8_t>> backward;
   if (load_ >= 0) {
     backward_.setZero(rows, columns_.cols());
-    forward_target_.setZero(rows);
-    backward_target_.setZero(rows);
     for (const auto& masked : recordings) {
       backward.push_back(backward_intervals(masked->recording(), masked->usable()));
     }
@@ -199,9 +218,6 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
     }
     if (load_ < 0) return;
     const auto& usable = backward[static_cast<std::size_t>(recording_of_[block.begin])];
-    integrate_torque(r, usable, windows, backward_target_.segment(first, count));
-    forward_target_.segment(first, count) =
-        target_.segment(first, count) - backward_target_.segment(first, count);
     for (std::size_t j = 0; j < terms_.size(); ++j) {
       if (!terms_[j].shapes.empty()) continue;
       integrate(terms_[j], gear_ratio, r, usable, windows,
@@ -330,6 +346,7 @@ Penalty Penalty::fragment(const Masked& recordings, const std::vector<std::strin
   }
   result.choice_.duration = window_duration;
   result.integrate_all(recordings, gear_ratio, nullptr);
+  result.weigh_link();
   return result;
 }
 
@@ -386,23 +403,53 @@ void Penalty::plain_columns(const double* shapes, bool backward, const base::Can
   }
 }
 
-void Penalty::linear_columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
-                             const base::Cancel* cancel) const {
+Eigen::VectorXd Penalty::Loaded::slope(const Eigen::VectorXd& every, const Eigen::VectorXd& part,
+                                       double weight) const {
+  const auto forward = (gain.col(0) + weight * gain.col(1)).cwiseProduct(every - part);
+  return forward + (gain.col(2) + weight * gain.col(3)).cwiseProduct(part);
+}
+
+Penalty::Loaded Penalty::loaded(const double* shapes, const Eigen::VectorXd& coefficients,
+                                const base::Cancel* cancel) const {
+  Loaded result;
+  plain_columns(shapes, false, cancel, result.all);
+  plain_columns(shapes, true, cancel, result.back);
+  const double load = shapes[load_];
+  const Eigen::VectorXd whole = result.all * coefficients;
+  const Eigen::VectorXd behind = result.back * coefficients;
+  const Eigen::VectorXd linked = coefficients.cwiseProduct(link_weights_);
+  const Eigen::VectorXd link = result.all * linked;
+  const Eigen::VectorXd link_behind = result.back * linked;
+  const auto of = [&](double torque, double link_torque, double direction) {
+    return link_load_ ? loaded_by_link(torque, link_torque, direction, load)
+                      : loaded_by_drive(torque, direction, load);
+  };
+  result.torque.resize(whole.size());
+  result.by_load.resize(whole.size());
+  result.gain.resize(whole.size(), 4);
+  for (Eigen::Index row = 0; row < whole.size(); ++row) {
+    const auto forward = of(whole[row] - behind[row], link[row] - link_behind[row], 1.0);
+    const auto backward = of(behind[row], link_behind[row], -1.0);
+    result.torque[row] = forward.value + backward.value;
+    result.by_load[row] = forward.by_coefficient + backward.by_coefficient;
+    result.gain.row(row) << forward.by_torque, forward.by_link, backward.by_torque,
+        backward.by_link;
+  }
+  return result;
+}
+
+void Penalty::linear_columns(const Eigen::VectorXd& shapes, const Eigen::VectorXd& about,
+                             Eigen::MatrixXd& result, const base::Cancel* cancel) const {
   if (load_ < 0) {
     columns(shapes, result, cancel);
     return;
   }
-  // The sign of the torque is taken from the measured one: where they differ both are near zero.
-  plain_columns(shapes.data(), false, cancel, result);
-  Eigen::MatrixXd back;
-  plain_columns(shapes.data(), true, cancel, back);
-  for (Eigen::Index row = 0; row < result.rows(); ++row) {
-    const double forward = loaded_torque(forward_target_[row], 1.0, shapes[load_]).by_torque;
-    const double backward = loaded_torque(backward_target_[row], -1.0, shapes[load_]).by_torque;
-    result.row(row) = forward * (result.row(row) - back.row(row)) + backward * back.row(row);
-  }
-  if (cumulative_) {
-    for (Eigen::Index j = 0; j < result.cols(); ++j) accumulate(result.col(j));
+  // Homogeneous of degree 1 in the coefficients, so the slopes are the columns.
+  const Loaded balance = loaded(shapes.data(), about.head(coefficients()), cancel);
+  result.resize(window_count(), coefficients());
+  for (Eigen::Index j = 0; j < result.cols(); ++j) {
+    result.col(j) = balance.slope(balance.all.col(j), balance.back.col(j), link_weights_[j]);
+    if (cumulative_) accumulate(result.col(j));
   }
 }
 
@@ -410,33 +457,15 @@ void Penalty::loaded_residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& re
                                Eigen::MatrixXd* jacobian, const base::Cancel* cancel) const {
   const Eigen::Index p = coefficients();
   const double* shapes = theta.data() + p;
-  const double load = shapes[load_];
-  Eigen::MatrixXd all;
-  Eigen::MatrixXd back;
-  plain_columns(shapes, false, cancel, all);
-  plain_columns(shapes, true, cancel, back);
-  Eigen::VectorXd whole = all * theta.head(p);
-  const Eigen::VectorXd behind = back * theta.head(p);
-  Eigen::VectorXd forward_gain(whole.size());
-  Eigen::VectorXd backward_gain(whole.size());
-  Eigen::VectorXd by_load(whole.size());
-  for (Eigen::Index row = 0; row < whole.size(); ++row) {
-    const auto forward = loaded_torque(whole[row] - behind[row], 1.0, load);
-    const auto backward = loaded_torque(behind[row], -1.0, load);
-    whole[row] = forward.value + backward.value;
-    forward_gain[row] = forward.by_torque;
-    backward_gain[row] = backward.by_torque - forward.by_torque;
-    by_load[row] = forward.by_coefficient + backward.by_coefficient;
-  }
-  if (cumulative_) accumulate(whole);
-  residual = target_ - whole;
+  Loaded balance = loaded(shapes, theta.head(p), cancel);
+  if (cumulative_) accumulate(balance.torque);
+  residual = target_ - balance.torque;
   if (jacobian == nullptr) return;
-  const auto weighted = [&](const Eigen::VectorXd& every, const Eigen::VectorXd& part) {
-    return (-(forward_gain.cwiseProduct(every) + backward_gain.cwiseProduct(part))).eval();
-  };
   jacobian->setZero(window_count(), parameters());
-  for (Eigen::Index j = 0; j < p; ++j) jacobian->col(j) = weighted(all.col(j), back.col(j));
-  jacobian->col(p + load_) = -by_load;
+  for (Eigen::Index j = 0; j < p; ++j) {
+    jacobian->col(j) = -balance.slope(balance.all.col(j), balance.back.col(j), link_weights_[j]);
+  }
+  jacobian->col(p + load_) = -balance.by_load;
   Eigen::VectorXd every(window_count());
   Eigen::VectorXd part(window_count());
   for (const auto& s : shaped_) {
@@ -447,7 +476,7 @@ void Penalty::loaded_residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& re
       const int which = static_cast<int>(i);
       integrate_friction(s.term, nodes_[direction], own.data(), which, cancel, every);
       integrate_friction(s.term, backward_nodes_[direction], own.data(), which, cancel, part);
-      jacobian->col(p + s.shapes[i]) += theta[s.coefficient] * weighted(every, part);
+      jacobian->col(p + s.shapes[i]) -= theta[s.coefficient] * balance.slope(every, part, 0.0);
     }
   }
   if (cumulative_) {

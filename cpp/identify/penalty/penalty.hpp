@@ -27,10 +27,11 @@ class Penalty final : public PenaltyFunction {
           const WindowOptions& windows, Residual residual, bool mask_standstill,
           double gear_ratio = 1.0, const std::vector<std::string>& per_recording = {});
   /// The same from recordings whose mask is known; they are not kept. With a pool its workers
-  /// integrate.
+  /// integrate. `link_share`: of the inertia, that which is behind the gear.
   Penalty(const Masked& recordings, const std::vector<std::string>& terms,
           const WindowOptions& windows, Residual residual, double gear_ratio = 1.0,
-          const std::vector<std::string>& per_recording = {}, base::Pool* pool = nullptr);
+          const std::vector<std::string>& per_recording = {}, base::Pool* pool = nullptr,
+          double link_share = 0.0);
 
   /// A term whose column depends on shapes.
   struct Shaped {
@@ -66,8 +67,8 @@ class Penalty final : public PenaltyFunction {
   void columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
                const base::Cancel* cancel = nullptr) const override;
   [[nodiscard]] bool is_linear() const override { return load_ < 0; }
-  void linear_columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
-                      const base::Cancel* cancel = nullptr) const override;
+  void linear_columns(const Eigen::VectorXd& shapes, const Eigen::VectorXd& about,
+                      Eigen::MatrixXd& result, const base::Cancel* cancel = nullptr) const override;
   /// Integrals of the torque.
   [[nodiscard]] const Eigen::VectorXd& target() const override { return target_; }
   /// Columns without the shaped ones, which are zero here.
@@ -97,6 +98,7 @@ class Penalty final : public PenaltyFunction {
  private:
   void add_term(const std::string& key);
   friend class PenaltyParts;
+  void weigh_link();
   Penalty(const Masked& recordings, const std::vector<std::string>& terms, Residual residual,
           double gear_ratio);  ///< terms only; no windows yet
   void cut(const Masked& recordings, WindowOptions options);
@@ -113,6 +115,19 @@ class Penalty final : public PenaltyFunction {
   void accumulate_all();
   void divide_by_gain(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
                       Eigen::MatrixXd* jacobian) const;
+  /// Balance of the torque in both directions of motion, a row a window.
+  struct Loaded {
+    Eigen::MatrixXd all;   ///< plain columns
+    Eigen::MatrixXd back;  ///< the part of them with negative velocity
+    Eigen::VectorXd torque;
+    Eigen::VectorXd by_load;
+    Eigen::MatrixXd gain;  ///< of the columns' forward and backward part, and of the link's in them
+    /// A column's derivative from its parts; `weight` is its share in the link's torque.
+    [[nodiscard]] Eigen::VectorXd slope(const Eigen::VectorXd& every, const Eigen::VectorXd& part,
+                                        double weight) const;
+  };
+  [[nodiscard]] Loaded loaded(const double* shapes, const Eigen::VectorXd& coefficients,
+                              const base::Cancel* cancel) const;
   void loaded_residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
                         Eigen::MatrixXd* jacobian, const base::Cancel* cancel) const;
 
@@ -127,8 +142,9 @@ class Penalty final : public PenaltyFunction {
   std::array<FrictionNodes, 3> nodes_;  ///< by model::Direction, as far as needed
   Eigen::Index load_ = -1;              ///< load friction, among the shapes; -1 without it
   Eigen::MatrixXd backward_;  ///< of columns_, the part of intervals with negative velocity
-  Eigen::VectorXd forward_target_;  ///< of the torque's integrals, the parts by direction
-  Eigen::VectorXd backward_target_;
+  bool link_load_ = false;        ///< the load is the torque behind the gear, not the drive's
+  double link_share_ = 0.0;       ///< of the inertia, that which is behind the gear
+  Eigen::VectorXd link_weights_;  ///< of the coefficients, in the torque behind the gear
   std::array<FrictionNodes, 3> backward_nodes_;
   std::vector<Window> windows_;
   std::vector<int> recording_of_;

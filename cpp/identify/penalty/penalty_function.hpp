@@ -41,9 +41,9 @@ class PenaltyFunction {
   [[nodiscard]] virtual const Eigen::VectorXd& target() const = 0;
   /// Whether, for given shapes, the residuals of the torque are linear in the coefficients.
   [[nodiscard]] virtual bool is_linear() const { return true; }
-  /// Columns with which a linear balance comes near one that is not; else the same as `columns`.
-  virtual void linear_columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
-                              const base::Cancel* cancel = nullptr) const {
+  /// Columns of the balance made linear about these coefficients; else the same as `columns`.
+  virtual void linear_columns(const Eigen::VectorXd& shapes, const Eigen::VectorXd& /*about*/,
+                              Eigen::MatrixXd& result, const base::Cancel* cancel = nullptr) const {
     columns(shapes, result, cancel);
   }
 

@@ -79,7 +79,7 @@ def infer(
     spread = with_undivided(widened(by_chance, systematic), kept, free, names, groups)
     by_chance = with_undivided(by_chance, kept, free, names, groups)
     if not penalty.is_linear:
-        columns = penalty.linear_columns(best[penalty.coefficients :])
+        columns = penalty.linear_columns(best)
     at_best = regressor(penalty, columns, threads)
     del columns
     parameters = parameters_of(

@@ -122,8 +122,7 @@ class Evidence:
         """Window integrals of every term and of the target, at the estimated shape parameters or others [unit · s]."""
         if best is None:
             return self.at_best
-        count = self.penalty.coefficients
-        columns = self.penalty.linear_columns(best[count:])
+        columns = self.penalty.linear_columns(best)
         return regressor(self.penalty, columns, self.problem.threads)
 
 
