@@ -23,7 +23,7 @@ def recording(torque: np.ndarray, seed: int = 0) -> jid.Recording:
 @pytest.mark.parametrize("offset", [-50.0, 0.0, 30.0])
 def test_the_intervals_say_what_no_motion_tells(offset: float, search: str) -> None:
     run = recording(DRIVE + offset)
-    estimate = jid.identify(run, model=":asymmetric", search=search)
+    estimate = jid.identify(run, model="coulomb_viscous:asymmetric", search=search)
     value = {name: p.value for name, p in estimate.parameters.items()}
     assert value["viscous_positive"] == pytest.approx(4.0, rel=0.01)
     assert value["viscous_negative"] == pytest.approx(6.0, rel=0.01)
@@ -47,14 +47,14 @@ def test_the_intervals_say_what_no_motion_tells(offset: float, search: str) -> N
     assert set(told.parameters) == set(THREE)
     assert not any(set(found.parameters) & set(THREE) for found in estimate.warnings)
     assert np.isinf(estimate.friction([1.0]).upper[0])
-    known = jid.identify(run, model=":asymmetric", parameters={"torque_offset": offset})
+    known = jid.identify(run, model="coulomb_viscous:asymmetric", parameters={"torque_offset": offset})
     assert known.parameters["coulomb_positive"].value == pytest.approx(12.0, rel=0.01)
     assert known.parameters["coulomb_negative"].value == pytest.approx(8.0, rel=0.01)
 
 
 def test_gravity_tells() -> None:
     gravity = -50.0 * np.cos(POSITION) + 3.0 * np.sin(POSITION)
-    estimate = jid.identify(recording(DRIVE + gravity), model=":asymmetric:gravity=free")
+    estimate = jid.identify(recording(DRIVE + gravity), model="coulomb_viscous:asymmetric:gravity=free")
     assert "torque_offset" not in estimate.parameters
     assert "torque_offset" in estimate.report()
     for name, true in {
@@ -77,7 +77,7 @@ def test_a_sensor_with_a_known_zero_tells() -> None:
         torque=run.torque,
         sensor=(link - 15.0) / 2.4,
     )
-    joint = jid.Joint(inertia=0.8, sensor=True, model=":asymmetric")
+    joint = jid.Joint(inertia=0.8, sensor=True, model="coulomb_viscous:asymmetric")
     found = jid.identify(run, joint, parameters={"sensor_offset": 15.0})
     assert found.parameters["coulomb_positive"].value == pytest.approx(12.0, rel=0.01)
     assert found.parameters["coulomb_negative"].value == pytest.approx(8.0, rel=0.01)

@@ -9,12 +9,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from jointid.estimate.student import quantile
+from jointid.estimate.intervals import squared_half_widths
 from jointid.problem.constant_torque import undivided
 
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
+
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,7 +37,7 @@ class DerivedValue:
         Standard error by the delta method, correlations of the parameters included; None when a
         parameter was held at a bound, or is not determined, or all are fixed.
     interval : tuple of float or None
-        95 % confidence interval (Student's t).
+        95 % interval, with the correlations of the parameters and what theirs contain.
     formula : str
         How it follows, e.g. "coulomb + static".
     """
@@ -140,12 +144,9 @@ def _derived(
     slopes: Mapping[str, float],
     formula: str,
 ) -> DerivedValue:
-    stderr = _error(estimate, slopes)
-    interval = None
-    if stderr is not None:
-        freedom = max(1, estimate.residuals.windows - len(estimate.free))
-        half = quantile(0.975, freedom) * stderr
-        interval = (value - half, value + half)
+    stderr = _error(estimate, slopes, estimate.covariance)
+    half = _error(estimate, slopes, squared_half_widths(estimate))
+    interval = None if stderr is None or half is None else (value - half, value + half)
     return DerivedValue(
         name=name,
         meaning=meaning,
@@ -157,8 +158,8 @@ def _derived(
     )
 
 
-def _error(estimate: Estimate, slopes: Mapping[str, float]) -> float | None:
-    """Standard error of a quantity with these slopes by the parameters: √(slopes · covariance · slopes)."""
+def _error(estimate: Estimate, slopes: Mapping[str, float], matrix: Array) -> float | None:
+    """Error of a quantity with these slopes by the parameters: √(slopes · matrix · slopes)."""
     free = [name for name in slopes if name in estimate.free]
     held = [name for name in slopes if name not in free and estimate.parameters[name].vary]
     if not free or held:
@@ -167,7 +168,7 @@ def _error(estimate: Estimate, slopes: Mapping[str, float]) -> float | None:
     slope = np.array([slopes[name] for name in free])
     if not np.isfinite(slope).all():
         return None
-    covariance = estimate.covariance[np.ix_(places, places)]
+    covariance = matrix[np.ix_(places, places)]
     for each in undivided(estimate.free):
         if sum(slopes.get(name, 0.0) * sign for name, sign in each.change.items()) != 0.0:
             return None

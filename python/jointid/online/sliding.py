@@ -195,7 +195,7 @@ class Sliding:
         spread = parameter_covariance(jacobian[:, kept], residual, centre, threads=1)
         spread = with_undivided(spread, kept, free, names, groups)
         parameters = parameters_of(
-            plan.problem, plan.frame, domain, best, freedom, spread, residual.size, (None, None)
+            plan.problem, plan.frame, domain, best, freedom, spread, {}, (None, None)
         )
         self._updates += 1
         return OnlineEstimate(

@@ -99,3 +99,15 @@ def balanced(names: Sequence[str], lower: Array, upper: Array, values: Array) ->
         step = float(np.clip(step, ends[0].max(), ends[1].min()))
         result[places] = np.clip(values[places] + step * signs, lower[places], upper[places])
     return result
+
+
+def with_fixed_offset(
+    names: Sequence[str], lower: Array, upper: Array, values: Array
+) -> tuple[Array, Array]:
+    """Return bounds that hold an offset of each undivided group, so that a refit cannot wander."""
+    low, high = lower.copy(), upper.copy()
+    free = [name for name, a, b in zip(names, lower, upper, strict=True) if a < b]
+    for each in undivided(free):
+        place = names.index(each.offset)
+        low[place] = high[place] = values[place]
+    return low, high

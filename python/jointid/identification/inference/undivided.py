@@ -39,6 +39,8 @@ def with_undivided(
     correlation[np.ix_(places, places)] = spread.correlation
     stderr = np.zeros(count)
     stderr[places] = spread.stderr
+    freedom = np.full(count, spread.freedom.min(initial=np.inf))
+    freedom[places] = spread.freedom
     weakest = np.zeros(count)
     for each in groups:
         members = [free.index(names.index(name)) for name in each.change]
@@ -53,6 +55,7 @@ def with_undivided(
         spread,
         matrix=matrix,
         stderr=stderr,
+        freedom=freedom,
         correlation=correlation,
         condition=float("inf"),
         weakest=weakest / np.linalg.norm(weakest),
