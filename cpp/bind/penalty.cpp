@@ -86,6 +86,17 @@ void bind_penalty(py::module_& m) {
             return columns;
           },
           py::arg("shapes"), "Columns of all coefficients, shape (rows, coefficients).")
+      .def(
+          "linear_columns",
+          [](const PenaltyFunction& p, const Eigen::VectorXd& theta) {
+            Eigen::MatrixXd columns;
+            const Eigen::Index c = p.coefficients();
+            p.linear_columns(theta.tail(theta.size() - c), theta.head(c), columns);
+            return columns;
+          },
+          py::arg("theta"), "Columns of the balance made linear there, shape (rows, coefficients).")
+      .def_property_readonly("is_linear", &PenaltyFunction::is_linear,
+                             "Whether the balance is linear in the coefficients for given shapes.")
       .def_property_readonly("target", &PenaltyFunction::target,
                              "What the columns add up to [N m s], one a row.")
       .def_property_readonly("names", &PenaltyFunction::names)
@@ -109,17 +120,18 @@ void bind_penalty(py::module_& m) {
       .def(py::init([](const Recordings& recordings, const std::vector<std::string>& terms,
                        const WindowOptions& windows, Residual residual, bool mask_standstill,
                        double gear_ratio, const std::vector<std::string>& per_recording,
-                       int threads) {
+                       int threads, double link_share) {
              const py::gil_scoped_release nogil;
              return with_pool(samples_of(recordings), threads, [&](base::Pool* pool) {
                const auto masked = all_masked(recordings, mask_standstill, pool);
                return std::make_unique<Penalty>(masked, terms, windows, residual, gear_ratio,
-                                                per_recording, pool);
+                                                per_recording, pool, link_share);
              });
            }),
            py::kw_only(), py::arg("recordings"), py::arg("terms"), py::arg("windows"),
            py::arg("residual"), py::arg("mask_standstill") = true, py::arg("gear_ratio") = 1.0,
-           py::arg("per_recording") = std::vector<std::string>{}, py::arg("threads") = 0)
+           py::arg("per_recording") = std::vector<std::string>{}, py::arg("threads") = 0,
+           py::arg("link_share") = 0.0)
       .def(
           "linearised",
           [](const Penalty& p, const Eigen::VectorXd& theta) {
@@ -224,17 +236,18 @@ void bind_penalty(py::module_& m) {
       .def(py::init([](const Recordings& recordings, const std::vector<std::string>& terms,
                        const WindowOptions& windows, Residual residual, bool mask_standstill,
                        double gear_ratio, const std::vector<std::string>& per_recording,
-                       int threads) {
+                       int threads, double link_share) {
              const py::gil_scoped_release nogil;
              return with_pool(samples_of(recordings), threads, [&](base::Pool* pool) {
                return std::make_unique<PenaltyParts>(all_masked(recordings, mask_standstill, pool),
                                                      terms, windows, residual, gear_ratio,
-                                                     per_recording);
+                                                     per_recording, link_share);
              });
            }),
            py::kw_only(), py::arg("recordings"), py::arg("terms"), py::arg("windows"),
            py::arg("residual"), py::arg("mask_standstill") = true, py::arg("gear_ratio") = 1.0,
-           py::arg("per_recording") = std::vector<std::string>{}, py::arg("threads") = 0)
+           py::arg("per_recording") = std::vector<std::string>{}, py::arg("threads") = 0,
+           py::arg("link_share") = 0.0)
       .def_property_readonly("window_count", &PenaltyParts::window_count)
       .def(
           "refit",

@@ -327,6 +327,12 @@ class PenaltyFunction:
         """
         Derivatives of the residuals, shape (rows, parameters).
         """
+    def linear_columns(
+        self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Columns of the balance made linear there, shape (rows, coefficients).
+        """
     def residuals(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
@@ -335,6 +341,11 @@ class PenaltyFunction:
         """
     @property
     def coefficients(self) -> int: ...
+    @property
+    def is_linear(self) -> bool:
+        """
+        Whether the balance is linear in the coefficients for given shapes.
+        """
     @property
     def names(self) -> list[str]: ...
     @property
@@ -385,6 +396,7 @@ class Penalty(PenaltyFunction):
         gear_ratio: typing.SupportsFloat | typing.SupportsIndex = 1.0,
         per_recording: collections.abc.Sequence[str] = [],
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
+        link_share: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> None: ...
     def columns(
         self, shapes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
@@ -513,6 +525,7 @@ class PenaltyParts:
         gear_ratio: typing.SupportsFloat | typing.SupportsIndex = 1.0,
         per_recording: collections.abc.Sequence[str] = [],
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
+        link_share: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> None: ...
     def refit(
         self,

@@ -29,6 +29,7 @@ from jointid.identification.selection.selecting import select_model
 from jointid.joint.joint import Joint
 from jointid.joint.model import AUTO, Model
 from jointid.joint.parameters import Parameter
+from jointid.problem.constant_torque import balanced, with_fixed_offset
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import listed
 from jointid.problem.terms import Request, TermChoice, choose_terms
@@ -70,13 +71,15 @@ class Prepared:
         started : float
             Reading of `time.perf_counter` at the start of the identification.
         """
+        domain = self.domain
+        best = balanced(domain.names, domain.lower, domain.upper, outcome.best)
         estimate = infer(
             problem=self.problem,
             penalty=self.penalty,
-            domain=self.domain,
-            best=outcome.best,
-            shifts=self._window_shifts(outcome.best),
-            given=of_given_facts(self.problem, self.windows, self.domain, outcome.best),
+            domain=domain,
+            best=best,
+            shifts=self._window_shifts(best),
+            given=of_given_facts(self.problem, self.windows, domain, best),
             convergence=outcome.convergence,
             status=outcome.status,
             message=outcome.message,
@@ -126,6 +129,7 @@ class Prepared:
         """Return the change of the parameters when windows are halved and doubled; None where that is impossible."""
         problem, domain = self.problem, self.domain
         options = problem.window_options(self.windows)
+        lower, upper = with_fixed_offset(domain.names, domain.lower, domain.upper, best)
         shifts: list[Array | None] = []
         for factor in (0.5, 2.0):
             try:
@@ -136,7 +140,7 @@ class Prepared:
             if other.window_count == self.penalty.window_count:
                 shifts.append(None)
                 continue
-            found = other.refit(domain.lower, domain.upper, best, threads=problem.threads)
+            found = other.refit(lower, upper, best, threads=problem.threads)
             shifts.append(found - best)
         return shifts[0], shifts[1]
 

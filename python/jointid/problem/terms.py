@@ -8,7 +8,7 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.joint.checks import check_choice
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model
+from jointid.joint.model import Model, ResolvedModel
 from jointid.recording.recording import Recording
 
 _GRAVITY = ("gravity_cos", "gravity_sin")
@@ -109,7 +109,7 @@ def choose_terms(
             value=model.gravity,
             remedy="give a joint with a link, or set gravity to free",
         )
-    offset, dropped = _offset(base, model.asymmetric, sensor)
+    offset, dropped = _offset(base, model, sensor)
     friction = next(entry for entry in _core.models() if entry.name == model.name)
     wanted = {"inertia", *_friction(friction.terms, model.asymmetric)}
     wanted.update(_GRAVITY if model.gravity != "none" else ())
@@ -168,7 +168,7 @@ def _friction(terms: Sequence[str], asymmetric: bool) -> list[str]:
     return [f"{term}_{side}" for term in terms for side in ("positive", "negative")]
 
 
-def _offset(joint: Joint, asymmetric: bool, sensor: bool) -> tuple[bool, str]:
+def _offset(joint: Joint, model: ResolvedModel, sensor: bool) -> tuple[bool, str]:
     """Return whether the torque has a separate offset, and the message if another term replaces it."""
     if sensor:
         if joint.torque_offset:
@@ -179,18 +179,9 @@ def _offset(joint: Joint, asymmetric: bool, sensor: bool) -> tuple[bool, str]:
                 remedy=Action("call", {"torque_offset": False}, function="Joint"),
             )
         return False, ""
-    if asymmetric:
-        if joint.torque_offset:
-            raise InputError(
-                "torque_offset and asymmetric Coulomb friction are indistinguishable while the joint moves",
-                argument="torque_offset",
-                value=True,
-                remedy=(
-                    Action("call", {"torque_offset": False}, function="Joint"),
-                    "leave out asymmetric",
-                ),
-            )
-        return False, "torque_offset: asymmetric Coulomb friction contains it"
+    if joint.torque_offset is None and model.asymmetric and model.gravity != "none":
+        # No motion tells a constant from a difference of Coulomb frictions; gravity it does tell.
+        return False, "torque_offset: all torque that does not reverse is taken for gravity"
     return joint.torque_offset is not False, ""
 
 
