@@ -141,7 +141,7 @@ class Penalty final : public PenaltyFunction {
   Eigen::VectorXd target_;
   std::array<FrictionNodes, 3> nodes_;  ///< by model::Direction, as far as needed
   Eigen::Index load_ = -1;              ///< load friction, among the shapes; -1 without it
-  Eigen::MatrixXd backward_;  ///< of columns_, the part of intervals with negative velocity
+  Eigen::MatrixXd backward_;      ///< of columns_, the part of intervals with negative velocity
   bool link_load_ = false;        ///< the load is the torque behind the gear, not the drive's
   double link_share_ = 0.0;       ///< of the inertia, that which is behind the gear
   Eigen::VectorXd link_weights_;  ///< of the coefficients, in the torque behind the gear

@@ -244,7 +244,8 @@ SeparableResult minimise_separable(const PenaltyFunction& penalty, const search:
   } else {
     search_grid(reduced, scales, penalty, domain, pool, result);
   }
-  if (!penalty.is_linear() && scales.size() < 2) polish_best(penalty, domain, pool, reduced, result);
+  if (!penalty.is_linear() && scales.size() < 2)
+    polish_best(penalty, domain, pool, reduced, result);
   return result;
 }
 
