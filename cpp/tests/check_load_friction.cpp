@@ -132,6 +132,45 @@ CHECK_CASE("load friction: search, refit and parts find it, whatever the threads
   }
 }
 
+CHECK_CASE("load friction: without a sensor the share of the inertia behind the gear is found") {
+  auto r = moving(4001, 1e-3, false, 5);
+  Truth truth;
+  truth.static_excess = 0.0;
+  add_torque(r, truth, false);
+  for (Eigen::Index k = 0; k + 1 < r.samples(); ++k) {
+    const double v = r.velocity[k] + r.velocity[k + 1];
+    const double weight = 15.0 * (std::cos(r.position[k]) + std::cos(r.position[k + 1]));
+    const double speeding = (r.velocity[k + 1] - r.velocity[k]) / (r.time[k + 1] - r.time[k]);
+    const double link = 0.4 * truth.inertia * speeding + weight;
+    r.torque[k] =
+        identify::loaded_by_link(r.torque[k] + weight, link, v < 0.0 ? -1.0 : 1.0, 0.2).value;
+  }
+  identify::WindowOptions windows;
+  windows.duration = 0.01;
+  const Penalty penalty(
+      {r}, {"inertia", "coulomb", "viscous", "load_friction_link", "gravity_cos", "gravity_sin"},
+      windows, Residual::torque, true);
+  search::Domain box;
+  box.lower = Eigen::VectorXd::Zero(7);
+  box.upper = Eigen::VectorXd::Constant(7, 100.0);
+  box.lower.segment(3, 2).setConstant(-100.0);
+  box.upper.tail(2) << 0.95, 1.0;
+  base::Pool pool(1);
+  const auto best = identify::minimise_separable(penalty, box, pool).best;
+  CHECK_CLOSE(best[5], 0.2, 5e-3);
+  CHECK_CLOSE(best[6], 0.4, 2e-2);
+  CHECK_CLOSE(best[3], 30.0, 0.1);
+  Eigen::VectorXd at;
+  Eigen::VectorXd above;
+  Eigen::MatrixXd jacobian;
+  Eigen::VectorXd theta = best;
+  theta[6] = 0.3;
+  penalty.residuals(theta, at, &jacobian);
+  theta[6] += 1e-6;
+  penalty.residuals(theta, above, nullptr);
+  CHECK(((above - at) / 1e-6 - jacobian.col(6)).norm() < 1e-3 * jacobian.col(6).norm());
+}
+
 CHECK_CASE("load friction: a link's torque must be there") {
   identify::WindowOptions windows;
   windows.duration = 0.01;

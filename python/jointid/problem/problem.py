@@ -80,16 +80,7 @@ class Problem:
             gear_ratio=self.choice.gear_ratio,
             per_recording=list(self.choice.per_recording),
             threads=self.threads,
-            link_share=self._link_share,
         )
-
-    @property
-    def _link_share(self) -> float:
-        """Share of the inertia that is behind the gear, where no sensor parts the two and both are known."""
-        joint = self.joint
-        if joint is None or self.choice.sensor or joint.reflected_inertia is None:
-            return 0.0
-        return joint.link_inertia / (joint.reflected_inertia + joint.link_inertia)
 
     @property
     def peak_speed(self) -> float:
