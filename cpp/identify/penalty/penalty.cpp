@@ -81,12 +81,18 @@ Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms
     share_ = static_cast<Eigen::Index>(names_.size() - terms_.size());
     names_.emplace_back("link_share");
   }
-  if (residual == Residual::sensor && gain_index_ < 0) {
-    throw std::invalid_argument("residual 'sensor' needs the term sensor_gain");
+  if (residual != Residual::torque && gain_index_ < 0) {
+    throw std::invalid_argument(std::string("residual '") +
+                                (residual == Residual::sensor ? "sensor" : "instruments") +
+                                "' needs the term sensor_gain");
   }
+  runs_ = static_cast<Eigen::Index>(recordings.size());
   for (const auto& recording : recordings) {
     if (gain_index_ >= 0 && !recording->recording().has_sensor()) {
       throw std::invalid_argument("the term sensor_gain needs a recording with a sensor signal");
+    }
+    if (residual == Residual::instruments && recording->recording().samples() > 0) {
+      fastest_ = std::max(fastest_, recording->recording().velocity.cwiseAbs().maxCoeff());
     }
     standing_ += recording->standing();
     total_ += recording->recording().samples();
@@ -112,6 +118,7 @@ void Penalty::accumulate_all() {
   accumulate(target_);
   if (load_ >= 0) return;  // there it is the sum's residuals that are accumulated
   for (Eigen::Index j = 0; j < columns_.cols(); ++j) accumulate(columns_.col(j));
+  for (Eigen::Index j = 0; j < link_.cols(); ++j) accumulate(link_.col(j));
 }
 
 void Penalty::cut(const Masked& recordings, WindowOptions wanted) {
@@ -184,6 +191,13 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
     w = end;
   }
   const Term duration = find_term("torque_offset");
+  std::vector<Term> link;
+  if (residual_ == Residual::instruments) {
+    for (const auto* key : {"gravity_cos", "gravity_sin", "torque_offset", "inertia"}) {
+      link.push_back(find_term(key));
+    }
+  }
+  link_.resize(rows, static_cast<Eigen::Index>(link.size()));
   const base::Cancel* cancel = pool != nullptr ? &pool->cancel() : nullptr;
   const auto linear = [&](const Block& block) {
     if (cancel != nullptr) cancel->check();
@@ -199,6 +213,10 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
       if (!terms_[j].shapes.empty()) continue;
       integrate(terms_[j], gear_ratio, r, masked.usable(), windows,
                 columns_.col(static_cast<Eigen::Index>(j)).segment(first, count));
+    }
+    for (std::size_t j = 0; j < link.size(); ++j) {
+      integrate(link[j], gear_ratio, r, masked.usable(), windows,
+                link_.col(static_cast<Eigen::Index>(j)).segment(first, count));
     }
     if (load_ < 0) return;
     const auto& usable = backward[static_cast<std::size_t>(recording_of_[block.begin])];
@@ -224,30 +242,6 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
       }
     });
   }
-}
-
-Eigen::Matrix<std::int64_t, Eigen::Dynamic, 2> Penalty::window_bounds() const {
-  Eigen::Matrix<std::int64_t, Eigen::Dynamic, 2> bounds(window_count(), 2);
-  for (std::size_t w = 0; w < windows_.size(); ++w) {
-    const auto row = static_cast<Eigen::Index>(w);
-    bounds(row, 0) = windows_[w].begin;
-    bounds(row, 1) = windows_[w].end;
-  }
-  return bounds;
-}
-
-Eigen::VectorXd Penalty::torque_steps(const Masked& recordings) const {
-  Eigen::VectorXd steps(window_count());
-  for (std::size_t from = 0; from < windows_.size();) {
-    std::size_t to = from;
-    while (to < windows_.size() && recording_of_[to] == recording_of_[from]) ++to;
-    const auto& masked = *recordings.at(static_cast<std::size_t>(recording_of_[from]));
-    sum_torque_steps(
-        masked.recording(), masked.usable(), std::span(windows_).subspan(from, to - from),
-        steps.segment(static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(to - from)));
-    from = to;
-  }
-  return steps;
 }
 
 void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel, bool backward) {
@@ -376,7 +370,7 @@ void Penalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
 
 void Penalty::divide_by_gain(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
                              Eigen::MatrixXd* jacobian) const {
-  if (residual_ == Residual::torque) return;
+  if (residual_ != Residual::sensor) return;
   const double scale = 1.0 / theta[gain_index_];
   residual *= scale;
   if (jacobian != nullptr) {

@@ -52,6 +52,17 @@ Penalty PenaltyParts::part(std::size_t index) const {
   return result;
 }
 
+std::optional<FirstStage> PenaltyParts::first_stage(const std::vector<Eigen::Index>& free,
+                                                    base::Pool* pool) const {
+  if (frame_.residual() != Residual::instruments) return std::nullopt;
+  const Instruments instruments = part(0).instruments(free, windows_.size());
+  std::vector<Eigen::MatrixXd> triangles(count());
+  for_each(count(), pool, [&](std::size_t i) {
+    triangles[i] = part(i).instrument_triangle(instruments, nullptr);
+  });
+  return solve_first_stage(instruments, fold(triangles), window_count());
+}
+
 void for_each(std::size_t count, base::Pool* pool, const std::function<void(std::size_t)>& work) {
   if (pool == nullptr) {
     for (std::size_t i = 0; i < count; ++i) work(i);

@@ -82,7 +82,8 @@ def _posed(estimate: Estimate, recording: Recording) -> tuple[Problem, _core.Pen
     choice = TermChoice(
         terms=tuple(settings["terms"]),
         model=model_of(settings),
-        residual=settings["residual"],
+        # In terms of the reading, too: few windows do not show again how the motion explains it.
+        residual="torque" if settings["residual"] == "torque" else "sensor",
         sensor="sensor_gain" in settings["terms"],
         gear_ratio=estimate.joint.gear_ratio,
     )

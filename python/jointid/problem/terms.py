@@ -15,6 +15,10 @@ _GRAVITY = ("gravity_cos", "gravity_sin")
 _LOADS = {"link": "load_friction_link"}
 _SENSOR = ("sensor_gain", "sensor_offset")
 
+# What the residual compares: the torque with the part of the reading that the motion explains, the reading
+# with what the torque leaves for it (the thesis), the torque with the reading.
+RESIDUALS = ("instruments", "sensor", "torque")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
@@ -25,7 +29,7 @@ class Request:
     model : Model
         Its fields override those of the joint's model.
     residual : str or None
-        "sensor" or "torque"; None: the sensor if there is one.
+        "instruments", "sensor" or "torque"; None: instruments if there is a sensor, else the torque.
     """
 
     model: Model = field(default_factory=Model)
@@ -43,12 +47,14 @@ class TermChoice:
     model : Model
         The call's fields, then the joint's; its name is never None.
     residual : str
-        "sensor" or "torque".
+        "instruments", "sensor" or "torque".
     sensor : bool
         Whether the terms contain the sensor's gain and offset.
     gear_ratio : float
     dropped : str
         A term that another one makes redundant, and why; empty if none.
+    residual_reason : str
+        Why the residual is not the default; empty if it is, or if the call states it.
     """
 
     terms: tuple[str, ...]
@@ -57,6 +63,7 @@ class TermChoice:
     sensor: bool
     gear_ratio: float = 1.0
     dropped: str = ""
+    residual_reason: str = ""
 
     @property
     def per_recording(self) -> tuple[str, ...]:
@@ -80,11 +87,20 @@ def choose_terms(
     model = stated.resolved
     _check_kind(recordings, joint)
     sensor = _has_sensor(recordings, joint)
-    residual = request.residual or ("sensor" if sensor else "torque")
-    check_choice("", "residual", residual, ("sensor", "torque"))
-    if residual == "sensor" and not sensor:
+    # The instruments project the reading, which load friction needs apart for each direction of motion.
+    usual = "instruments" if sensor and not model.load_friction else "torque"
+    residual = request.residual or usual
+    check_choice("", "residual", residual, RESIDUALS)
+    if residual != "torque" and not sensor:
         raise InputError(
             "the recording has no torque sensor",
+            argument="residual",
+            value=residual,
+            remedy=Action("call", {"residual": "torque"}),
+        )
+    if residual == "instruments" and model.load_friction:
+        raise InputError(
+            "load friction depends on the reading itself, which instruments replace",
             argument="residual",
             value=residual,
             remedy=Action("call", {"residual": "torque"}),
