@@ -30,11 +30,10 @@ class Penalty final : public PenaltyFunction {
           const WindowOptions& windows, Residual residual, bool mask_standstill,
           double gear_ratio = 1.0, const std::vector<std::string>& per_recording = {});
   /// The same from recordings whose mask is known; they are not kept. With a pool its workers
-  /// integrate. `link_share`: of the inertia, that which is behind the gear.
+  /// integrate.
   Penalty(const Masked& recordings, const std::vector<std::string>& terms,
           const WindowOptions& windows, Residual residual, double gear_ratio = 1.0,
-          const std::vector<std::string>& per_recording = {}, base::Pool* pool = nullptr,
-          double link_share = 0.0);
+          const std::vector<std::string>& per_recording = {}, base::Pool* pool = nullptr);
 
   /// A term whose column depends on shapes.
   struct Shaped {
@@ -144,6 +143,8 @@ class Penalty final : public PenaltyFunction {
     Eigen::MatrixXd back;  ///< the part of them with negative velocity
     Eigen::VectorXd torque;
     Eigen::VectorXd by_load;
+    Eigen::VectorXd by_share;
+    Eigen::VectorXd weights;  ///< of the coefficients, in the torque behind the gear
     Eigen::MatrixXd gain;  ///< of the columns' forward and backward part, and of the link's in them
     /// A column's derivative from its parts; `weight` is its share in the link's torque.
     [[nodiscard]] Eigen::VectorXd slope(const Eigen::VectorXd& every, const Eigen::VectorXd& part,
@@ -169,9 +170,9 @@ class Penalty final : public PenaltyFunction {
   Eigen::Index runs_ = 0;
   std::array<FrictionNodes, 3> nodes_;  ///< by model::Direction, as far as needed
   Eigen::Index load_ = -1;              ///< load friction, among the shapes; -1 without it
-  Eigen::MatrixXd backward_;  ///< of columns_, the part of intervals with negative velocity
+  Eigen::MatrixXd backward_;      ///< of columns_, the part of intervals with negative velocity
   bool link_load_ = false;        ///< the load is the torque behind the gear, not the drive's
-  double link_share_ = 0.0;       ///< of the inertia, that which is behind the gear
+  Eigen::Index share_ = -1;       ///< the share of the inertia behind it, among the shapes
   Eigen::VectorXd link_weights_;  ///< of the coefficients, in the torque behind the gear
   std::array<FrictionNodes, 3> backward_nodes_;
   std::vector<Window> windows_;

@@ -10,14 +10,13 @@ constexpr std::int64_t kSamples = 8192;  // a part: its columns and nodes stay i
 
 PenaltyParts::PenaltyParts(const Penalty::Masked& recordings, const std::vector<std::string>& terms,
                            const WindowOptions& windows, Residual residual, double gear_ratio,
-                           const std::vector<std::string>& per_recording, double link_share)
+                           const std::vector<std::string>& per_recording)
     : recordings_(recordings),
       gear_ratio_(gear_ratio),
       per_recording_(per_recording),
       frame_(recordings, terms, residual, gear_ratio) {
   windows.validate();
   frame_.cumulative_ = windows.cumulative;
-  frame_.link_share_ = link_share;
   frame_.cut(recordings, windows);
   windows_.swap(frame_.windows_);
   recording_of_.swap(frame_.recording_of_);

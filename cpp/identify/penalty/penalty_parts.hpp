@@ -17,7 +17,7 @@ class PenaltyParts {
   /// As for `Penalty`. Cumulative windows stay one part.
   PenaltyParts(const Penalty::Masked& recordings, const std::vector<std::string>& terms,
                const WindowOptions& windows, Residual residual, double gear_ratio,
-               const std::vector<std::string>& per_recording, double link_share = 0.0);
+               const std::vector<std::string>& per_recording);
 
   [[nodiscard]] std::size_t count() const { return first_.size() - 1; }
   [[nodiscard]] Eigen::Index window_count() const {

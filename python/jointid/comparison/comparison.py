@@ -14,6 +14,7 @@ from jointid.comparison.held_out import Fold, folds_by_block, folds_by_recording
 from jointid.comparison.parsimony import counted, judge, refusal
 from jointid.comparison.result import ComparedModel, Comparison
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.settings import model_of
 from jointid.identification.identification import identify
 from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
@@ -170,7 +171,8 @@ def compare_models(
         else folds_by_recording(runs, parts)
     )
     rows = [
-        _row(spec, estimate, fitter.scores(spec, splits, cut)) for spec, estimate in whole.items()
+        _row(spec, estimate, fitter.scores(_as_found(spec, estimate), splits, cut))
+        for spec, estimate in whole.items()
     ]
     judged, winner, reason = judge(rows)
     kind = "block" if len(runs) == 1 else "recording" if parts == len(runs) else "recordings"
@@ -232,6 +234,13 @@ class _Fitter:
 def _text(spec: Model) -> str:
     """Return a compared model's text; a symmetric one's does not say so."""
     return str(spec if spec.asymmetric else spec.replace(asymmetric=None))
+
+
+def _as_found(spec: Model, estimate: Estimate) -> Model:
+    """Return a model with the load that all data chose, so that every fold has the same terms."""
+    if not spec.load_friction:
+        return spec
+    return spec.replace(load_friction=model_of(estimate.settings).load_friction)
 
 
 def _without_remedy(error: InputError) -> str:
