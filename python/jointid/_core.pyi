@@ -218,6 +218,7 @@ class Recording:
         sensor: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None,
         torque_hold: Hold,
         gap_after: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+        min_speed: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> None: ...
     @property
     def samples(self) -> int: ...

@@ -12,7 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from jointid.base.argument_checks import require_kind, require_path
 from jointid.base.errors import InputError
+from jointid.estimate.delays import Delay
 from jointid.estimate.findings import Finding
+from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import (
     Convergence,
     FrictionCurve,
@@ -69,6 +71,11 @@ class Estimate:
         Everything needed to repeat the run: method, residual, terms, options, seed, versions, fingerprints.
     seconds : float
         Wall time.
+    delays : mapping of str to Delay
+        The constant delay of each signal against the position, as far as the data show it; a certain one
+        is taken away before the identification.
+    slow_motion : SlowMotion or None
+        How the slowest windows disagree with the faster ones; None where that was not asked.
     follow_up : FollowUp or None
         Answers questions that need the recordings; None in an estimate that was read from a file.
     """
@@ -89,6 +96,8 @@ class Estimate:
     joint: Joint
     settings: Mapping[str, Any]
     seconds: float = field(repr=False)
+    delays: Mapping[str, Delay] = field(default_factory=dict)
+    slow_motion: SlowMotion | None = None
     follow_up: FollowUp | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:

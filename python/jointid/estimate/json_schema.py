@@ -77,6 +77,25 @@ _FINDING = Record(
         "message": _SENTENCES,
     }
 )
+_DELAY = Record(
+    {
+        "signal": Text(known=("torque", "sensor", "velocity")),
+        "value": _VALUE,
+        "stderr": _ANY,
+        "certain": Flag(),
+        "applied": _VALUE,
+    }
+)
+_SLOW_MOTION = Record(
+    {
+        "speed": _NOT_NEGATIVE,
+        "excess": _VALUE,
+        "stderr": _ANY,
+        "level": _VALUE,
+        "share": _NOT_NEGATIVE,
+        "applied": Flag(),
+    }
+)
 _FIELDS: dict[str, Kind] = {
     "schema": _COUNT,
     "kind": Text(),
@@ -99,5 +118,8 @@ _FIELDS: dict[str, Kind] = {
 ESTIMATE: dict[int, Kind] = {
     1: Record({**_FIELDS, "warnings": ListOf(_WARNING)}),
     # What is derived is computed again.
-    2: Record({**_FIELDS, "findings": ListOf(_FINDING)}, {"derived": Plain()}),
+    2: Record(
+        {**_FIELDS, "findings": ListOf(_FINDING)},
+        {"derived": Plain(), "delays": TableOf(_DELAY), "slow_motion": OrNull(_SLOW_MOTION)},
+    ),
 }

@@ -18,6 +18,7 @@ from jointid.identification.inference.inference import (
     statistics_of,
 )
 from jointid.identification.inference.systematic import systematic_errors
+from jointid.identification.refinements.refinements import Refinements
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.warnings.diagnosis import diagnose
 from jointid.identification.warnings.evidence import Evidence, regressor
@@ -43,6 +44,7 @@ def infer(
     message: str,
     settings: dict[str, Any],
     seconds: float,
+    refinements: Refinements,
 ) -> Estimate:
     """Return the estimate at a minimum.
 
@@ -50,6 +52,8 @@ def infer(
     ----------
     shifts : tuple of ndarray or None
         Change of each parameter when the windows are halved and doubled.
+    refinements : Refinements
+        What was done to the data before the search.
     """
     threads = problem.threads
     # First, before arrays of one value per window are allocated, and these are freed early: a recording
@@ -103,6 +107,8 @@ def infer(
                 for i in range(len(free))
                 for j in range(i)
             },
+            delays=refinements.delays,
+            slow_motion=refinements.slow_motion,
         )
     )
     return Estimate(
@@ -122,6 +128,8 @@ def infer(
         joint=joint_of(problem, parameters),
         settings=settings,
         seconds=seconds,
+        delays=refinements.delays,
+        slow_motion=refinements.slow_motion,
     )
 
 

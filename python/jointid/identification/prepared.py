@@ -16,6 +16,7 @@ from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.identification.conclusion import infer
 from jointid.identification.follow_up import EstimateSource
+from jointid.identification.refinements.refinements import Refinements, refined
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Outcome
 from jointid.identification.search.search import Search
@@ -43,12 +44,18 @@ class Prepared:
     domain : SearchDomain
     windows : int, float, str, WindowOptions or None
         As given in the call.
+    given : tuple of Recording
+        As given in the call; those of the problem may be shifted.
+    refinements : Refinements
+        What was done to the data, and why.
     """
 
     problem: Problem
     penalty: _core.Penalty
     domain: SearchDomain
     windows: Windows
+    given: tuple[Recording, ...]
+    refinements: Refinements
 
     def estimate(self, search: Search, outcome: Outcome, started: float) -> Estimate:
         """Return the estimate of a search's outcome: intervals, checks, warnings.
@@ -71,6 +78,7 @@ class Prepared:
             message=outcome.message,
             settings=self._settings(search),
             seconds=time.perf_counter() - started,
+            refinements=self.refinements,
         )
         source = EstimateSource(
             problem=self.problem, domain=self.domain, windows=self.windows, search=search
@@ -79,7 +87,7 @@ class Prepared:
 
     def _settings(self, search: Search) -> dict[str, Any]:
         problem, penalty, choice = self.problem, self.penalty, self.problem.choice
-        runs = problem.recordings
+        runs = self.given
         return {
             "version": _core.__version__,
             "kind": runs[0].kind,
@@ -92,6 +100,8 @@ class Prepared:
             "cumulative": penalty.cumulative,
             "torque_hold": problem.torque_hold,
             "mask_standstill": problem.mask_standstill,
+            "shift": dict(problem.shift),
+            "min_speed": problem.min_speed,
             "seed": search.seed,
             "ga": None if search.method == "separable" else search.genetic.asdict(),
             "bounds_from_data": list(self.domain.from_data),
@@ -127,6 +137,8 @@ def prepare(
     windows: Windows = None,
     torque_hold: str | None = None,
     mask_standstill: bool = True,
+    shift: Mapping[str, float] | None = None,
+    min_speed: float | None = None,
     threads: int = 0,
 ) -> Prepared:
     """Return an identification ready to search; parameters as in `identify`.
@@ -156,9 +168,16 @@ def prepare(
         mask_standstill=mask_standstill,
         threads=whole_number("threads", threads, 0, 1024),
     )
-    penalty = problem.penalty(windows)
+    problem, penalty, refinements = refined(problem, windows, shift=shift, min_speed=min_speed)
     domain = domain_for(penalty, joint, parameters, problem.peak_speed)
-    return Prepared(problem=problem, penalty=penalty, domain=domain, windows=windows)
+    return Prepared(
+        problem=problem,
+        penalty=penalty,
+        domain=domain,
+        windows=windows,
+        given=runs,
+        refinements=refinements,
+    )
 
 
 def require_joint(joint: object) -> None:

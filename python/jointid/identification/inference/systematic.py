@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.identification.inference.covariance import Triangle
 from jointid.problem.problem import Problem
-from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
@@ -64,7 +63,7 @@ def _of_sampling(
     steps = np.asarray(penalty.torque_steps(problem.in_core, problem.mask_standstill))
     accelerated, angle, stepped = np.zeros((3, run.size))
     for number, recording in enumerate(problem.recordings):
-        if not _held(problem, recording):
+        if problem.hold(number) != "zoh":
             continue
         mine = slice(*np.searchsorted(run, (number, number + 1)))
         first, last = bounds[mine, 0], bounds[mine, 1]
@@ -89,10 +88,3 @@ def _of_sampling(
     count = jacobian.shape[1]
     both_sides = Triangle(np.column_stack([jacobian, lacking]), problem.threads)
     return np.abs(both_sides.solve(list(range(count)), count, rcond=1e-10)[0])
-
-
-def _held(problem: Problem, recording: Recording) -> bool:
-    hold = problem.torque_hold or recording.torque_hold
-    if hold is None and problem.joint is not None:
-        hold = problem.joint.torque_hold
-    return hold == "zoh"

@@ -1,4 +1,4 @@
-"""A velocity signal that disagrees with the position: delay, unit or sign."""
+"""A velocity signal that disagrees with the position: unit or sign."""
 
 from __future__ import annotations
 
@@ -23,17 +23,8 @@ VELOCITY_MISMATCH = FindingType(
     meaning="the velocity differs from the position's rate by more than 3 %",
     advice="correct its unit, or leave the velocity column out",
 )
-SIGNAL_LAG = FindingType(
-    code="signal_lag",
-    meaning="the velocity lags the position, or the sensor lags the motion, as a filter, a slow bus or a "
-    "backward difference does",
-    advice="leave the velocity column out (it is then derived centrally); of a sensor, remove the filter or shift "
-    "the column",
-)
 
 MISMATCH = 0.03  # of the position's rate
-LAG = 0.4  # sample periods between position and velocity; a backward difference has 0.5
-_SURE = 8.0  # standard errors
 _DEGREE = np.pi / 180.0
 _WITHOUT_VELOCITY = Action(
     "call", {"columns": {"velocity": None}}, text="it is then derived centrally", function="load"
@@ -45,7 +36,6 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         recording, found = inspected.recording, inspected.found.agreement
         if found is None:
             continue
-        late = found.lag / recording.sample_period
         scale = {"scale": Measured(found.scale)}
         if found.scale < 0.0:
             yield REVERSED_SIGN.finding(
@@ -70,22 +60,10 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
                 _WITHOUT_VELOCITY,
                 evidence=scale,
             )
-        elif abs(late) > LAG and abs(found.lag) > _SURE * found.lag_error:
-            side = "lags" if late > 0.0 else "leads"
-            yield SIGNAL_LAG.finding(
-                f"the velocity {side} the position by {1e3 * abs(found.lag):.3g} ms ({abs(late):.1f} sample "
-                "periods), as a filter or a backward difference does, which biases inertia and static friction",
-                _WITHOUT_VELOCITY,
-                evidence={
-                    "lag": Measured(found.lag, "s"),
-                    "lag_error": Measured(found.lag_error, "s"),
-                    "lag_periods": Measured(late),
-                },
-            )
 
 
 def _near(value: float, wanted: float) -> bool:
     return 0.8 < value / wanted < 1.25
 
 
-CHECK = Check(_find, (REVERSED_SIGN, IMPLAUSIBLE_UNITS, VELOCITY_MISMATCH, SIGNAL_LAG))
+CHECK = Check(_find, (REVERSED_SIGN, IMPLAUSIBLE_UNITS, VELOCITY_MISMATCH))
