@@ -1179,11 +1179,6 @@ class Inspection:
     @property
     def peak_speed(self) -> float: ...
     @property
-    def sensor_lag(self) -> tuple[float, float]:
-        """
-        How late the sensor is, and the error of that [s].
-        """
-    @property
     def spikes(self) -> list[Spike]:
         """
         One a channel.
@@ -2679,7 +2674,6 @@ def inspect(
     position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     velocity_derived: bool,
-    sensor: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None,
     period: typing.SupportsFloat | typing.SupportsIndex,
     channels: collections.abc.Sequence[
         tuple[typing.Annotated[numpy.typing.ArrayLike, numpy.float64], SpikeRule, bool]

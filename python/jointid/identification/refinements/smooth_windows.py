@@ -143,7 +143,7 @@ class SmoothWindows:
 
 
 def half_length(stretch: Stretch, shortest: int = 6) -> int:
-    """Return the shortest half length that averages the noise of the acceleration to a ten-thousandth of its variance."""
+    """Return the shortest half length that averages the acceleration's noise to 1e-4 of its variance."""
     period = stretch.period
     noise = _noise(stretch.position if stretch.derived else stretch.velocity)
     signal = stretch.position if stretch.derived else stretch.velocity

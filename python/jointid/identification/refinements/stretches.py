@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,13 +48,11 @@ def pieces_of(problem: Problem) -> list[Piece]:
     spans = []
     for number, recording in enumerate(problem.recordings):
         edges = [0, *(gap.index + 1 for gap in recording.gaps), len(recording)]
-        for first, last in zip(edges, edges[1:], strict=False):
+        for first, last in itertools.pairwise(edges):
             parts = max(1, round((last - first) / _PIECE))
             cuts = np.linspace(first, last, parts + 1).astype(int)
             spans += [
-                (number, int(a), int(b))
-                for a, b in zip(cuts, cuts[1:], strict=False)
-                if b - a >= _SHORTEST
+                (number, int(a), int(b)) for a, b in itertools.pairwise(cuts) if b - a >= _SHORTEST
             ]
     total = sum(last - first for _, first, last in spans)
     if total > _MOST:
