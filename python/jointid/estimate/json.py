@@ -16,6 +16,7 @@ from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.json_schema import ESTIMATE
+from jointid.estimate.selection import Candidate, Selection
 from jointid.estimate.settings import model_of
 from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import Convergence, ParameterEstimate, ResidualStatistics
@@ -23,8 +24,9 @@ from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_document, joint_from_document
 from jointid.problem.window_table import WindowTable
 
-SCHEMA = 2
-"""Raised when a reader of the old form would misread the new one. 2: findings in place of warnings."""
+SCHEMA = 3
+"""Raised when a reader of the old form would misread the new one. 2: findings in place of warnings; 3: a standard
+error is of chance alone, its systematic parts are beside it."""
 
 _KIND = "jointid estimate"
 
@@ -92,6 +94,7 @@ def _estimate(d: Mapping[str, Any]) -> Estimate:
         seconds=d["seconds"],
         delays={name: Delay(**entry) for name, entry in d.get("delays", {}).items()},
         slow_motion=None if d.get("slow_motion") is None else SlowMotion(**d["slow_motion"]),
+        selection=_selection(d.get("selection")),
     )
 
 
@@ -119,6 +122,11 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
             yield field, "lists of the same length are expected"
     if max(d["windows"]["recording"]) >= len(d["settings"]["recordings"]):
         yield "windows.recording", "there are not so many recordings in settings.recordings"
+    if (chosen := d.get("selection")) is not None:
+        texts = [each["model"] for each in chosen["candidates"]]
+        for field in ("model", "runner_up"):
+            if chosen[field] is not None and chosen[field] not in texts:
+                yield f"selection.{field}", "this is none of the candidates"
     values = {name.partition("[")[0] for name in names}  # coulomb[0] is one recording's own
     for i, key in enumerate(d["settings"]["terms"]):
         term = _term(key)
@@ -136,6 +144,12 @@ def _term(key: str) -> _core.Term | None:
 def _parameter(entry: Mapping[str, Any]) -> ParameterEstimate:
     interval = None if entry["interval"] is None else tuple(entry["interval"])
     return ParameterEstimate(**{**entry, "interval": interval})
+
+
+def _selection(entry: Mapping[str, Any] | None) -> Selection | None:
+    if entry is None:
+        return None
+    return Selection(**{**entry, "candidates": tuple(Candidate(**c) for c in entry["candidates"])})
 
 
 def _finding(entry: Mapping[str, Any]) -> Finding:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -11,21 +12,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.advice import Action
 from jointid.base.argument_checks import whole_number
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.selection import Selection
 from jointid.identification.conclusion import infer
 from jointid.identification.follow_up import EstimateSource
-from jointid.identification.refinements.refinements import Refinements, refined
+from jointid.identification.gain import with_instruments
+from jointid.identification.inference.given import of_given_facts
+from jointid.identification.refinements.refinements import (
+    Refinements,
+    without_creep,
+    without_delays,
+)
+from jointid.identification.refinements.slow_motion import checked_speed
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Outcome
+from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Search
+from jointid.identification.selection.selecting import select_model
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model
+from jointid.joint.model import AUTO, Model
 from jointid.joint.parameters import Parameter
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import listed
-from jointid.problem.terms import Request, choose_terms
+from jointid.problem.terms import Request, TermChoice, choose_terms
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
 
@@ -48,6 +60,8 @@ class Prepared:
         As given in the call; those of the problem may be shifted.
     refinements : Refinements
         What was done to the data, and why.
+    selection : Selection or None
+        How the model was chosen; None if it was named.
     """
 
     problem: Problem
@@ -56,6 +70,7 @@ class Prepared:
     windows: Windows
     given: tuple[Recording, ...]
     refinements: Refinements
+    selection: Selection | None = None
 
     def estimate(self, search: Search, outcome: Outcome, started: float) -> Estimate:
         """Return the estimate of a search's outcome: intervals, checks, warnings.
@@ -73,6 +88,7 @@ class Prepared:
             domain=self.domain,
             best=outcome.best,
             shifts=self._window_shifts(outcome.best),
+            given=of_given_facts(self.problem, self.windows, self.domain, outcome.best),
             convergence=outcome.convergence,
             status=outcome.status,
             message=outcome.message,
@@ -81,9 +97,21 @@ class Prepared:
             refinements=self.refinements,
         )
         source = EstimateSource(
-            problem=self.problem, domain=self.domain, windows=self.windows, search=search
+            problem=self.problem,
+            domain=self.domain,
+            windows=self.windows,
+            search=search,
+            again=functools.partial(self._again, search),
         )
-        return replace(estimate, follow_up=source)
+        return replace(estimate, follow_up=source, selection=self.selection)
+
+    def _again(self, search: Search, recordings: tuple[Recording, ...]) -> Estimate:
+        """Return the estimate from other recordings with the same terms, windows and domain."""
+        started = time.perf_counter()
+        problem = replace(self.problem, recordings=recordings)
+        other = replace(self, problem=problem, penalty=problem.penalty(self.windows))
+        quick = Search("separable", seed=search.seed, threads=search.threads)
+        return other.estimate(quick, run_search(quick, other.penalty, other.domain), started)
 
     def _settings(self, search: Search) -> dict[str, Any]:
         problem, penalty, choice = self.problem, self.penalty, self.problem.choice
@@ -96,6 +124,7 @@ class Prepared:
             "terms": list(choice.terms),
             "dropped": choice.dropped,
             "residual": choice.residual,
+            **_of_gain(choice, penalty),
             "windows": penalty.window_duration,
             "cumulative": penalty.cumulative,
             "torque_hold": problem.torque_hold,
@@ -127,6 +156,16 @@ class Prepared:
         return shifts[0], shifts[1]
 
 
+def _of_gain(choice: TermChoice, penalty: _core.Penalty) -> dict[str, Any]:
+    """Return how the sensor's gain is found, as settings."""
+    if choice.residual_reason:
+        return {"residual_reason": choice.residual_reason}
+    stage = penalty.first_stage
+    if stage is None:
+        return {}
+    return {"instruments": {"acceleration": stage.acceleration, "strength": stage.strength}}
+
+
 def prepare(
     recordings: Recording | Sequence[Recording],
     joint: Joint | None,
@@ -140,8 +179,15 @@ def prepare(
     shift: Mapping[str, float] | None = None,
     min_speed: float | None = None,
     threads: int = 0,
+    choose: bool = False,
 ) -> Prepared:
     """Return an identification ready to search; parameters as in `identify`.
+
+    Parameters
+    ----------
+    choose : bool
+        Whether a model without a name is chosen from the recordings. Default False: it is coulomb_viscous,
+        and the name "auto" is refused.
 
     Raises
     ------
@@ -155,8 +201,15 @@ def prepare(
             "true or false is expected", argument="mask_standstill", value=mask_standstill
         )
     stated = Model.of(model)
+    merged = stated if joint is None else stated.over(joint.model)
+    if merged.name == AUTO and not choose:
+        raise InputError(
+            "a model with a name is needed here; only an identification by itself chooses one",
+            argument="model",
+            value=str(merged),
+            remedy=Action("call", {"model": "stribeck"}),
+        )
     if joint is not None:
-        merged = stated.over(joint.model)
         # What only this call's recordings have apart does not become a property of the joint.
         joint = joint.replace(model=merged.replace(per_recording=joint.model.per_recording))
     request = Request(model=stated, residual=residual)
@@ -168,15 +221,22 @@ def prepare(
         mask_standstill=mask_standstill,
         threads=whole_number("threads", threads, 0, 1024),
     )
-    problem, penalty, refinements = refined(problem, windows, shift=shift, min_speed=min_speed)
-    domain = domain_for(penalty, joint, parameters, problem.peak_speed)
+    problem, delays = without_delays(problem, shift)
+    speed = checked_speed(min_speed)
+    selection = None
+    if choose and not merged.named:
+        problem, selection = select_model(problem, request, parameters, windows)
+    problem, penalty, slow_motion = without_creep(problem, windows, speed)
+    domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
+    problem, penalty = with_instruments(problem, penalty, domain, windows, residual is not None)
     return Prepared(
         problem=problem,
         penalty=penalty,
         domain=domain,
         windows=windows,
         given=runs,
-        refinements=refinements,
+        refinements=Refinements(delays=delays, slow_motion=slow_motion),
+        selection=selection,
     )
 
 

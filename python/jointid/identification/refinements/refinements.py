@@ -1,4 +1,4 @@
-"""The refinements in order: delays first, since a late signal also looks like slow motion that disagrees."""
+"""The refinements: delays first, since a late signal also looks like slow motion that disagrees."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from jointid import _core
 from jointid.estimate.delays import Delay
 from jointid.estimate.slow_motion import SlowMotion
 from jointid.identification.refinements.delays import refined_delays
-from jointid.identification.refinements.slow_motion import checked_speed, contradicting
+from jointid.identification.refinements.slow_motion import contradicting
 from jointid.problem.problem import Problem
 from jointid.problem.windows import Windows
 from jointid.recording.shifting import checked_shift
@@ -29,37 +29,46 @@ class Refinements:
     slow_motion: SlowMotion | None
 
 
-def refined(
-    problem: Problem,
-    windows: Windows,
-    *,
-    shift: Mapping[str, float] | None,
-    min_speed: float | None,
-) -> tuple[Problem, _core.Penalty, Refinements]:
-    """Return the problem with shifted signals and without contradicting slow motion, its penalty, and what was found.
+def without_delays(
+    problem: Problem, shift: Mapping[str, float] | None
+) -> tuple[Problem, dict[str, Delay]]:
+    """Return the problem without its signals' delays, and these by signal.
 
     Parameters
     ----------
     shift : mapping of str to float or None
         [s]; None: chosen.
+
+    Raises
+    ------
+    InputError
+        A shift that cannot be used.
+    """
+    return refined_delays(problem, None if shift is None else checked_shift(shift))
+
+
+def without_creep(
+    problem: Problem, windows: Windows, min_speed: float | None
+) -> tuple[Problem, _core.Penalty, SlowMotion | None]:
+    """Return the problem without slow motion that contradicts, its penalty, and that slow motion.
+
+    Parameters
+    ----------
     min_speed : float or None
         [rad/s or m/s]; None: chosen.
 
     Raises
     ------
     InputError
-        A shift or a speed that cannot be used, or windows that cannot be cut.
+        Windows that cannot be cut.
     """
-    given = None if shift is None else checked_shift(shift)
-    speed = checked_speed(min_speed)
-    problem, delays = refined_delays(problem, given)
-    if speed:
-        problem = replace(problem, min_speed=speed)
+    if min_speed:
+        problem = replace(problem, min_speed=min_speed)
     penalty = problem.penalty(windows)
-    slow = None
-    if speed is None:
-        slow = contradicting(problem, penalty)
-        if slow is not None:
-            problem = replace(problem, min_speed=slow.speed)
-            penalty = problem.penalty(windows)
-    return problem, penalty, Refinements(delays=delays, slow_motion=slow)
+    if min_speed is not None:
+        return problem, penalty, None
+    slow = contradicting(problem, penalty)
+    if slow is not None:
+        problem = replace(problem, min_speed=slow.speed)
+        penalty = problem.penalty(windows)
+    return problem, penalty, slow
