@@ -19,7 +19,10 @@ class Delay:
         [s]; clustered over stretches of the motion.
     certain : bool
         Whether what is left of it is significant, long enough to matter, and the same for every part of the
-        signal; without a shift in the call it is then taken away.
+        signal.
+    fits : bool
+        Whether the torque balance fits better without what is left of it; asked where that is certain. Without
+        a shift in the call it is then taken away.
     applied : float
         What the signal was shifted by before the identification [s]; 0: not at all.
     """
@@ -28,6 +31,7 @@ class Delay:
     value: float
     stderr: float
     certain: bool
+    fits: bool
     applied: float
 
     @property

@@ -86,6 +86,7 @@ _DELAY = Record(
         "value": _VALUE,
         "stderr": _ANY,
         "certain": Flag(),
+        "fits": Flag(),
         "applied": _VALUE,
     }
 )

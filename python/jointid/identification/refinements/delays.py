@@ -13,6 +13,7 @@ from dataclasses import replace
 
 from jointid.estimate.delays import Delay
 from jointid.identification.refinements.balance_columns import conservative, friction, stacked
+from jointid.identification.refinements.balance_misfit import fits_better
 from jointid.identification.refinements.shift_fit import Balance, Shift, fit_shift
 from jointid.identification.refinements.smooth_windows import SmoothWindows, half_length
 from jointid.identification.refinements.stretches import Piece, pieces_of
@@ -28,6 +29,8 @@ _SUSPECT = 0.6  # of what would be long enough: look closer
 _ALIKE, _BARELY_ALIKE = 0.5, 0.7  # of the delay: how far estimates of it may be apart
 _MOST_LEFT = 0.5  # of a signal's variance unexplained: other torques act
 _MOST_LEFT_OF_VELOCITY = 0.05
+# The fall of the sum of squares that makes a shift worth it: noise of a reading leaves little to fall.
+_LEAST_GAIN = {"velocity": 0.01, "sensor": 0.0, "torque": 0.02}
 _CLEAR = 3  # samples from a reversal, beside half a window
 
 
@@ -41,7 +44,8 @@ def refined_delays(
     problem : Problem
         Of the recordings as they are.
     given : mapping of str to float, optional
-        Delays to take away [s], no others. Default: those that are certain.
+        Delays to take away [s], no others. Default: those that are certain and without which the torque
+        balance fits better.
     """
     choose = given is None
     shift = dict(given or {})
@@ -55,13 +59,22 @@ def refined_delays(
             continue
         left, certain = measured
         taken = shift.get(signal, 0.0)
-        value = taken + left.value
-        if certain and choose:
-            shift[signal] = taken = left.value
-            problem = _shifted(problem, {signal: taken})
-            pieces = pieces_of(problem)
+        value, fits = taken + left.value, False
+        if certain:
+            without = _shifted(problem, {signal: left.value})
+            fits = fits_better(problem, without, _LEAST_GAIN[signal])
+            # Friction that the model lacks may look like a late torque; the others are measured without friction.
+            certain = fits or signal != "torque"
+            if fits and choose:
+                shift[signal] = taken = left.value
+                problem, pieces = without, pieces_of(without)
         found[signal] = Delay(
-            signal=signal, value=value, stderr=left.stderr, certain=certain, applied=taken
+            signal=signal,
+            value=value,
+            stderr=left.stderr,
+            certain=certain,
+            fits=fits,
+            applied=taken,
         )
     return replace(problem, shift=shift) if shift else problem, found
 

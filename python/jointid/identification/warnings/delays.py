@@ -30,6 +30,16 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     left = [delay for delay in certain if delay.applied != delay.value]
     removed = [delay for delay in certain if delay.applied == delay.value]
     for delay in left:
+        if not delay.fits:
+            # A delay of one signal alone would make the balance worse: others are as late.
+            yield SIGNAL_LAG.finding(
+                f"{_described(delay, evidence)}, but the torque balance does not fit better without it: other "
+                "signals may be as late, or filtered alike",
+                Action("inspect", text="the filters and the clocks of position, velocity and torque"),
+                evidence=_measured(delay, evidence),
+                parameters=_concerned(delay, evidence),
+            )
+            continue
         whole = {each.signal: each.applied for each in evidence.delays.values() if each.applied}
         yield SIGNAL_LAG.finding(
             f"{_described(delay, evidence)}, which biases the values",
