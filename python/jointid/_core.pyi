@@ -219,6 +219,7 @@ class Recording:
         sensor: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None,
         torque_hold: Hold,
         gap_after: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+        min_speed: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> None: ...
     @property
     def samples(self) -> int: ...
@@ -1243,11 +1244,6 @@ class Inspection:
         """
     @property
     def peak_speed(self) -> float: ...
-    @property
-    def sensor_lag(self) -> tuple[float, float]:
-        """
-        How late the sensor is, and the error of that [s].
-        """
     @property
     def spikes(self) -> list[Spike]:
         """
@@ -2744,7 +2740,6 @@ def inspect(
     position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     velocity_derived: bool,
-    sensor: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None,
     period: typing.SupportsFloat | typing.SupportsIndex,
     channels: collections.abc.Sequence[
         tuple[typing.Annotated[numpy.typing.ArrayLike, numpy.float64], SpikeRule, bool]

@@ -84,6 +84,8 @@ def compare_models(
     windows: Windows = None,
     torque_hold: str | None = None,
     mask_standstill: bool = True,
+    shift: Mapping[str, float] | None = None,
+    min_speed: float = 0.0,
     callback: Callable[[ComparisonStep], object] | None = None,
 ) -> Comparison:
     """Compare friction models by how well they predict what they were not fitted to.
@@ -110,6 +112,10 @@ def compare_models(
         As in `identify`; default "separable".
     residual, torque_hold, mask_standstill
         As in `identify`.
+    shift : mapping of str to float, optional
+        As in `identify`; what is chosen, is chosen from all data, and the same for all models.
+    min_speed : float
+        As in `identify`, the same for all models. Default 0: all motion is judged.
     windows : int, float, str or WindowOptions, optional
         As in `identify`; the same for all models. Default: the shortest of the models' defaults.
     callback : callable, optional
@@ -140,6 +146,8 @@ def compare_models(
             "residual": residual,
             "torque_hold": torque_hold,
             "mask_standstill": mask_standstill,
+            "shift": shift,
+            "min_speed": min_speed,
         },
         total=len(specs) * (1 + parts),
         callback=callback,
@@ -157,6 +165,8 @@ def compare_models(
                 cause if isinstance(cause, InputError) else error
             )
             fitter.total -= 1 + parts
+    # Delays come from the data, whatever the model: those of all data hold for their parts.
+    fitter.shift(next(iter(whole.values())).settings["shift"])
     # Residuals over windows of different duration cannot be compared: all models get the shortest.
     duration = min(estimate.settings["windows"] for estimate in whole.values())
     cut = _core.WindowOptions(duration=duration, cumulative=_cumulative(windows))
@@ -206,6 +216,9 @@ class _Fitter:
         self._joint, self._common, self._callback = joint, common, callback
         self.total = total
         self._done = 0
+
+    def shift(self, delays: Mapping[str, float]) -> None:
+        self._common = {**self._common, "shift": delays}
 
     def fit(
         self, spec: Model, training: Sequence[Recording], windows: Windows, where: str = ""

@@ -18,6 +18,7 @@ from jointid.problem.recordings import listed
 from jointid.problem.terms import TermChoice
 from jointid.problem.window_table import Prediction, r_squared, relative_residual
 from jointid.recording.recording import Recording
+from jointid.recording.shifting import shifted
 
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
@@ -97,12 +98,17 @@ def _posed(estimate: Estimate, recording: Recording) -> tuple[Problem, _core.Pen
         raise InputError(
             "the estimate has a torque sensor, the recording has none", argument="recording.sensor"
         )
+    shift = settings.get("shift", {})
+    if recording.velocity_derived:
+        shift = {name: delay for name, delay in shift.items() if name != "velocity"}
     problem = Problem(
-        recordings=listed(recording),
+        recordings=tuple(shifted(run, shift) for run in listed(recording)),
         joint=estimate.joint,
         choice=choice,
         torque_hold=settings["torque_hold"],
         mask_standstill=settings["mask_standstill"],
+        shift=shift,
+        min_speed=settings.get("min_speed", 0.0),
     )
     penalty = problem.penalty(settings["windows"])
     values = {name: parameter.value for name, parameter in estimate.parameters.items()}

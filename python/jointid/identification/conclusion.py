@@ -20,6 +20,7 @@ from jointid.identification.inference.inference import (
 from jointid.identification.inference.segments import Motion, motion_segments
 from jointid.identification.inference.systematic import systematic_errors
 from jointid.identification.inference.undivided import divided, with_undivided
+from jointid.identification.refinements.refinements import Refinements
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.warnings.diagnosis import diagnose
 from jointid.identification.warnings.evidence import Evidence, regressor
@@ -47,6 +48,7 @@ def infer(
     message: str,
     settings: dict[str, Any],
     seconds: float,
+    refinements: Refinements,
 ) -> Estimate:
     """Return the estimate at a minimum.
 
@@ -54,6 +56,8 @@ def infer(
     ----------
     shifts : tuple of ndarray or None
         Change of each parameter when the windows are halved and doubled.
+    refinements : Refinements
+        What was done to the data before the search.
     given : ndarray or None
         Change of each parameter when the given facts are at the limits of their tolerances.
     """
@@ -117,6 +121,8 @@ def infer(
                 for i in range(len(free))
                 for j in range(i)
             },
+            delays=refinements.delays,
+            slow_motion=refinements.slow_motion,
         )
     )
     return Estimate(
@@ -136,6 +142,8 @@ def infer(
         joint=joint_of(problem, parameters),
         settings=settings,
         seconds=seconds,
+        delays=refinements.delays,
+        slow_motion=refinements.slow_motion,
     )
 
 

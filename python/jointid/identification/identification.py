@@ -31,6 +31,8 @@ def identify(
     windows: Windows = None,
     torque_hold: str | None = None,
     mask_standstill: bool = True,
+    shift: Mapping[str, float] | None = None,
+    min_speed: float | None = None,
 ) -> Estimate:
     """Identify a joint's friction, and its torque sensor if it has one, from ordinary motion.
 
@@ -70,6 +72,14 @@ def identify(
     mask_standstill : bool
         Whether to leave out the parts in which the joint sticks or stands still, where friction is
         set-valued and the model does not apply. Default True.
+    shift : mapping of str to float, optional
+        Delays of "torque", "sensor" and "velocity" against the position [s], to be taken away; positive:
+        the signal is late. An empty mapping shifts nothing. Default: the delays that are certain; the
+        estimate's `delays` and its report tell them.
+    min_speed : float, optional
+        Motion slower than this is left out [rad/s or m/s]; 0 leaves out nothing. Default: chosen; 0 unless
+        slow motion contradicts the friction that faster motion shows (creep), and 0 for models whose
+        friction depends on slow motion, such as "stribeck". The estimate's `slow_motion` tells it.
 
     Returns
     -------
@@ -112,6 +122,8 @@ def identify(
         windows=windows,
         torque_hold=torque_hold,
         mask_standstill=mask_standstill,
+        shift=shift,
+        min_speed=min_speed,
         threads=chosen.threads,
         choose=True,
     )

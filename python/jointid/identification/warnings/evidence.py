@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.estimate.delays import Delay
+from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.identification.inference.covariance import Triangle
 from jointid.identification.warnings.inspection import Inspected
@@ -71,6 +73,10 @@ class Evidence:
         At the estimated shape parameters.
     correlations : mapping
         Of each pair of free parameters, offsets centred.
+    delays : mapping of str to Delay
+        Of the signals against the position.
+    slow_motion : SlowMotion or None
+        How slow windows disagree with faster ones.
     """
 
     problem: Problem
@@ -89,6 +95,8 @@ class Evidence:
     inspections: tuple[Inspected, ...]
     at_best: Regressor
     correlations: Mapping[tuple[str, str], float]
+    delays: Mapping[str, Delay]
+    slow_motion: SlowMotion | None
 
     @property
     def recordings(self) -> tuple[Recording, ...]:
