@@ -29,7 +29,8 @@ Inspection inspect(const Subject& s, base::Pool* pool) {
       result.agreement = velocity_agreement(s.time, s.position, s.velocity, s.period, cancel);
     });
   }
-  tasks.emplace_back([&] { result.timing = timing_errors(s.time, s.position, s.period, cancel); });
+  tasks.emplace_back(
+      [&] { result.timing = signals::timing_errors(s.time, s.position, s.period, cancel); });
   tasks.emplace_back([&] {
     result.position = extremes(s.position);
     result.jump = largest_jump(s.time, s.position, cancel);

@@ -2,14 +2,14 @@
 // What a single signal shows of clipping, repeated samples and hanging: counts, exact, in two
 // passes.
 
-#include <Eigen/Core>
 #include <cstdint>
 
 #include "base/cancel.hpp"
+#include "signals/signal.hpp"
 
 namespace jointid::diagnose {
 
-using Signal = Eigen::Map<const Eigen::VectorXd>;
+using signals::Signal;
 
 /// Smallest and largest value.
 struct Extremes {
