@@ -1,6 +1,7 @@
 #include "bind/recording.hpp"
 #include "identify/penalty/penalty_parts.hpp"
 #include "signals/local_velocity.hpp"
+#include "signals/timing.hpp"
 
 namespace jointid::bind {
 
@@ -52,6 +53,15 @@ void bind_signals(py::module_& m) {
       },
       py::arg("time"), py::arg("position"), py::arg("gap_after"), py::arg("period"),
       "Noise of a position: the encoder's step, white noise, errors of the stamps.");
+  m.def(
+      "timing_errors",
+      [](const Array& time, const Array& position, double period) {
+        const py::gil_scoped_release nogil;
+        const auto errors = signals::timing_errors(signal(time), signal(position), period, nullptr);
+        return std::make_pair(errors.as_stamped, errors.as_uniform);
+      },
+      py::arg("time"), py::arg("position"), py::arg("period"),
+      "Scatter of the samples' times about the stamps and about an even grid [s].");
   m.def(
       "local_velocity",
       [](const Array& time, const Array& position, const Array& difference,

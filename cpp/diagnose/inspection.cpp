@@ -42,7 +42,8 @@ Inspection inspect(const Subject& s, base::Pool* pool) {
     });
     if (!s.channels[c].look_for_spikes) continue;
     tasks.emplace_back([&, c] {
-      result.spikes[c] = largest_spike(s.channels[c].values, s.channels[c].rule, cancel);
+      result.spikes[c] = largest_spike(s.channels[c].values, s.channels[c].rule, s.velocity,
+                                       result.peak_speed, cancel);
     });
   }
   identify::for_each(tasks.size(), pool, [&](std::size_t i) { tasks[i](); });

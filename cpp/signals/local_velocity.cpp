@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::array<Eigen::Index, 13> kHalves{2, 3, 4, 5, 6, 8, 10, 13, 17, 22, 28, 38, 50};
 constexpr double kWidth = 1.8;      // standard deviations of an interval's half
-constexpr double kHarmless = 5e-4;  // of the largest speed
+constexpr double kHarmless = 3e-4;  // of the largest speed
+constexpr double kOdd = 3.0;        // times the usual noise: a difference over a stamp that is off
 constexpr double kEven = 2e-3;      // of a period: intervals that differ by less are equal
 constexpr Eigen::Index kReach = 4;  // samples either side over which the speed is taken
 constexpr Eigen::Index kChunk = 4096;
@@ -122,9 +123,11 @@ class Cubic {
 /// The intersection of intervals, and the slope of the last length that met it.
 class Intersection {
  public:
-  Intersection(double value, double spread) : slope_{value, spread} {
-    low_ = value - kWidth * spread;
-    high_ = value + kWidth * spread;
+  /// An odd first value is kept only if nothing better comes.
+  Intersection(double value, double spread, bool odd) : slope_{value, spread} {
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    low_ = odd ? -kAny : value - kWidth * spread;
+    high_ = odd ? kAny : value + kWidth * spread;
   }
   /// False when this length does not agree with the shorter ones.
   bool take(double value, double spread) {
@@ -220,7 +223,7 @@ LocalVelocity local_velocity(const Signal& time, const Signal& position, const S
     const double period = (time[end - 1] - time[begin]) / static_cast<double>(end - begin - 1);
     for (Eigen::Index k = chunk.begin; k < chunk.end; ++k) {
       const double sigma = sigma_at(chunk.stretch, k);
-      Intersection found(difference[k], result.noise[k]);
+      Intersection found(difference[k], result.noise[k], !(result.noise[k] <= kOdd * usual));
       const Eigen::Index room = std::min(k - begin, end - 1 - k);
       if (chunk.even && room >= kHalves.back()) {
         for (std::size_t i = 0; i < kHalves.size(); ++i) {

@@ -16,7 +16,7 @@ struct LocalVelocity {
 };
 
 /// Starts from `difference`, the second-order differences at the true stamps. Where their noise is
-/// below 0.05 % of the largest speed they stay. Elsewhere cubics are fitted at each sample over 2
+/// below 0.03 % of the largest speed they stay. Elsewhere cubics are fitted at each sample over 2
 /// to 50 samples on either side; the longest is taken whose interval of 1.8 standard deviations
 /// meets those of all shorter ones (intersection of confidence intervals: Goldenshluger and
 /// Nemirovski 1997, Katkovnik 1999), so that a break of the motion ends the lengths there. No fit

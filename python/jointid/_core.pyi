@@ -77,6 +77,7 @@ __all__: list[str] = [
     "simulate_runs",
     "term",
     "terms",
+    "timing_errors",
     "triangle",
     "usable_intervals",
     "window_duration",
@@ -1160,6 +1161,11 @@ class SignalFacts:
     def moving(self) -> int:
         """
         Intervals at a fair speed.
+        """
+    @property
+    def smallest(self) -> float:
+        """
+        The smallest of those; infinite: none.
         """
     @property
     def stale(self) -> int:
@@ -2890,6 +2896,15 @@ def term(key: str) -> Term:
 def terms() -> list[Term]:
     """
     All terms, in canonical order.
+    """
+
+def timing_errors(
+    time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    period: typing.SupportsFloat | typing.SupportsIndex,
+) -> tuple[float, float]:
+    """
+    Scatter of the samples' times about the stamps and about an even grid [s].
     """
 
 def triangle(

@@ -26,6 +26,7 @@ from jointid.problem.problem import Problem
 from jointid.problem.recordings import listed
 from jointid.problem.terms import Request, choose_terms
 from jointid.problem.windows import Windows
+from jointid.recording.motion import WIDER, small_motion
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -156,8 +157,16 @@ def prepare(
         mask_standstill=mask_standstill,
         threads=whole_number("threads", threads, 0, 1024),
     )
-    penalty = problem.penalty(windows)
-    domain = domain_for(penalty, joint, parameters, problem.peak_speed)
+    try:
+        penalty = problem.penalty(windows)
+        domain = domain_for(penalty, joint, parameters, problem.peak_speed)
+    except InputError:
+        for small in map(small_motion, runs):
+            if small is not None:  # what was refused follows from it
+                raise InputError(
+                    small.text, argument="recordings", remedy=f"record {WIDER}"
+                ) from None
+        raise
     return Prepared(problem=problem, penalty=penalty, domain=domain, windows=windows)
 
 

@@ -41,7 +41,7 @@ def derived_velocity(
 ) -> DerivedVelocity:
     """Return the velocity, with as much smoothing at each sample as the position's noise asks for.
 
-    It begins with second-order differences on the true time stamps. Where their noise is below 0.05 % of
+    It begins with second-order differences on the true time stamps. Where their noise is below 0.03 % of
     the largest speed, they stay, bit for bit. Otherwise cubics are fitted at each sample over 5 to 101
     samples, and the longest is used whose confidence interval meets those of all shorter ones
     (intersection of confidence intervals: Goldenshluger and Nemirovski 1997; Katkovnik 1999): long in

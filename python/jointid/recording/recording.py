@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from jointid.base.errors import InputError
 from jointid.recording.attributes import check_kind, check_torque_hold, json_mapping
-from jointid.recording.derived import derived_velocity
+from jointid.recording.derived import DerivedVelocity, derived_velocity
 from jointid.recording.gaps import Gap, find_gaps
 from jointid.recording.resampling import resampled
 from jointid.recording.signals import (
@@ -157,8 +157,7 @@ class Recording:
             truth=None if truth is None else json_mapping("truth", truth),
         )
         if velocity is None:
-            derived = derived_velocity(self.time, self.position, self.gaps, self.sample_period)
-            vars(self)["velocity"] = derived.velocity
+            vars(self)["velocity"] = self.derived.velocity
 
     @classmethod
     def from_dataframe(
@@ -217,6 +216,11 @@ class Recording:
     def gaps(self) -> tuple[Gap, ...]:
         """Intervals longer than 3.5 median sample periods, in order of time."""
         return find_gaps(self.time)
+
+    @functools.cached_property
+    def derived(self) -> DerivedVelocity:
+        """The velocity that the position gives, and its noise, whether or not one is recorded."""
+        return derived_velocity(self.time, self.position, self.gaps, self.sample_period)
 
     @functools.cached_property
     def fingerprint(self) -> str:
@@ -280,6 +284,12 @@ class Recording:
         return tuple(
             self._part(part, name=f"{self.name} {number}/{len(slices)}".lstrip())
             for number, part in enumerate(slices, start=1)
+        )
+
+    def with_velocity(self, velocity: npt.ArrayLike | None = None) -> Self:
+        """Return the recording with another velocity [rad/s], which counts as derived; default: derive it."""
+        return type(self)(
+            **{**self._fields(), "velocity": velocity, "velocity_derived": velocity is not None}
         )
 
     def resample(self, *, period: float | None = None, rate: float | None = None) -> Self:

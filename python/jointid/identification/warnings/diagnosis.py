@@ -4,6 +4,7 @@ from jointid.estimate.findings import Finding, Severity
 from jointid.identification.warnings import registry, sensor_lag
 from jointid.identification.warnings.evidence import Evidence
 
+_OF_THE_FILE = ("hardly_moves", "implausible_units", "gaps", "assumed_units", "stopped")
 _ORDER: tuple[Severity, ...] = ("blocking", "warning", "info")
 
 
@@ -19,4 +20,8 @@ def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
     # With degrees the motor's angle is wrong, too: a residual that oscillates with it is not ripple.
     spurious = [found for found in kept if units and found.code == "ripple"]
     left = [found for found in kept if found not in (*units[1:], *spurious)]
+    if (
+        "hardly_moves" in codes
+    ):  # no motion, no answer: all that concerns the values follows from it
+        left = [found for found in left if found.code in _OF_THE_FILE]
     return tuple(sorted(left, key=lambda found: _ORDER.index(found.severity)))
