@@ -14,7 +14,7 @@ namespace {
 constexpr double kSpike = 25.0;         // usual changes over the spike's width
 constexpr double kPositionSpike = 8.0;  // usual changes
 constexpr double kOfRange = 0.1;        // of the range that holds 95 % of the samples
-constexpr double kOfCommand = 0.3;
+constexpr double kOfCommand = 0.6;
 constexpr double kAtTurn = 1.2;     // of the range, where the joint reverses or sticks
 constexpr double kSlow = 0.05;      // of the peak speed: friction falls, and may let go at once
 constexpr Eigen::Index kReach = 6;  // samples: a derived velocity tells a reversal no better
