@@ -29,7 +29,7 @@ def host_logged(well: jid.Recording, seed: int = 1) -> jid.Recording:
 
 @pytest.fixture(scope="module")
 def logged() -> jid.Recording:
-    return host_logged(jid.load(data_folder() / "well_excited.csv.gz"))
+    return host_logged(jid.load(data_folder() / "well_excited.csv.gz").crop(1.0))
 
 
 def worst(estimate: jid.Estimate) -> float:

@@ -41,6 +41,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         **_ESTIMATE,
         "ga.population": "--population",
         "ga.generations": "--generations",
+        "selftest": "--selftest",
         "checkpoint": "--checkpoint",
         "resume": "--resume",
     },
@@ -104,7 +105,10 @@ FILES: Mapping[str, str] = {
 """Options that take a file, and what stands for one that the user has to choose."""
 
 FLAGS = frozenset(
-    {"--drop-copies", "--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run"}
+    {
+        *("--drop-copies", "--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run"),
+        "--selftest",
+    }
 )
 """Options that may stand without a value."""
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
+from jointid.base.errors import InputError
 from jointid.recording.recording import Recording
 
 WIDER = "a motion of at least some hundred steps of the encoder"
@@ -57,3 +59,16 @@ def small_motion(recording: Recording) -> SmallMotion | None:
         text=f"the joint hardly moves: {travel:.3g} {unit} in all, {travel / step:.0f} steps of its encoder "
         f"({step:.3g} {unit}), and no change of position in {100.0 * unchanged:.0f} % of the samples",
     )
+
+
+def raise_if_hardly_moving(recordings: Iterable[Recording]) -> None:
+    """Raise `InputError` if one of the recordings is a motion of less than 50 steps of the encoder."""
+    for number, recording in enumerate(recordings):
+        small = small_motion(recording)
+        if small is not None:
+            raise InputError(
+                small.text,
+                argument="recordings",
+                place=f"recording {number}",
+                remedy=f"record {WIDER}",
+            )
