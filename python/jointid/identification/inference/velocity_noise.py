@@ -35,11 +35,19 @@ class VelocityEffect:
     noise : float
         Standard deviation of the velocity that was added: the noisiest recording's, a median over its
         samples [rad/s or m/s].
+    draws : int
     """
 
     shift: Array
     spread: Array
     noise: float
+    draws: int
+
+    @property
+    def systematic(self) -> Array:
+        """Size of the shift without what chance adds to it."""
+        chance = np.square(self.spread) / self.draws
+        return np.asarray(np.sqrt(np.maximum(0.0, np.square(self.shift) - chance)))
 
     @property
     def size(self) -> Array:
@@ -95,6 +103,7 @@ def velocity_systematic(
     return VelocityEffect(
         shift=np.median(moved, axis=0),
         spread=np.std(moved, axis=0, ddof=1),
+        draws=len(moved),
         noise=max(
             velocity_noise(run) for run, too in zip(problem.recordings, noisy, strict=True) if too
         ),

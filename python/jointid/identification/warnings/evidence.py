@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.identification.inference.covariance import Triangle
+from jointid.identification.inference.velocity_noise import VelocityEffect
 from jointid.identification.warnings.inspection import Inspected
 from jointid.joint.joint import Joint
 from jointid.problem.problem import Problem
@@ -68,6 +69,8 @@ class Evidence:
         Properties of the signals of each recording.
     at_best : Regressor
         At the estimated shape parameters.
+    velocity_effect : VelocityEffect or None
+        What the velocity's noise does to the parameters; None where it is harmless.
     correlations : mapping
         Of each pair of free parameters, offsets centred.
     """
@@ -88,6 +91,7 @@ class Evidence:
     inspections: tuple[Inspected, ...]
     at_best: Regressor
     correlations: Mapping[tuple[str, str], float]
+    velocity_effect: VelocityEffect | None = None
 
     @property
     def recordings(self) -> tuple[Recording, ...]:

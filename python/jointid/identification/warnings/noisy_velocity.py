@@ -9,7 +9,6 @@ import numpy as np
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
-from jointid.identification.inference.velocity_noise import velocity_systematic
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.recording.velocity_noise import velocity_noise
@@ -72,17 +71,10 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
 
 def _moved(evidence: Evidence) -> dict[str, float]:
     """Return how far, relative to its value, the velocity's noise moves each parameter; only the large ones."""
-    names = evidence.penalty.names
-    parameters = [evidence.parameters[name] for name in names]
-    effect = velocity_systematic(
-        evidence.problem,
-        evidence.penalty,
-        evidence.best,
-        np.array([each.min for each in parameters]),
-        np.array([each.max for each in parameters]),
-    )
+    effect = evidence.velocity_effect
     if effect is None:
         return {}
+    parameters = [evidence.parameters[name] for name in evidence.penalty.names]
     shares = {}
     for parameter, size in zip(parameters, effect.size.tolist(), strict=True):
         level = abs(parameter.value)
