@@ -13,10 +13,12 @@ from jointid.base.errors import InputError
 from jointid.recording.signals import SHORTEST, SIGNALS, FloatArray
 
 _FINE = 30.0  # a usual step in smallest steps: an equal position is then no slow motion
-_LONGEST = 10  # rows: a longer run is a standstill
+_LONGER = 2.0  # times the usual run of copies, plus one: a longer run is a standstill
 _ROUNDING = 1e-6  # of the median step
 _EVEN = 0.3  # of the scatter about the stamps
-_AWAY = 4.0  # periods: stamps that leave an even clock by more have lost samples
+_AWAY = 2.0  # periods: stamps that leave an even clock by more have lost samples
+_PIECE = 20  # rows between standstills that show an even clock
+_MOST = 0.8  # of the rows that get even stamps
 _MEASURED = ("position", "velocity", "sensor", "link_position")
 _COMMANDED = ("torque", "motor_torque", "current")
 
@@ -56,7 +58,8 @@ def without_copies(fields: Mapping[str, Any]) -> dict[str, Any]:
         values = fields.get(name)
         if values is not None and not (name == "velocity" and fields.get("velocity_derived")):
             same &= np.diff(values) == 0.0
-    kept = np.flatnonzero(~_short_runs(same))
+    copies, resting = _copies(same)
+    kept = np.flatnonzero(~copies)
     if len(kept) < SHORTEST:
         raise InputError(f"{len(kept)} rows are left", argument="drop_copies", value=True)
     result = dict(fields)
@@ -66,8 +69,8 @@ def without_copies(fields: Mapping[str, Any]) -> dict[str, Any]:
             continue
         held = name in _COMMANDED and fields.get("torque_hold") == "zoh"
         result[name] = _means(time, values, kept) if held else values[kept]
-    if taken_evenly(result["time"], result["position"]):
-        result["time"] = _line(result["time"])
+    even, _ = _evened(result["time"], result["position"], resting[kept])
+    result["time"] = even
     if fields.get("velocity_derived"):
         result["velocity"], result["velocity_derived"] = None, False
     return result
@@ -75,18 +78,43 @@ def without_copies(fields: Mapping[str, Any]) -> dict[str, Any]:
 
 def fresh_rows(time: FloatArray, position: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return time and position of the rows that do not repeat the position before."""
-    new = ~_short_runs(np.diff(position) == 0.0)
-    return time[new], position[new]
+    copies, _ = _copies(np.diff(position) == 0.0)
+    return time[~copies], position[~copies]
 
 
 def taken_evenly(time: FloatArray, position: FloatArray) -> bool:
-    """Whether the positions fit an even clock far better than their stamps, and no sample is lost."""
-    if len(time) < SHORTEST:
+    """Whether the samples, without their copies, fit an even clock far better than their stamps.
+
+    Where they do not, their stamps are worse without the copies than with them.
+    """
+    copies, resting = _copies(np.diff(position) == 0.0)
+    kept = ~copies
+    if np.count_nonzero(kept) < SHORTEST:
         return False
+    _, share = _evened(time[kept], position[kept], resting[kept])
+    return share > _MOST
+
+
+def _evened(
+    time: FloatArray, position: FloatArray, resting: NDArray[np.bool_]
+) -> tuple[FloatArray, float]:
+    """Return stamps that are even between standstills, where the positions say so, and the share of such rows."""
     as_stamped, as_even = _core.timing_errors(time, position, float(np.median(np.diff(time))))
-    line = _line(time)
-    away = float(np.abs(time - line).max())
-    return as_even < _EVEN * as_stamped and away < _AWAY * (line[1] - line[0])
+    if not as_even < _EVEN * as_stamped:
+        return time, 0.0
+    even, changed = time.copy(), 0
+    edges = np.flatnonzero(np.diff(np.concatenate([[True], resting, [True]]).astype(np.int8)))
+    for first, last in zip(edges[::2], edges[1::2], strict=True):
+        if last - first < _PIECE:
+            continue
+        line = _line(time[first:last])
+        away = float(np.abs(line - time[first:last]).max())
+        before = even[first - 1] if first else -np.inf
+        after = time[last] if last < len(time) else np.inf
+        if away < _AWAY * (line[1] - line[0]) and before < line[0] and line[-1] < after:
+            even[first:last] = line
+            changed += last - first
+    return even, changed / max(1, np.count_nonzero(~resting))
 
 
 def _line(time: FloatArray) -> FloatArray:
@@ -97,14 +125,19 @@ def _line(time: FloatArray) -> FloatArray:
     return np.asarray(middle + number * period)
 
 
-def _short_runs(same: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Whether each row belongs to a run of equal rows, after its first, that is no standstill."""
+def _copies(same: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Whether each row is a copy of the one before, and whether it belongs to a standstill."""
     copy = np.concatenate([[False], same])
+    resting = np.zeros(len(copy), dtype=np.bool_)
     edges = np.flatnonzero(np.diff(np.concatenate([copy, [False]]).astype(np.int8)))
-    for first, last in zip(edges[::2] + 1, edges[1::2] + 1, strict=True):
-        if last - first > _LONGEST:
-            copy[first:last] = False
-    return copy
+    first, last = edges[::2] + 1, edges[1::2] + 1
+    if len(first):
+        longest = 1.0 + _LONGER * float(np.median(last - first))
+        for start, stop in zip(first, last, strict=True):
+            if stop - start > longest:
+                copy[start:stop] = False
+                resting[start - 1 : stop] = True
+    return copy, resting
 
 
 def _means(time: FloatArray, values: FloatArray, kept: NDArray[np.intp]) -> FloatArray:
