@@ -20,6 +20,7 @@ from jointid.identification.inference.inference import (
 from jointid.identification.inference.segments import Motion, motion_segments
 from jointid.identification.inference.systematic import systematic_errors
 from jointid.identification.inference.undivided import divided, with_undivided
+from jointid.identification.inference.velocity_noise import velocity_systematic
 from jointid.identification.refinements.refinements import Refinements
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.warnings.diagnosis import diagnose
@@ -87,6 +88,9 @@ def infer(
     )
     spread = with_undivided(spread, kept, free, names, groups)
     parts = systematic_errors(problem, penalty, best, kept, free_jacobian, columns, shifts)
+    effect = velocity_systematic(problem, penalty, best, domain.lower, domain.upper)
+    if effect is not None:
+        parts["velocity"] = np.where(np.isin(np.arange(len(best)), free), effect.systematic, 0.0)
     if given is not None:
         parts["given"] = given
     del free_jacobian
@@ -116,6 +120,7 @@ def infer(
             guessed_sign=domain.guessed_sign,
             inspections=inspections,
             at_best=at_best,
+            velocity_effect=effect,
             correlations={
                 (domain.names[free[i]], domain.names[free[j]]): float(spread.correlation[i, j])
                 for i in range(len(free))
