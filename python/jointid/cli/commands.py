@@ -86,8 +86,12 @@ def identify(arguments: argparse.Namespace) -> int:
             windows=arguments.windows,
             torque_hold=arguments.torque_hold,
         )
+    draws = arguments.bootstrap
+    drawn = None if draws is None else estimate.bootstrap(draws, arguments.seed).report()
     refused = _write(estimate, arguments)
     print(estimate.to_json() if arguments.json else Wording.of(arguments).of_report(estimate))
+    if drawn is not None:  # a program that reads the JSON finds nothing else there
+        print(f"\n{drawn}", file=sys.stderr if arguments.json else sys.stdout)
     return _exit_code(refused, arguments)
 
 

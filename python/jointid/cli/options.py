@@ -37,6 +37,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "ga.generations": "--generations",
         "checkpoint": "--checkpoint",
         "resume": "--resume",
+        "n": "--bootstrap",
     },
     "compare": {**_IDENTIFICATION, **_ESTIMATE, "models": "--model", "folds": "--folds"},
     "simulate": {**_SCENARIO, "seed": "--seed", "output": "--output"},
