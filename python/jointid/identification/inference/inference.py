@@ -170,7 +170,7 @@ def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Join
     inertia = parameters.get("inertia")
     if inertia is not None and inertia.vary and base.reflected_inertia is not None:
         # The estimate replaces the joint's own value.
-        known = replace(base.tolerances, inertia=None, rotor_inertia=None)
-        base = base.replace(inertia=inertia.value, rotor_inertia=None, tolerances=known)
+        unstated = replace(base.tolerances, inertia=None, rotor_inertia=None)
+        base = base.replace(inertia=inertia.value, rotor_inertia=None, tolerances=unstated)
     model = choice.model.replace(per_recording=base.model.per_recording)
     return base.replace(parameters=table, model=model)
