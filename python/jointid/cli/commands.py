@@ -18,7 +18,9 @@ from jointid.cli.study import sweep
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
+    from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.estimate import Estimate
+    from jointid.estimate.self_test import SelfTest
     from jointid.joint.joint import Joint
     from jointid.recording.recording import Recording
 
@@ -86,13 +88,28 @@ def identify(arguments: argparse.Namespace) -> int:
             windows=arguments.windows,
             torque_hold=arguments.torque_hold,
         )
+    tested = estimate.selftest(seed=arguments.seed) if arguments.selftest else None
     draws = arguments.bootstrap
-    drawn = None if draws is None else estimate.bootstrap(draws, arguments.seed).report()
+    drawn = estimate.bootstrap(draws, arguments.seed) if draws is not None else None
     refused = _write(estimate, arguments)
-    print(estimate.to_json() if arguments.json else Wording.of(arguments).of_report(estimate))
-    if drawn is not None:  # a program that reads the JSON finds nothing else there
-        print(f"\n{drawn}", file=sys.stderr if arguments.json else sys.stdout)
+    if arguments.json:
+        print(_with_checks(estimate, tested, drawn))
+    else:
+        print(Wording.of(arguments).of_report(estimate))
+        for check in (tested, drawn):
+            if check is not None:
+                print(f"\n{check.report()}")
     return _exit_code(refused, arguments)
+
+
+def _with_checks(estimate: Estimate, tested: SelfTest | None, drawn: Bootstrap | None) -> str:
+    """The estimate as JSON, with the results of its self-test and its bootstrap if there were any."""
+    checks = {"selftest": tested, "bootstrap": drawn}
+    done = {name: check.document() for name, check in checks.items() if check is not None}
+    if not done:
+        return estimate.to_json()
+    document = json.loads(estimate.to_json()) | done
+    return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
 
 
 def compare(arguments: argparse.Namespace) -> int:

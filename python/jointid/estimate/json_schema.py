@@ -5,6 +5,7 @@ from typing import get_args
 from jointid.base.advice import Kind as ActionKind
 from jointid.base.schema import Flag, Kind, ListOf, Number, OrNull, Plain, Record, TableOf, Text
 from jointid.estimate.findings import Severity
+from jointid.estimate.selection import SELECTION
 from jointid.estimate.settings import SETTINGS
 from jointid.estimate.statistics import SYSTEMATIC_PARTS
 
@@ -103,5 +104,13 @@ ESTIMATE: dict[int, Kind] = {
     1: Record({**_OLD_FIELDS, "warnings": ListOf(_WARNING)}),
     # What is derived is computed again.
     2: Record({**_OLD_FIELDS, "findings": ListOf(_FINDING)}, {"derived": Plain()}),
-    3: Record({**_FIELDS, "findings": ListOf(_FINDING)}, {"derived": Plain()}),
+    3: Record(
+        {**_FIELDS, "findings": ListOf(_FINDING)},
+        {
+            "derived": Plain(),
+            "selection": OrNull(SELECTION),
+            "selftest": Plain(),
+            "bootstrap": Plain(),
+        },
+    ),
 }

@@ -68,6 +68,7 @@ def quality(estimate: Estimate) -> list[tuple[str, str]]:
     return [
         ("model", model_description(estimate.settings)),
         *([("given", f"{stated}; the intervals hold if these facts are right")] * bool(stated)),
+        *([("chosen", estimate.selection.sentence)] if estimate.selection else []),
         (
             "fit",
             f"R² {r.r_squared:.5f}, relative residual {100.0 * r.relative:.2f} %, rms {r.rms:.3g} {unit}",

@@ -75,7 +75,7 @@ def _of_sampling(
     steps = np.asarray(penalty.torque_steps(problem.in_core, problem.mask_standstill))
     accelerated, angle, stepped = np.zeros((3, run.size))
     for number, recording in enumerate(problem.recordings):
-        if not _held(problem, recording):
+        if not held(problem, recording):
             continue
         mine = slice(*np.searchsorted(run, (number, number + 1)))
         first, last = bounds[mine, 0], bounds[mine, 1]
@@ -102,7 +102,8 @@ def _of_sampling(
     return np.abs(both_sides.solve(list(range(count)), count, rcond=1e-10)[0])
 
 
-def _held(problem: Problem, recording: Recording) -> bool:
+def held(problem: Problem, recording: Recording) -> bool:
+    """Return whether the torque is held between samples."""
     hold = problem.torque_hold or recording.torque_hold
     if hold is None and problem.joint is not None:
         hold = problem.joint.torque_hold

@@ -8,6 +8,24 @@ from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter, merge
 
 
+def known_parameters(
+    names: tuple[str, ...],
+    joint: Joint | None,
+    changes: Mapping[str, float | Mapping[str, object] | Parameter] | None,
+) -> list[Parameter]:
+    """Return what joint and call state of each parameter; one recording's own has that of the shared one.
+
+    Raises
+    ------
+    InputError
+        As in `parameter_bounds`.
+    """
+    table = parameter_bounds(names, joint, changes)
+    return [
+        table.get(name) or table.get(name.split("[")[0]) or Parameter(name=name) for name in names
+    ]
+
+
 def parameter_bounds(
     names: tuple[str, ...],
     joint: Joint | None,
