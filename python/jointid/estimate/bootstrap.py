@@ -25,7 +25,8 @@ class BootstrapParameter:
     value : float
         The estimate's.
     stderr : float
-        Standard deviation over the draws.
+        Half of the range that holds the middle 68.3 % of the draws: their standard error, whatever the few do that
+        lack a direction of motion.
     interval : tuple of float
         95 % interval: value ± t · stderr, or percentiles of the draws where `near_bound`.
     ratio : float or None
