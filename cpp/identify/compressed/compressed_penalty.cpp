@@ -279,7 +279,7 @@ void CompressedPenalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd&
       column.tail(count) = -lower * s;
     }
   }
-  if (residual_ == Residual::torque) return;
+  if (residual_ != Residual::sensor) return;
   const double scale = 1.0 / theta[gain_index_];
   residual *= scale;
   if (jacobian != nullptr) {

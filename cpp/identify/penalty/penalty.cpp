@@ -60,12 +60,18 @@ Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms
     throw std::invalid_argument("gear_ratio must be finite and not 0");
   }
   for (const auto& key : terms) add_term(key);
-  if (residual == Residual::sensor && gain_index_ < 0) {
-    throw std::invalid_argument("residual 'sensor' needs the term sensor_gain");
+  if (residual != Residual::torque && gain_index_ < 0) {
+    throw std::invalid_argument(std::string("residual '") +
+                                (residual == Residual::sensor ? "sensor" : "instruments") +
+                                "' needs the term sensor_gain");
   }
+  runs_ = static_cast<Eigen::Index>(recordings.size());
   for (const auto& recording : recordings) {
     if (gain_index_ >= 0 && !recording->recording().has_sensor()) {
       throw std::invalid_argument("the term sensor_gain needs a recording with a sensor signal");
+    }
+    if (residual == Residual::instruments && recording->recording().samples() > 0) {
+      fastest_ = std::max(fastest_, recording->recording().velocity.cwiseAbs().maxCoeff());
     }
     standing_ += recording->standing();
     total_ += recording->recording().samples();
@@ -82,10 +88,7 @@ Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms
   cut(recordings, options);
   integrate_all(recordings, gear_ratio, pool);
   own_columns(per_recording, recordings.size());
-  if (cumulative_) {
-    accumulate(target_);
-    for (Eigen::Index j = 0; j < columns_.cols(); ++j) accumulate(columns_.col(j));
-  }
+  if (cumulative_) accumulate_all();
 }
 
 void Penalty::cut(const Masked& recordings, WindowOptions wanted) {
@@ -151,6 +154,13 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
     w = end;
   }
   const Term duration = find_term("torque_offset");
+  std::vector<Term> link;
+  if (residual_ == Residual::instruments) {
+    for (const auto* key : {"gravity_cos", "gravity_sin", "torque_offset", "inertia"}) {
+      link.push_back(find_term(key));
+    }
+  }
+  link_.resize(rows, static_cast<Eigen::Index>(link.size()));
   const base::Cancel* cancel = pool != nullptr ? &pool->cancel() : nullptr;
   const auto linear = [&](const Block& block) {
     if (cancel != nullptr) cancel->check();
@@ -166,6 +176,10 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
       if (!terms_[j].shapes.empty()) continue;
       integrate(terms_[j], gear_ratio, r, masked.usable(), windows,
                 columns_.col(static_cast<Eigen::Index>(j)).segment(first, count));
+    }
+    for (std::size_t j = 0; j < link.size(); ++j) {
+      integrate(link[j], gear_ratio, r, masked.usable(), windows,
+                link_.col(static_cast<Eigen::Index>(j)).segment(first, count));
     }
   };
   if (pool == nullptr) {
@@ -304,6 +318,12 @@ void Penalty::accumulate(Eigen::Ref<Eigen::VectorXd> values) const {
   }
 }
 
+void Penalty::accumulate_all() {
+  accumulate(target_);
+  for (Eigen::Index j = 0; j < columns_.cols(); ++j) accumulate(columns_.col(j));
+  for (Eigen::Index j = 0; j < link_.cols(); ++j) accumulate(link_.col(j));
+}
+
 void Penalty::shaped_column(const Shaped& shaped, const double* shapes, int which,
                             const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) const {
   std::array<double, 4> own{};
@@ -349,7 +369,7 @@ void Penalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
       jacobian->col(p + s.shapes[i]) -= coefficient * column;
     }
   }
-  if (residual_ == Residual::torque) return;
+  if (residual_ != Residual::sensor) return;
   const double scale = 1.0 / theta[gain_index_];
   residual *= scale;
   if (jacobian != nullptr) {

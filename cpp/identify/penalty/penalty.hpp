@@ -5,10 +5,13 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "identify/balance/decays.hpp"
 #include "identify/balance/quadrature.hpp"
+#include "identify/penalty/instruments.hpp"
 #include "identify/penalty/penalty_function.hpp"
 
 namespace jointid::identify {
@@ -64,6 +67,17 @@ class Penalty final : public PenaltyFunction {
                 base::Pool& pool) const override;
   void columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
                const base::Cancel* cancel = nullptr) const override;
+  /// Replaces the gain's column by its first stage; `free` are the parameters that vary. Before
+  /// that, the residual of instruments is that of the torque. Only with that residual.
+  void project_reading(const std::vector<Eigen::Index>& free, base::Pool* pool = nullptr);
+  void project_reading(const FirstStage& stage, base::Pool* pool = nullptr);
+  /// Of the last project_reading, if any.
+  [[nodiscard]] const std::optional<FirstStage>& first_stage() const { return first_stage_; }
+  /// Integrals of the sensor's reading itself. Only with a gain.
+  [[nodiscard]] Eigen::VectorXd reading() const;
+  /// Turns `residuals` into those with the reading itself, whose scatter is the estimate's; they
+  /// are the same unless the reading is projected.
+  void observe(const Eigen::VectorXd& theta, Eigen::VectorXd& residual) const;
   /// Integrals of the torque.
   [[nodiscard]] const Eigen::VectorXd& target() const override { return target_; }
   /// Columns without the shaped ones, which are zero here.
@@ -103,6 +117,16 @@ class Penalty final : public PenaltyFunction {
   void shaped_column(const Shaped& shaped, const double* shapes, int which,
                      const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) const;
   void accumulate(Eigen::Ref<Eigen::VectorXd> values) const;
+  void accumulate_all();
+  [[nodiscard]] Instruments instruments(const std::vector<Eigen::Index>& free,
+                                        std::size_t windows) const;
+  /// The instruments over some windows; of running sums, over all.
+  [[nodiscard]] Eigen::MatrixXd instrument_rows(const Instruments& instruments,
+                                                const Stretch& windows) const;
+  /// Of (instruments, reading).
+  [[nodiscard]] Eigen::MatrixXd instrument_triangle(const Instruments& instruments,
+                                                    base::Pool* pool) const;
+  [[nodiscard]] std::vector<Stretch> blocks() const;
 
   std::vector<std::string> names_;  ///< coefficients, then shapes
   std::vector<Term> terms_;
@@ -112,6 +136,11 @@ class Penalty final : public PenaltyFunction {
   Eigen::Index gain_index_ = -1;
   Eigen::MatrixXd columns_;  ///< windows x coefficients; shaped ones stay zero here
   Eigen::VectorXd target_;
+  Eigen::MatrixXd link_;  ///< windows x (cosine, sine, duration, velocity change), for instruments
+  Eigen::VectorXd reading_;  ///< the gain's column before its projection
+  std::optional<FirstStage> first_stage_;
+  double fastest_ = 0.0;  ///< in the whole recordings
+  Eigen::Index runs_ = 0;
   std::array<FrictionNodes, 3> nodes_;  ///< by model::Direction, as far as needed
   std::vector<Window> windows_;
   std::vector<int> recording_of_;

@@ -12,9 +12,10 @@
 namespace jointid::identify {
 
 enum class Residual {
-  sensor,  ///< integral of the sensor reading: the torque residual over the sensor's gain (the
-           ///< thesis)
-  torque,  ///< integral of the commanded torque
+  sensor,       ///< integral of the sensor reading: the torque residual over the sensor's gain (the
+                ///< thesis)
+  torque,       ///< integral of the commanded torque
+  instruments,  ///< the same, with the part of the reading that the motion explains
 };
 
 /// P(theta) = |r|^2;  torque: r = target - sum_j c_j column_j(shapes);  sensor: that over

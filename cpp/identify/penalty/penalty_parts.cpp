@@ -46,12 +46,19 @@ Penalty PenaltyParts::part(std::size_t index) const {
   result.recording_of_.assign(recording_of_.begin() + from, recording_of_.begin() + to);
   result.integrate_all(recordings_, gear_ratio_, nullptr);
   result.own_columns(per_recording_, recordings_.size());
-  if (result.cumulative_) {
-    result.accumulate(result.target_);
-    for (Eigen::Index j = 0; j < result.columns_.cols(); ++j)
-      result.accumulate(result.columns_.col(j));
-  }
+  if (result.cumulative_) result.accumulate_all();
   return result;
+}
+
+std::optional<FirstStage> PenaltyParts::first_stage(const std::vector<Eigen::Index>& free,
+                                                    base::Pool* pool) const {
+  if (frame_.residual() != Residual::instruments) return std::nullopt;
+  const Instruments instruments = part(0).instruments(free, windows_.size());
+  std::vector<Eigen::MatrixXd> triangles(count());
+  for_each(count(), pool, [&](std::size_t i) {
+    triangles[i] = part(i).instrument_triangle(instruments, nullptr);
+  });
+  return solve_first_stage(instruments, fold(triangles), window_count());
 }
 
 void for_each(std::size_t count, base::Pool* pool, const std::function<void(std::size_t)>& work) {

@@ -19,6 +19,7 @@ from jointid.estimate.estimate import Estimate
 from jointid.estimate.selection import Selection
 from jointid.identification.conclusion import infer
 from jointid.identification.follow_up import EstimateSource
+from jointid.identification.gain import with_instruments
 from jointid.identification.inference.given import of_given_facts
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Outcome
@@ -30,7 +31,7 @@ from jointid.joint.model import AUTO, Model
 from jointid.joint.parameters import Parameter
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import listed
-from jointid.problem.terms import Request, choose_terms
+from jointid.problem.terms import Request, TermChoice, choose_terms
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
 
@@ -110,6 +111,7 @@ class Prepared:
             "terms": list(choice.terms),
             "dropped": choice.dropped,
             "residual": choice.residual,
+            **_of_gain(choice, penalty),
             "windows": penalty.window_duration,
             "cumulative": penalty.cumulative,
             "torque_hold": problem.torque_hold,
@@ -137,6 +139,16 @@ class Prepared:
             found = other.refit(domain.lower, domain.upper, best, threads=problem.threads)
             shifts.append(found - best)
         return shifts[0], shifts[1]
+
+
+def _of_gain(choice: TermChoice, penalty: _core.Penalty) -> dict[str, Any]:
+    """Return how the sensor's gain is found, as settings."""
+    if choice.residual_reason:
+        return {"residual_reason": choice.residual_reason}
+    stage = penalty.first_stage
+    if stage is None:
+        return {}
+    return {"instruments": {"acceleration": stage.acceleration, "strength": stage.strength}}
 
 
 def prepare(
@@ -197,6 +209,7 @@ def prepare(
         problem, selection = select_model(problem, request, parameters, windows)
     penalty = problem.penalty(windows)
     domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
+    problem, penalty = with_instruments(problem, penalty, domain, windows, residual is not None)
     return Prepared(
         problem=problem, penalty=penalty, domain=domain, windows=windows, selection=selection
     )

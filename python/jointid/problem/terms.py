@@ -14,6 +14,10 @@ from jointid.recording.recording import Recording
 _GRAVITY = ("gravity_cos", "gravity_sin")
 _SENSOR = ("sensor_gain", "sensor_offset")
 
+# What the residual compares: the torque with the part of the reading that the motion explains, the reading
+# with what the torque leaves for it (the thesis), the torque with the reading.
+RESIDUALS = ("instruments", "sensor", "torque")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
@@ -24,7 +28,7 @@ class Request:
     model : Model
         Its fields override those of the joint's model.
     residual : str or None
-        "sensor" or "torque"; None: the sensor if there is one.
+        "instruments", "sensor" or "torque"; None: instruments if there is a sensor, else the torque.
     """
 
     model: Model = field(default_factory=Model)
@@ -42,12 +46,14 @@ class TermChoice:
     model : Model
         The call's fields, then the joint's; its name is never None.
     residual : str
-        "sensor" or "torque".
+        "instruments", "sensor" or "torque".
     sensor : bool
         Whether the terms contain the sensor's gain and offset.
     gear_ratio : float
     dropped : str
         A term that another one makes redundant, and why; empty if none.
+    residual_reason : str
+        Why the residual is not the default; empty if it is, or if the call states it.
     """
 
     terms: tuple[str, ...]
@@ -56,6 +62,7 @@ class TermChoice:
     sensor: bool
     gear_ratio: float = 1.0
     dropped: str = ""
+    residual_reason: str = ""
 
     @property
     def per_recording(self) -> tuple[str, ...]:
@@ -79,9 +86,9 @@ def choose_terms(
     model = stated.resolved
     _check_kind(recordings, joint)
     sensor = _has_sensor(recordings, joint)
-    residual = request.residual or ("sensor" if sensor else "torque")
-    check_choice("", "residual", residual, ("sensor", "torque"))
-    if residual == "sensor" and not sensor:
+    residual = request.residual or ("instruments" if sensor else "torque")
+    check_choice("", "residual", residual, RESIDUALS)
+    if residual != "torque" and not sensor:
         raise InputError(
             "the recording has no torque sensor",
             argument="residual",

@@ -130,7 +130,7 @@ def _signs(known: list[Parameter]) -> tuple[float, ...]:
 def _refuse_zero_gain(
     penalty: _core.Penalty, names: tuple[str, ...], lower: Array, upper: Array
 ) -> None:
-    if "sensor_gain" not in names or penalty.residual != _core.Residual.sensor:
+    if "sensor_gain" not in names or penalty.residual == _core.Residual.torque:
         return
     index = names.index("sensor_gain")
     if lower[index] <= 0.0 <= upper[index]:

@@ -220,7 +220,7 @@ def noise_width(evidence: Evidence) -> float:
         reading = regressor.names.index("sensor_gain")
         own = regressor.triangle.solve(free, reading, rcond=1e-10)[1]
     residual = evidence.residual
-    if evidence.penalty.residual == _core.Residual.torque:
+    if evidence.penalty.residual != _core.Residual.sensor:
         residual = residual / (gain.value or 1e-300)
     freedom = max(1, residual.size - len(free) - 1)
     noise = inner(residual, residual) * residual.size / freedom
