@@ -46,6 +46,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "selftest": "--selftest",
         "checkpoint": "--checkpoint",
         "resume": "--resume",
+        "n": "--bootstrap",
     },
     "compare": {**_IDENTIFICATION, **_ESTIMATE, "models": "--model", "folds": "--folds"},
     "simulate": {**_SCENARIO, "seed": "--seed", "output": "--output"},
