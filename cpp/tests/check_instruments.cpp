@@ -1,8 +1,10 @@
 // The gain by instruments: free of the bias that noise of the reading, or friction that the model
 // lacks, gives to either side of a regression.
 
-#include <stdexcept>
+#include <cmath>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "check.hpp"
@@ -35,9 +37,8 @@ Recording hanging(double noise, double drift, int samples = 12000) {
     r.sensor[k] = (9.0 * std::sin(r.position[k]) - truth.sensor_offset) / truth.sensor_gain;
   }
   for (Eigen::Index k = 0; k + 1 < samples; ++k) {
-    r.torque[k] +=
-        truth.sensor_gain * 0.5 * (r.sensor[k] + r.sensor[k + 1]) + truth.sensor_offset -
-        drift * truth.viscous * static_cast<double>(k) / samples * r.velocity[k];
+    r.torque[k] += truth.sensor_gain * 0.5 * (r.sensor[k] + r.sensor[k + 1]) + truth.sensor_offset -
+                   drift * truth.viscous * static_cast<double>(k) / samples * r.velocity[k];
   }
   for (double& reading : r.sensor) reading += noise * (2.0 * random.uniform() - 1.0);
   return r;
@@ -52,7 +53,7 @@ search::Domain domain() {
   Eigen::VectorXd upper(7);
   lower << 2.5, 0.0, 0.0, 0.0, 0.1, -30.0, 5.0;  // the inertia is known
   upper << 2.5, 60.0, 60.0, 60.0, 20.0, 30.0, 200.0;
-  return {lower, upper};
+  return {std::move(lower), std::move(upper)};
 }
 
 Eigen::VectorXd best_of(const identify::PenaltyFunction& penalty) {
@@ -98,12 +99,13 @@ CHECK_CASE("instruments: direct, compressed and part by part have one minimum") 
   CHECK(compressed.exact());
   const Eigen::VectorXd best = best_of(direct);
   CHECK_CLOSE(compressed(best) / direct(best), 1.0, 1e-9);
-  const auto masked = std::make_shared<const identify::MaskedRecording>(
-      r, identify::usable_intervals(r, true));
+  const auto masked =
+      std::make_shared<const identify::MaskedRecording>(r, identify::usable_intervals(r, true));
   const identify::PenaltyParts parts({masked}, kTerms, {0, 0.01}, Residual::instruments, 1.0, {});
   CHECK(parts.count() > 1);
   const Eigen::VectorXd again = identify::refit(parts, domain(), 1.02 * best, &pool);
-  for (Eigen::Index i = 0; i < best.size(); ++i) CHECK_CLOSE(again[i], best[i], 2e-5 * best[i] + 1e-6);
+  for (Eigen::Index i = 0; i < best.size(); ++i)
+    CHECK_CLOSE(again[i], best[i], 2e-5 * std::fabs(best[i]) + 1e-6);
 }
 
 CHECK_CASE("instruments: the observed residual has the reading itself") {
@@ -122,7 +124,8 @@ CHECK_CASE("instruments: the observed residual has the reading itself") {
   CHECK_CLOSE((observed - expected).norm() / expected.norm(), 0.0, 1e-12);
   // The moments vanish: what two-stage least squares means.
   for (const auto i : {1, 2, 3, 4, 5}) {
-    const double cosine = jacobian.col(i).dot(observed) / (jacobian.col(i).norm() * observed.norm());
+    const double cosine =
+        jacobian.col(i).dot(observed) / (jacobian.col(i).norm() * observed.norm());
     CHECK_CLOSE(cosine, 0.0, 1e-3);
   }
 }
@@ -139,7 +142,7 @@ CHECK_CASE("instruments: a reading that the motion does not explain makes them w
   weak.project_reading(domain().free());
   CHECK(weak.first_stage()->weak());
   Penalty other = penalty_of(r, Residual::torque);
-  CHECK_THROWS(other.project_reading(domain().free()), std::invalid_argument);
+  CHECK_REFUSED(other.project_reading(domain().free()), "instruments");
 }
 
 }  // namespace
