@@ -59,10 +59,22 @@ FOLDERS: dict[str, Folder] = {
     "problem": Folder(may_use=_DATA, packages={"numpy"}),
     "estimate": Folder(may_use={*_DATA, "problem"}, packages={"numpy", "scipy"}),
     "identification": Folder(
-        may_use={*_SOUGHT, "identification/inference", "identification/warnings"},
+        may_use={
+            *_SOUGHT,
+            *("identification/selection", "identification/inference", "identification/warnings"),
+            "identification/self_test",
+        },
         packages={"numpy"},
     ),
     "identification/search": Folder(may_use=_FOUND - {"recording"}, packages={"numpy", "scipy"}),
+    "identification/selection": Folder(
+        may_use={*_FOUND, "identification/search"}, packages={"numpy"}
+    ),
+    # It identifies again, and is imported when an estimate is asked for it.
+    "identification/self_test": Folder(
+        may_use={*(_FOUND - {"joint"}), *("identification/search", "identification/inference")},
+        packages={"numpy"},
+    ),
     "identification/inference": Folder(
         may_use={*_FOUND, "identification/search"} - {"base"}, packages={"numpy", "scipy"}
     ),

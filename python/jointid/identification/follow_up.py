@@ -6,11 +6,18 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from jointid.identification.inference.bootstrap import block_bootstrap
+from jointid.identification.self_test.testing import self_test
+
 if TYPE_CHECKING:
+    from jointid.estimate.bootstrap import Bootstrap
+    from jointid.estimate.estimate import Estimate
+    from jointid.estimate.self_test import SelfTest
     from jointid.identification.search.domain import SearchDomain
     from jointid.identification.search.search import Search
     from jointid.problem.problem import Problem
     from jointid.problem.windows import Windows
+    from jointid.recording.recording import Recording
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,12 +31,26 @@ class EstimateSource:
     windows : int, float, str, WindowOptions or None
         As given in the call.
     search : Search
+    again : callable
+        Returns the estimate from other recordings, with the same settings.
     """
 
     problem: Problem
     domain: SearchDomain
     windows: Windows
     search: Search
+    again: Callable[[tuple[Recording, ...]], Estimate]
+
+    def selftest(self, estimate: Estimate, trials: int, seed: int) -> SelfTest:
+        """Inject known parameters into the recorded motion, and identify them again."""
+        return self_test(
+            self.problem, self.domain, self.windows, self.again, estimate, trials, seed
+        )
+
+    def bootstrap(self, estimate: Estimate, n: int, seed: int) -> Bootstrap:
+        """Draw stretches of the recordings anew, and refit the parameters to each draw."""
+        penalty = self.problem.penalty(self.windows)
+        return block_bootstrap(self.problem, penalty, self.domain, estimate, n, seed)
 
     def __reduce__(self) -> tuple[Callable[[], None], tuple[()]]:
         """Leave the recordings out of a pickled estimate."""

@@ -1,5 +1,7 @@
 """All findings about an estimate: the results of all checks, without those that another finding explains."""
 
+from dataclasses import replace
+
 from jointid.estimate.findings import Finding, Severity
 from jointid.identification.warnings import registry, sensor_lag
 from jointid.identification.warnings.evidence import Evidence
@@ -19,4 +21,14 @@ def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
     # With degrees the motor's angle is wrong, too: a residual that oscillates with it is not ripple.
     spurious = [found for found in kept if units and found.code == "ripple"]
     left = [found for found in kept if found not in (*units[1:], *spurious)]
+    if any(found.severity == "blocking" for found in left):
+        left = [_without_other_fits(found) for found in left]
     return tuple(sorted(left, key=lambda found: _ORDER.index(found.severity)))
+
+
+def _without_other_fits(found: Finding) -> Finding:
+    """The finding without advice to fit again, which rests on values that cannot be used; a blocking one keeps it."""
+    if found.severity == "blocking":
+        return found
+    kept = [each for each in found.advice if (each.kind, each.function) != ("call", "identify")]
+    return replace(found, advice=tuple(kept))
