@@ -20,8 +20,6 @@ constexpr std::size_t kRows = 4096;  // of a block
 constexpr std::size_t kKept = 4;     // blocks up to which their rows are kept between the stages
 // Each recording's link has columns of its own while windows outnumber all columns by this.
 constexpr std::size_t kPerColumn = 50;
-// Fewer windows a column than this: no decays, whose columns would follow the noise.
-constexpr std::size_t kFewest = 10;
 
 }  // namespace
 
@@ -44,7 +42,6 @@ Instruments Penalty::instruments(const std::vector<Eigen::Index>& free, std::siz
   }
   result.runs = runs_;
   if (windows < kPerColumn * static_cast<std::size_t>(result.size())) result.runs = 1;
-  if (windows < kFewest * static_cast<std::size_t>(result.size())) result.rates.clear();
   return result;
 }
 
