@@ -224,6 +224,7 @@ class Recording:
         sensor: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None,
         torque_hold: Hold,
         gap_after: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+        min_speed: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> None: ...
     @property
     def samples(self) -> int: ...
@@ -332,6 +333,12 @@ class PenaltyFunction:
         """
         Derivatives of the residuals, shape (rows, parameters).
         """
+    def linear_columns(
+        self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Columns of the balance made linear there, shape (rows, coefficients).
+        """
     def residuals(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
@@ -340,6 +347,11 @@ class PenaltyFunction:
         """
     @property
     def coefficients(self) -> int: ...
+    @property
+    def is_linear(self) -> bool:
+        """
+        Whether the balance is linear in the coefficients for given shapes.
+        """
     @property
     def names(self) -> list[str]: ...
     @property
@@ -390,6 +402,7 @@ class Penalty(PenaltyFunction):
         gear_ratio: typing.SupportsFloat | typing.SupportsIndex = 1.0,
         per_recording: collections.abc.Sequence[str] = [],
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
+        link_share: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> None: ...
     def columns(
         self, shapes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
@@ -518,6 +531,7 @@ class PenaltyParts:
         gear_ratio: typing.SupportsFloat | typing.SupportsIndex = 1.0,
         per_recording: collections.abc.Sequence[str] = [],
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
+        link_share: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> None: ...
     def refit(
         self,
@@ -1277,11 +1291,6 @@ class Inspection:
         """
     @property
     def peak_speed(self) -> float: ...
-    @property
-    def sensor_lag(self) -> tuple[float, float]:
-        """
-        How late the sensor is, and the error of that [s].
-        """
     @property
     def spikes(self) -> list[Spike]:
         """
@@ -2778,7 +2787,6 @@ def inspect(
     position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     velocity_derived: bool,
-    sensor: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None,
     period: typing.SupportsFloat | typing.SupportsIndex,
     channels: collections.abc.Sequence[
         tuple[typing.Annotated[numpy.typing.ArrayLike, numpy.float64], SpikeRule, bool]
