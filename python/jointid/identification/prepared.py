@@ -234,8 +234,9 @@ def prepare(
             problem, selection = select_model(problem, request, parameters, windows)
         problem, penalty, slow_motion = without_creep(problem, windows, speed)
         domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
-    except InputError:
-        raise_if_hardly_moving(runs)  # what was refused follows from it
+    except InputError as error:
+        if error.place == "parameters":  # they are not excited
+            raise_if_hardly_moving(runs)
         raise
     problem, penalty = with_instruments(problem, penalty, domain, windows, residual is not None)
     return Prepared(
