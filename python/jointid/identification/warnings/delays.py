@@ -35,7 +35,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             yield SIGNAL_LAG.finding(
                 f"{_described(delay, evidence)}, but the torque balance does not fit better without it: other "
                 "signals may be as late, or filtered alike",
-                Action("inspect", text="the filters and the clocks of position, velocity and torque"),
+                Action(
+                    "inspect", text="the filters and the clocks of position, velocity and torque"
+                ),
                 evidence=_measured(delay, evidence),
                 parameters=_concerned(delay, evidence),
             )
