@@ -52,22 +52,26 @@ def refined_delays(
     if shift:
         problem = _shifted(problem, shift)
     found: dict[str, Delay] = {}
-    pieces = pieces_of(problem)
+    mended = (
+        problem  # also without what the call leaves: the next signal is held against true motion
+    )
+    pieces = pieces_of(mended)
     for signal, measure in (("velocity", _velocity), ("sensor", _sensor), ("torque", _torque)):
         measured = measure(pieces)
         if measured is None:
             continue
         left, certain = measured
-        taken = shift.get(signal, 0.0)
-        value, fits = taken + left.value, False
+        taken, fits = shift.get(signal, 0.0), False
+        value = taken + left.value
         if certain:
-            without = _shifted(problem, {signal: left.value})
-            fits = fits_better(problem, without, _LEAST_GAIN[signal])
-            # Friction that the model lacks may look like a late torque; the others are measured without friction.
+            without = _shifted(mended, {signal: left.value})
+            fits = fits_better(mended, without, _LEAST_GAIN[signal])
+            # Friction that the model lacks may look like a late torque; the others are measured without it.
             certain = fits or signal != "torque"
+            if fits:
+                mended, pieces = without, pieces_of(without)
             if fits and choose:
                 shift[signal] = taken = left.value
-                problem, pieces = without, pieces_of(without)
         found[signal] = Delay(
             signal=signal,
             value=value,
@@ -76,6 +80,8 @@ def refined_delays(
             fits=fits,
             applied=taken,
         )
+    if choose:
+        problem = mended
     return replace(problem, shift=shift) if shift else problem, found
 
 
