@@ -135,6 +135,14 @@ def _add_identify(commands: Any) -> None:
         "--checkpoint", type=Path, help="write the state of a long search to this file"
     )
     identify.add_argument("--resume", type=Path, help="continue from a checkpoint")
+    identify.add_argument(
+        "--bootstrap",
+        type=whole,
+        nargs="?",
+        const=1000,
+        metavar="DRAWS",
+        help="check the standard errors by drawing stretches of the recording anew (default 1000 draws)",
+    )
     _output_arguments(identify)
 
 

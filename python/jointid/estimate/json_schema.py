@@ -132,6 +132,7 @@ ESTIMATE: dict[int, Kind] = {
             "selftest": Plain(),
             "delays": TableOf(_DELAY),
             "slow_motion": OrNull(_SLOW_MOTION),
+            "bootstrap": Plain(),
         },
     ),
 }

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from jointid import _core
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.estimate.friction_map import shared_value
@@ -20,9 +23,61 @@ from jointid.recording.shifting import shifted
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
 
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PredictedTorque:
+    """The drive's torque in each window, and what a prediction from motion and reading misses of it.
+
+    Attributes
+    ----------
+    start, stop : ndarray
+        [s]
+    torque, residual : ndarray
+        Integrals [N·m·s]; the residual is the torque less the predicted one.
+    """
+
+    start: Array
+    stop: Array
+    torque: Array
+    residual: Array
+
 
 def predict(estimate: Estimate, recording: Recording) -> Prediction:
     """Predict a recording: see `Estimate.predict`."""
+    problem, penalty, theta = _posed(estimate, recording)
+    table = problem.table(penalty, theta)
+    return Prediction(
+        windows=table,
+        relative=relative_residual(table),
+        r_squared=r_squared(table),
+    )
+
+
+def predicted_torque(estimate: Estimate, recording: Recording) -> PredictedTorque:
+    """Return how an estimate predicts the drive's torque, whichever residual it was fitted by.
+
+    Raises
+    ------
+    InputError
+        As `Estimate.predict`.
+    """
+    _, penalty, theta = _posed(estimate, recording)
+    residual = np.asarray(penalty.residuals(theta))
+    if penalty.residual == _core.Residual.sensor:
+        residual = residual * theta[penalty.names.index("sensor_gain")]
+    bounds = np.asarray(penalty.windows)
+    return PredictedTorque(
+        start=recording.time[bounds[:, 0]],
+        stop=recording.time[bounds[:, 1]],
+        torque=np.asarray(penalty.target),
+        residual=residual,
+    )
+
+
+def _posed(estimate: Estimate, recording: Recording) -> tuple[Problem, _core.Penalty, Array]:
+    """Return the problem that a recording poses, its penalty, and the estimate's values in it."""
     require_kind("recording", recording, Recording)
     settings = estimate.settings
     choice = TermChoice(
@@ -58,9 +113,4 @@ def predict(estimate: Estimate, recording: Recording) -> Prediction:
     penalty = problem.penalty(settings["windows"])
     values = {name: parameter.value for name, parameter in estimate.parameters.items()}
     theta = np.array([shared_value(values, name) for name in penalty.names])
-    table = problem.table(penalty, theta)
-    return Prediction(
-        windows=table,
-        relative=relative_residual(table),
-        r_squared=r_squared(table),
-    )
+    return problem, penalty, theta

@@ -12,7 +12,8 @@ from jointid.estimate.settings import model_description, residual_unit
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import number, percent, two_digits
 
-HEAD = ("parameter", "value", "± std. error", "95 % interval", "unit", "remark")
+HEAD = ("parameter", "value", "± std. error", "± systematic", "95 % interval", "unit", "remark")
+Row = tuple[str, str, str, str, str, str, str]
 
 
 def remark(p: ParameterEstimate) -> str:
@@ -35,27 +36,38 @@ def shown_name(name: str) -> str:
     return name
 
 
-def rows(estimate: Estimate) -> list[tuple[str, str, str, str, str, str]]:
+def rows(estimate: Estimate) -> list[Row]:
     """The parameter table: one row a parameter, then one a derived quantity."""
     table = [_row(p, remark(p)) for p in estimate.parameters.values()]
     return table + [_row(each, f"= {each.formula}") for each in estimate.derived.values()]
 
 
-def _row(p: ParameterEstimate | DerivedValue, text: str) -> tuple[str, str, str, str, str, str]:
+def _row(p: ParameterEstimate | DerivedValue, text: str) -> Row:
     error = interval = ""
     if p.stderr is not None and p.interval is not None:
         share = f" ({percent(p.stderr / abs(p.value))})" if p.value else ""
         error = f"{two_digits(p.stderr)}{share}"
         interval = f"{p.interval[0]:.5g} … {p.interval[1]:.5g}"
-    return shown_name(p.name), number(p.value), error, interval, p.unit, text
+    beside = systematic(p) if isinstance(p, ParameterEstimate) else ""
+    return shown_name(p.name), number(p.value), error, beside, interval, p.unit, text
+
+
+def systematic(p: ParameterEstimate) -> str:
+    """All systematic parts together, and the name of the largest, e.g. "1.3 (given)"."""
+    if p.largest_part is None:
+        return ""
+    return f"{two_digits(p.systematic_total)} ({p.largest_part.replace('_', ' ')})"
 
 
 def quality(estimate: Estimate) -> list[tuple[str, str]]:
     """Quality of the fit and what it is based on, as label and text."""
     r = estimate.residuals
     unit = residual_unit(estimate.settings)
+    tolerances = estimate.joint.tolerances.given.items()
+    stated = ", ".join(f"{name} ± {value}" for name, value in tolerances)
     return [
         ("model", model_description(estimate.settings)),
+        *([("given", f"{stated}; the intervals hold if these facts are right")] * bool(stated)),
         *([("chosen", estimate.selection.sentence)] if estimate.selection else []),
         (
             "fit",
@@ -122,7 +134,7 @@ def text_report(estimate: Estimate, action: Callable[[Action], str] = str) -> st
     lines = [f"jointid estimate — {estimate.joint.name or 'joint'}", ""]
     for index, row in enumerate(table):
         cells = [
-            cell.rjust(w) if 0 < c < 3 and index else cell.ljust(w)
+            cell.rjust(w) if 0 < c < 4 and index else cell.ljust(w)
             for c, (cell, w) in enumerate(zip(row, widths, strict=True))
         ]
         lines.append("  ".join(cells).rstrip())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import time
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -13,6 +14,8 @@ from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
+from jointid.problem.recordings import listed
+from jointid.problem.terms import loads
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
 
@@ -91,6 +94,25 @@ def identify(
     """
     started = time.perf_counter()
     chosen = Search.of(search)
+    stated = Model.of(model)
+    merged = stated.over(joint.model) if isinstance(joint, Joint) else stated
+    if merged.load_friction is True:
+        either = [
+            functools.partial(identify, recordings, joint, model=stated.replace(load_friction=load))
+            for load in loads(merged, listed(recordings), joint)
+        ]
+        found = [
+            each(
+                parameters=parameters,
+                search=chosen,
+                residual=residual,
+                windows=windows,
+                torque_hold=torque_hold,
+                mask_standstill=mask_standstill,
+            )
+            for each in either
+        ]
+        return min(found, key=lambda estimate: estimate.residuals.relative)
     prepared = prepare(
         recordings,
         joint,

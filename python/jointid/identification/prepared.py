@@ -35,10 +35,12 @@ from jointid.identification.selection.selecting import select_model
 from jointid.joint.joint import Joint
 from jointid.joint.model import AUTO, Model
 from jointid.joint.parameters import Parameter
+from jointid.problem.constant_torque import balanced, with_fixed_offset
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import listed
 from jointid.problem.terms import Request, TermChoice, choose_terms
 from jointid.problem.windows import Windows
+from jointid.recording.motion import raise_if_hardly_moving
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -82,13 +84,15 @@ class Prepared:
         started : float
             Reading of `time.perf_counter` at the start of the identification.
         """
+        domain = self.domain
+        best = balanced(domain.names, domain.lower, domain.upper, outcome.best)
         estimate = infer(
             problem=self.problem,
             penalty=self.penalty,
-            domain=self.domain,
-            best=outcome.best,
-            shifts=self._window_shifts(outcome.best),
-            given=of_given_facts(self.problem, self.windows, self.domain, outcome.best),
+            domain=domain,
+            best=best,
+            shifts=self._window_shifts(best),
+            given=of_given_facts(self.problem, self.windows, domain, best),
             convergence=outcome.convergence,
             status=outcome.status,
             message=outcome.message,
@@ -141,6 +145,7 @@ class Prepared:
         """Return the change of the parameters when windows are halved and doubled; None where that is impossible."""
         problem, domain = self.problem, self.domain
         options = problem.window_options(self.windows)
+        lower, upper = with_fixed_offset(domain.names, domain.lower, domain.upper, best)
         shifts: list[Array | None] = []
         for factor in (0.5, 2.0):
             try:
@@ -151,7 +156,7 @@ class Prepared:
             if other.window_count == self.penalty.window_count:
                 shifts.append(None)
                 continue
-            found = other.refit(domain.lower, domain.upper, best, threads=problem.threads)
+            found = other.refit(lower, upper, best, threads=problem.threads)
             shifts.append(found - best)
         return shifts[0], shifts[1]
 
@@ -224,10 +229,14 @@ def prepare(
     problem, delays = without_delays(problem, shift)
     speed = checked_speed(min_speed)
     selection = None
-    if choose and not merged.named:
-        problem, selection = select_model(problem, request, parameters, windows)
-    problem, penalty, slow_motion = without_creep(problem, windows, speed)
-    domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
+    try:
+        if choose and not merged.named:
+            problem, selection = select_model(problem, request, parameters, windows)
+        problem, penalty, slow_motion = without_creep(problem, windows, speed)
+        domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
+    except InputError:
+        raise_if_hardly_moving(runs)  # what was refused follows from it
+        raise
     problem, penalty = with_instruments(problem, penalty, domain, windows, residual is not None)
     return Prepared(
         problem=problem,

@@ -13,8 +13,10 @@ from jointid.estimate.delays import Delay
 from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.identification.inference.covariance import Triangle
+from jointid.identification.inference.velocity_noise import VelocityEffect
 from jointid.identification.warnings.inspection import Inspected
 from jointid.joint.joint import Joint
+from jointid.problem.constant_torque import Undivided, undivided
 from jointid.problem.problem import Problem
 from jointid.problem.window_table import WindowTable
 from jointid.recording.recording import Recording
@@ -70,6 +72,8 @@ class Evidence:
         Properties of the signals of each recording.
     at_best : Regressor
         At the estimated shape parameters.
+    velocity_effect : VelocityEffect or None
+        What the velocity's noise does to the parameters; None where it is harmless.
     correlations : mapping
         Of each pair of free parameters, offsets centred.
     delays : mapping of str to Delay
@@ -96,6 +100,7 @@ class Evidence:
     correlations: Mapping[tuple[str, str], float]
     delays: Mapping[str, Delay]
     slow_motion: SlowMotion | None
+    velocity_effect: VelocityEffect | None = None
 
     @property
     def recordings(self) -> tuple[Recording, ...]:
@@ -113,6 +118,13 @@ class Evidence:
         return self.problem.choice.model.resolved.name
 
     @property
+    def undivided(self) -> tuple[Undivided, ...]:
+        """Directions along which nothing tells an offset from the difference of Coulomb frictions."""
+        return undivided(
+            [p.name for p in self.parameters.values() if p.vary and p.at_bound is None]
+        )
+
+    @property
     def sensor_parameters(self) -> tuple[str, ...]:
         """Parameters of the torque sensor."""
         names = ("sensor_gain", "sensor_offset")
@@ -122,8 +134,7 @@ class Evidence:
         """Window integrals of every term and of the target, at the estimated shape parameters or others [unit · s]."""
         if best is None:
             return self.at_best
-        count = self.penalty.coefficients
-        columns = self.penalty.columns(best[count:])
+        columns = self.penalty.linear_columns(best)
         return regressor(self.penalty, columns, self.problem.threads)
 
 

@@ -22,6 +22,7 @@ FILES = (
     "model_too_rich",
     "at_bound",
     "undetermined",
+    "undivided_offset",
     "ripple",
     "poor_fit",
     "structured_residual",
