@@ -402,7 +402,6 @@ class Penalty(PenaltyFunction):
         gear_ratio: typing.SupportsFloat | typing.SupportsIndex = 1.0,
         per_recording: collections.abc.Sequence[str] = [],
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
-        link_share: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> None: ...
     def columns(
         self, shapes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
@@ -531,7 +530,6 @@ class PenaltyParts:
         gear_ratio: typing.SupportsFloat | typing.SupportsIndex = 1.0,
         per_recording: collections.abc.Sequence[str] = [],
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
-        link_share: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> None: ...
     def refit(
         self,
