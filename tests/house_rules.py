@@ -59,9 +59,13 @@ FOLDERS: dict[str, Folder] = {
     "problem": Folder(may_use=_DATA, packages={"numpy"}),
     "estimate": Folder(may_use={*_DATA, "problem"}, packages={"numpy", "scipy"}),
     "identification": Folder(
-        may_use={*_SOUGHT, "identification/inference", "identification/warnings"},
+        may_use={
+            *_SOUGHT,
+            *("identification/inference", "identification/warnings", "identification/causes"),
+        },
         packages={"numpy"},
     ),
+    "identification/causes": Folder(may_use=_FOUND, packages={"numpy"}),
     "identification/search": Folder(may_use=_FOUND - {"recording"}, packages={"numpy", "scipy"}),
     "identification/inference": Folder(
         may_use={*_FOUND, "identification/search"} - {"base"}, packages={"numpy", "scipy"}

@@ -22,6 +22,7 @@ from jointid.estimate.statistics import (
 from jointid.problem.window_table import Prediction, WindowTable
 
 if TYPE_CHECKING:
+    from jointid.estimate.causes import Causes
     from jointid.estimate.derived import DerivedValue
     from jointid.estimate.follow_up import FollowUp
     from jointid.joint.joint import Joint
@@ -161,6 +162,42 @@ class Estimate:
         from jointid.estimate.prediction import predict
 
         return predict(self, recording)
+
+    def causes(self, signals: Mapping[str, ArrayLike] | None = None) -> Causes:
+        """Say why the model does not fit: causes by name, what they explain, what they move, what to do.
+
+        Each candidate is fitted together with the model to part of the recording and judged on the rest,
+        at windows of 1, 4, 16 and 64 times the length used. `identify` does so by itself where the
+        residuals are more than noise, and reports the causes as findings.
+
+        Parameters
+        ----------
+        signals : mapping of str to array_like, optional
+            Further signals of the recording that may act on the joint, by name, one value a sample:
+            another joint's velocity, a temperature. Default: none.
+
+        Returns
+        -------
+        Causes
+
+        Raises
+        ------
+        InputError
+            The estimate was read from a file, which does not hold its recordings; or a signal that does
+            not fit the recording.
+
+        Examples
+        --------
+        >>> print(estimate.causes())  # doctest: +SKIP
+        drift: a coefficient that changes during the recording (viscous, −30 % over the recording) ...
+        """
+        if self.follow_up is None:
+            raise InputError(
+                "an estimate that was read from a file has no recordings",
+                argument="follow_up",
+                remedy="identify the recordings again",
+            )
+        return self.follow_up.causes(self, signals)
 
     def report(self) -> str:
         """Return the estimate as text: parameters, quality of the fit, findings."""

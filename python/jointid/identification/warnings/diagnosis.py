@@ -19,4 +19,10 @@ def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
     # With degrees the motor's angle is wrong, too: a residual that oscillates with it is not ripple.
     spurious = [found for found in kept if units and found.code == "ripple"]
     left = [found for found in kept if found not in (*units[1:], *spurious)]
+    left = [found for place, found in enumerate(left) if not _again(found, left[:place])]
     return tuple(sorted(left, key=lambda found: _ORDER.index(found.severity)))
+
+
+def _again(found: Finding, before: list[Finding]) -> bool:
+    """Whether a check of its own has already raised what the attribution names, too."""
+    return "share" in found.evidence and found.code in {each.code for each in before}

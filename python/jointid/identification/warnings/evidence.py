@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.estimate.causes import Causes
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.identification.inference.covariance import Triangle
 from jointid.identification.warnings.inspection import Inspected
@@ -70,6 +71,8 @@ class Evidence:
         At the estimated shape parameters.
     correlations : mapping
         Of each pair of free parameters, offsets centred.
+    causes : Causes or None
+        Why the model does not fit; None where the residuals are noise.
     """
 
     problem: Problem
@@ -88,6 +91,7 @@ class Evidence:
     inspections: tuple[Inspected, ...]
     at_best: Regressor
     correlations: Mapping[tuple[str, str], float]
+    causes: Causes | None = None
 
     @property
     def recordings(self) -> tuple[Recording, ...]:

@@ -23,6 +23,7 @@ FILES = (
     "at_bound",
     "undetermined",
     "ripple",
+    "causes",
     "poor_fit",
     "structured_residual",
     "standing",

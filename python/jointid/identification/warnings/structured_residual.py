@@ -1,4 +1,4 @@
-"""Residuals that are not noise."""
+"""Residuals that are not noise, where no cause has a name."""
 
 from collections.abc import Iterator
 
@@ -9,8 +9,8 @@ from jointid.identification.warnings.evidence import Evidence
 
 STRUCTURED_RESIDUAL = FindingType(
     code="structured_residual",
-    meaning="the residuals of neighbouring windows are correlated by more than 0.5: the model misses a "
-    "systematic effect",
+    meaning="the residuals of neighbouring windows are correlated by more than 0.5, and no cause with a name explains "
+    "that: the model misses a systematic effect",
     advice="look at the picture of the residuals; the standard errors allow for the correlation, a bias may remain",
     picture="windows",
 )
@@ -20,13 +20,27 @@ _CORRELATED = 0.5
 def _find(evidence: Evidence) -> Iterator[Finding]:
     # Running integrals of white noise are correlated by themselves.
     correlation = evidence.residuals.autocorrelation
-    if correlation > _CORRELATED and not evidence.penalty.cumulative:
-        yield STRUCTURED_RESIDUAL.finding(
-            f"the residuals are autocorrelated (r = {correlation:.2f}): the model misses a systematic effect; the "
-            "standard errors allow for it, a bias may remain",
-            Action("inspect", text="the residuals over time and over velocity"),
-            evidence={"autocorrelation": Measured(correlation)},
-        )
+    if correlation <= _CORRELATED or evidence.penalty.cumulative or named(evidence):
+        return
+    yield STRUCTURED_RESIDUAL.finding(
+        f"the residuals are autocorrelated (r = {correlation:.2f}): the model misses a systematic effect; the "
+        f"standard errors allow for it, a bias may remain{excluded(evidence)}",
+        Action("inspect", text="the residuals over time and over velocity"),
+        evidence={"autocorrelation": Measured(correlation)},
+    )
+
+
+def named(evidence: Evidence) -> bool:
+    """Whether a cause of the misfit is found."""
+    return evidence.causes is not None and bool(evidence.causes.found)
+
+
+def excluded(evidence: Evidence) -> str:
+    """What was looked for and not found, as the end of a sentence."""
+    if evidence.causes is None or not evidence.causes.excluded:
+        return ""
+    names = [name.replace("_", " ") for name in evidence.causes.excluded]
+    return f"; it is not {', '.join(names[:-1])} or {names[-1]}" if len(names) > 1 else ""
 
 
 CHECK = Check(_find, (STRUCTURED_RESIDUAL,))

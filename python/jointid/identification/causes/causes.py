@@ -1,0 +1,160 @@
+"""`find_causes`: the causes of a misfit, with what they move and what to do about them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.estimate.causes import Cause, Causes
+from jointid.estimate.statistics import ParameterEstimate
+from jointid.identification.causes.advice import advice
+from jointid.identification.causes.attribution import Attributed, attribute
+from jointid.identification.causes.candidates import candidates, inertia_basis
+from jointid.identification.causes.fitted import Fitted
+from jointid.problem.problem import Problem
+
+Array = NDArray[np.float64]
+
+_MOVED, _ERRORS = 0.03, 1.5  # share of a value, and standard errors, from which a cause matters
+_UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it must move by more
+_LEAST = 0.003  # share of a value: a smaller change matters to nobody, however certain
+
+
+def find_causes(
+    problem: Problem,
+    penalty: _core.Penalty,
+    parameters: Mapping[str, ParameterEstimate],
+    *,
+    torque_level: float,
+    signals: Mapping[str, Array] | None = None,
+) -> Causes:
+    """Attribute the misfit of an estimate.
+
+    Parameters
+    ----------
+    problem : Problem
+    penalty : Penalty
+        Over the windows used.
+    parameters : mapping of str to ParameterEstimate
+    torque_level : float
+        Root mean square of the torque [N·m or N]; what an offset is held against.
+    signals : mapping of str to ndarray, optional
+        Further signals of the first recording, one value a sample.
+    """
+    names = list(penalty.names)
+    best = np.array([parameters[name].value for name in names])
+    free = tuple(
+        index
+        for index, name in enumerate(names)
+        if parameters[name].vary and parameters[name].at_bound is None
+    )
+    fit = Fitted.of(problem, penalty, best, free, signals)
+    tried = candidates(fit)
+    found, harmless = [], []
+    for each in attribute(fit, tried):
+        cause = _cause(fit, each, parameters, torque_level)
+        (found if cause.relative else harmless).append(cause)
+    wanted = dict.fromkeys([*(each.name for each in tried), "disturbance"])
+    return Causes(found=tuple(found), harmless=tuple(harmless), tried=tuple(wanted))
+
+
+def _cause(
+    fit: Fitted,
+    each: Attributed,
+    parameters: Mapping[str, ParameterEstimate],
+    torque_level: float,
+) -> Cause:
+    shifts = {
+        fit.names[index]: float(shift) for index, shift in zip(fit.free, each.shifts, strict=True)
+    }
+    shifts |= _of_itself(fit, each)
+    relative = {
+        name: share
+        for name, shift in shifts.items()
+        if (share := _matters(parameters[name], shift, torque_level)) is not None
+    }
+    return Cause(
+        name=each.candidate.name,
+        detail=_detail(fit, each),
+        share=each.share,
+        scale=each.factor * float(fit.penalty.window_duration),
+        size=_size(fit, each),
+        shifts=shifts,
+        relative=relative,
+        alike=each.alike,
+        advice=advice(fit, each),
+    )
+
+
+def _matters(p: ParameterEstimate, shift: float, torque_level: float) -> float | None:
+    """The shift as a share of the value where it is noticeable, else None."""
+    scale = max(abs(p.value), torque_level) if "offset" in p.name else abs(p.value)
+    if scale == 0.0:
+        return None
+    share = abs(shift) / scale
+    error = p.stderr or 0.0
+    errors = abs(shift) / error if error > 0.0 else 0.0
+    if error > _UNKNOWN * scale and errors < _CLEARLY:
+        return None
+    if share > _MOVED or (errors > _ERRORS and share > _LEAST):
+        return float(np.copysign(share, shift))
+    return None
+
+
+def _of_itself(fit: Fitted, each: Attributed) -> dict[str, float]:
+    """A coefficient that is no constant: half of its range."""
+    name, detail = each.candidate.name, each.candidate.detail
+    if name == "drift" and detail in fit.names:
+        return {detail: float(0.5 * each.coefficients[0] * _span(fit))}
+    if name == "inertia_varies" and "inertia" in fit.names:
+        return {"inertia": _half_range(fit, each)}
+    if name == "asymmetry" and "viscous" in fit.names:
+        return {"viscous": float(each.coefficients[0])}
+    return {}
+
+
+def _half_range(fit: Fitted, each: Attributed) -> float:
+    """Half of the range of an inertia that varies, over the angles of the recordings."""
+    orders = [float(order) for order in each.candidate.detail.split(" and ")]
+    basis = np.hstack([inertia_basis(fit, order) for order in orders])
+    return 0.5 * float(np.ptp(basis @ each.coefficients))
+
+
+def _span(fit: Fitted) -> float:
+    return max(run.duration for run in fit.problem.recordings)
+
+
+def _detail(fit: Fitted, each: Attributed) -> str:
+    name, detail = each.candidate.name, each.candidate.detail
+    length = "m" if fit.problem.recordings[0].kind == "prismatic" else "rad"
+    if name in ("harmonic", "ripple"):
+        return f"{detail} × {'motor ' if name == 'ripple' else ''}angle"
+    if name == "inertia_varies":
+        return " and ".join(f"{order} × angle" for order in detail.split(" and "))
+    if name in ("slow_motion", "stribeck_exponent") and detail:
+        return f"{detail} {length}/s"
+    return f"{detail}".replace(" of a reversal", f" {length} of a reversal")
+
+
+def _size(fit: Fitted, each: Attributed) -> str:
+    name, found = each.candidate.name, each.coefficients
+    torque = "N" if fit.problem.recordings[0].kind == "prismatic" else "N·m"
+    if name in ("gravity", "harmonic", "ripple"):
+        return f"{np.hypot(*found):.3g} {torque}"
+    if name in ("offset", "disturbance"):
+        return f"{found[0]:.3g} {torque}"
+    if name == "delay":
+        return f"{1e3 * found[0]:.2g} ms late"
+    if name == "load_friction":
+        return f"{found[0]:.3g} of the load"
+    if name == "drift":
+        value = fit.value(each.candidate.detail)
+        percent = 100.0 * found[0] / (abs(value) or 1.0)
+        return f"{percent * _span(fit):+.3g} % over the recording, {60.0 * percent:+.3g} % a minute"
+    if name == "inertia_varies":
+        value = fit.value("inertia") or 1.0
+        return f"±{100.0 * _half_range(fit, each) / abs(value):.2g} %"
+    return ""
