@@ -90,7 +90,13 @@ def infer(
         statistics.r_squared < POORLY_EXPLAINED
         or suspicious(table.residual, run, table.duration, table.velocity)
     ) and not penalty.cumulative:
-        causes = find_causes(problem, penalty, parameters, torque_level=torque_level)
+        causes = find_causes(
+            problem,
+            penalty,
+            parameters,
+            torque_level=torque_level,
+            r_squared=statistics.r_squared,
+        )
     findings = diagnose(
         Evidence(
             problem=problem,

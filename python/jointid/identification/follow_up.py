@@ -55,6 +55,7 @@ class EstimateSource:
             penalty,
             estimate.parameters,
             torque_level=float(np.sqrt(np.mean(torque**2))),
+            r_squared=estimate.residuals.r_squared,
             signals=self._checked(signals or {}),
         )
 

@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 
 _MOVED, _ERRORS = 0.03, 1.5  # share of a value, and standard errors, from which a cause matters
 _UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it must move by more
+_PART = 0.02  # of the variance of what was measured
 _LEAST = 0.003  # share of a value: a smaller change matters to nobody, however certain
 
 
@@ -29,6 +30,7 @@ def find_causes(
     parameters: Mapping[str, ParameterEstimate],
     *,
     torque_level: float,
+    r_squared: float,
     signals: Mapping[str, Array] | None = None,
 ) -> Causes:
     """Attribute the misfit of an estimate.
@@ -41,6 +43,8 @@ def find_causes(
     parameters : mapping of str to ParameterEstimate
     torque_level : float
         Root mean square of the torque [N·m or N]; what an offset is held against.
+    r_squared : float
+        Share of the variance that the model explains.
     signals : mapping of str to ndarray, optional
         Further signals of the first recording, one value a sample.
     """
@@ -56,7 +60,9 @@ def find_causes(
     found, harmless = [], []
     for each in attribute(fit, tried):
         cause = _cause(fit, each, parameters, torque_level)
-        (found if cause.relative else harmless).append(cause)
+        # A large part of what was measured matters, however badly the values are known without it.
+        matters = cause.relative or cause.share * (1.0 - r_squared) > _PART
+        (found if matters else harmless).append(cause)
     wanted = dict.fromkeys([*(each.name for each in tried), "disturbance"])
     return Causes(found=tuple(found), harmless=tuple(harmless), tried=tuple(wanted))
 
