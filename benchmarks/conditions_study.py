@@ -1,0 +1,234 @@
+"""`make study`: 46 conditions with random joints each; writes docs/conditions.md.
+
+Clean conditions show errors, coverage and false findings; mismatches and defects show whether a finding names every
+parameter that is off.
+"""
+
+from __future__ import annotations
+
+import argparse
+import collections
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from conditions import CONDITIONS, DURATION, Condition
+from plants import Bench, simulate
+
+import jointid as jid
+
+OFF = 0.05  # a relative error above this one has to be named
+_SIDE_BY_SIDE = 240  # runs of one simulation
+_NEAR_ZERO = ("torque_offset", "sensor_offset", "gravity_cos", "gravity_sin")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """One identification against the truth.
+
+    Attributes
+    ----------
+    errors : dict of str to float
+        Relative; infinite for a parameter that the estimate does not have.
+    inside : dict of str to bool
+        Whether the 95 % interval contains the truth; no entry without an interval.
+    named : frozenset of str
+        Parameters that a finding of severity "warning" or "blocking" names.
+    codes : frozenset of str
+        Of those findings.
+    false : frozenset of str
+        Of those that would be false if the recording is clean.
+    """
+
+    errors: dict[str, float]
+    inside: dict[str, bool]
+    named: frozenset[str]
+    codes: frozenset[str]
+    false: frozenset[str]
+
+    @property
+    def off(self) -> list[str]:
+        """Parameters that are off by more than 5 %."""
+        return [name for name, error in self.errors.items() if abs(error) > OFF]
+
+    @property
+    def unnamed(self) -> list[str]:
+        """Those of them that no finding names."""
+        return [name for name in self.off if name not in self.named]
+
+
+def outcome(condition: Condition, recording: jid.Recording) -> Outcome:
+    """Identify one recording, and hold it against its truth."""
+    estimate = jid.identify(recording, condition.joint(recording))
+    truth = dict(recording.truth or {})
+    if truth["static"] == 0.0:  # without static friction its shape means nothing
+        truth = {name: value for name, value in truth.items() if name not in ("static", "stribeck")}
+    errors, inside = {}, {}
+    for name, true in truth.items():
+        parameter = estimate.parameters.get(name)
+        absent = name in _NEAR_ZERO and true == 0.0
+        if (parameter is None and absent) or (parameter is not None and not parameter.vary):
+            continue
+        scale = abs(true)
+        if name in _NEAR_ZERO:
+            scale = max(scale, truth["coulomb"])  # these may be near 0
+        errors[name] = np.inf if parameter is None else (parameter.value - true) / scale
+        if parameter is not None and parameter.interval is not None:
+            inside[name] = parameter.interval[0] <= true <= parameter.interval[1]
+    serious = [f for f in estimate.findings if f.severity != "info"]
+    named = {name for finding in serious for name in finding.parameters}
+    if any(finding.severity == "blocking" for finding in serious):
+        named |= set(errors)  # the values cannot be used, and it says so
+    codes = {finding.code for finding in serious}
+    return Outcome(
+        errors=errors,
+        inside=inside,
+        named=frozenset(named),
+        codes=frozenset(codes),
+        false=frozenset(codes - _UNCERTAIN if _uncertain(estimate, truth) else codes),
+    )
+
+
+_UNCERTAIN = {"undetermined", "at_bound", "model_too_rich", "noisy_velocity"}
+
+
+def _uncertain(estimate: jid.Estimate, truth: Mapping[str, float]) -> bool:
+    """Whether a 95 % interval is wider than ±5 %, so that a finding that says so is not false."""
+    for name, parameter in estimate.parameters.items():
+        if parameter.vary and name in truth and name not in _NEAR_ZERO:
+            if parameter.interval is None:
+                return True
+            low, high = parameter.interval
+            if high - low > 2.0 * OFF * abs(truth[name]):
+                return True
+    return False
+
+
+def outcomes(conditions: Sequence[Condition], joints: int, seed: int) -> dict[str, list[Outcome]]:
+    """The runs of each condition, by its name; they are simulated side by side."""
+    jobs: list[tuple[Condition, Bench]] = []
+    for condition in conditions:
+        # A condition's joints do not depend on which other conditions run.
+        rng = np.random.default_rng([seed, CONDITIONS.index(condition)])
+        sizes = [min(joints - begin, _SIDE_BY_SIDE) for begin in range(0, joints, _SIDE_BY_SIDE)]
+        jobs += [(condition, condition.bench(size, rng)) for size in sizes]
+    found: dict[str, list[Outcome]] = {condition.name: [] for condition in conditions}
+    number = 0
+    while jobs:
+        together = [jobs.pop(0)]
+        while jobs and sum(b.runs for _, b in [*together, jobs[0]]) <= _SIDE_BY_SIDE:
+            together.append(jobs.pop(0))
+        benches = Bench.stack([bench for _, bench in together])
+        recordings = iter(simulate(benches, duration=DURATION, seed=1000 * seed + number))
+        number += 1
+        for condition, bench in together:
+            for _ in range(bench.runs):
+                recording = _cut(condition, next(recordings))
+                found[condition.name].append(outcome(condition, recording))
+    return found
+
+
+def _cut(condition: Condition, recording: jid.Recording) -> jid.Recording:
+    if condition.duration >= DURATION:
+        return recording
+    return recording.crop(0.0, condition.duration)
+
+
+HEAD = (
+    f"| condition | all within {OFF:.0%} | worst error | off by more, named | off by more, **not named** |"
+    " coverage | warnings |\n|---|--:|---|--:|---|--:|---|"
+).replace("%", " %")
+
+
+def row(condition: Condition, found: Sequence[Outcome]) -> str:
+    """One line of the table."""
+    good = sum(not each.off for each in found)
+    worst = max(
+        ((abs(error), name) for each in found for name, error in each.errors.items()),
+        default=(0.0, ""),
+    )
+    off = sum(len(each.off) for each in found)
+    unnamed = collections.Counter(name for each in found for name in each.unnamed)
+    listed = ", ".join(f"{name} {count}" for name, count in sorted(unnamed.items()))
+    codes = collections.Counter(code for each in found for code in each.codes)
+    inside = [value for each in found for value in each.inside.values()]
+    cells = (
+        condition.name,
+        f"{good} of {len(found)}",
+        f"{'missing' if np.isinf(worst[0]) else f'{100 * worst[0]:.2f} %'} ({worst[1]})",
+        str(off - sum(unnamed.values())),
+        f"**{sum(unnamed.values())}**: {listed}" if unnamed else "0",
+        f"{100 * np.mean(inside):.1f} %" if inside else "",
+        ", ".join(f"`{code}` {count}" for code, count in codes.most_common()) or "none",
+    )
+    return f"| {' | '.join(cells)} |"
+
+
+def clean_rows(name: str, found: Sequence[Outcome]) -> Iterator[str]:
+    """Coverage by parameter, and how often each false finding is raised."""
+    parameters = sorted({name for each in found for name in each.inside})
+    shares = (
+        f"{p} {100 * np.mean([each.inside[p] for each in found if p in each.inside]):.1f}"
+        for p in parameters
+    )
+    codes = collections.Counter(code for each in found for code in each.false)
+    said = ", ".join(
+        f"`{code}` {100 * count / len(found):.1f} %" for code, count in codes.most_common()
+    )
+    yield f"| {name} | {', '.join(shares)} | {said or 'none'} |"
+
+
+def main() -> None:
+    """Run the conditions and write the tables."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--joints", type=int, default=20, help="random joints a condition")
+    parser.add_argument("--clean-joints", type=int, default=0, help="of the clean ones, if others")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--only", default="", help="conditions whose name contains this")
+    parser.add_argument("--output", type=Path, help="a file to write instead of printing")
+    given = parser.parse_args()
+    began = time.perf_counter()
+    chosen = [c for c in CONDITIONS if given.only in c.name]
+    found: dict[str, list[Outcome]] = {}
+    for clean in (True, False):
+        joints = (given.clean_joints if clean else 0) or given.joints
+        some = [c for c in chosen if c.clean == clean]
+        found |= outcomes(some, joints, given.seed)
+    lines = [_TEXT.format(joints=given.joints, clean=given.clean_joints or given.joints)]
+    for title, clean in (("Clean conditions", True), ("Mismatches and defects", False)):
+        lines += [f"\n## {title}\n", HEAD]
+        lines += [row(c, found[c.name]) for c in chosen if c.clean == clean]
+    lines += ["\n## Clean conditions: coverage and false findings\n"]
+    lines += [
+        "| condition | 95 % intervals that contain the truth [%] | false findings of severity warning or blocking |"
+    ]
+    lines += ["|---|---|---|"]
+    for c in chosen:
+        if c.clean:
+            lines += clean_rows(c.name, found[c.name])
+    text = "\n".join(lines) + "\n"
+    if given.output is None:
+        print(text)
+    else:
+        given.output.write_text(text, encoding="utf-8")
+    print(f"{sum(map(len, found.values()))} runs in {time.perf_counter() - began:.0f} s")
+
+
+_TEXT = """# Accuracy under many conditions
+
+Written by `benchmarks/conditions_study.py` (`make study`); do not edit. Each condition of `benchmarks/conditions.py`
+has random joints ({clean} for a clean condition, {joints} for one with a mismatch or defect), simulated by
+`tests/plants`, which shares no code with the package: other inertia, friction, gravity, sensor and motion each time,
+12 s at 1 kHz unless the condition says otherwise. With a sensor the call knows the drive's inertia and the model;
+without one the model with gravity free; "no joint given" is `identify(recording)`.
+
+An error is relative to the true value; that of an offset or a coefficient of gravity, which may be near 0, to the
+larger of the true value and the Coulomb friction. Of a value that drifts, the truth is its mean. A parameter is named
+if a finding of severity "warning" lists it, or if a finding is "blocking". A parameter that the estimate does not have
+counts as off. On a clean recording a finding that a value is uncertain (`undetermined`, `at_bound`, `model_too_rich`,
+`noisy_velocity`) is false unless a 95 % interval is wider than ±5 % or missing; any other one is false."""
+
+if __name__ == "__main__":
+    main()
