@@ -177,6 +177,8 @@ def examined(case: Case, recording: jid.Recording, sensor: bool) -> tuple[bool, 
     """Whether a parameter is wrong, and the causes named."""
     truth = dict(recording.truth or {})
     given = {"inertia": float(truth["inertia"])} if sensor else {}
+    if not sensor:  # the drive moves the link, too
+        truth["inertia"] += recording.metadata["plant"]["link_inertia"]
     model = jid.Model.parse("stribeck" if sensor else case.model)
     joint = jid.Joint(gear_ratio=101.0, sensor=sensor, model=model, **given)
     estimate = jid.identify(recording, joint, search="separable")
@@ -190,7 +192,8 @@ def examined(case: Case, recording: jid.Recording, sensor: bool) -> tuple[bool, 
         if not p.vary or name not in truth or not isinstance(truth[name], float):
             continue
         error = abs(p.value - truth[name])
-        scale = max(abs(truth[name]), 10.0) if "offset" in name else abs(truth[name])
+        small = "offset" in name or "gravity" in name
+        scale = max(abs(truth[name]), 10.0) if small else abs(truth[name])
         harmed |= error > HARM * scale or (p.stderr is not None and error > 2.0 * p.stderr)
     return harmed, found
 

@@ -19,6 +19,7 @@ _MOST = 3  # causes, one after the other
 _SHARE = 0.12  # of the misfit, at least, at one scale
 _SHARE_OF_ALL = 0.05  # of the misfit before any cause was found
 _SURE = 3.0  # mean improvement of a block over its error
+_FEWEST = 5  # blocks that hold the misfit
 _ALIKE = 1.1  # ratio of misfits that blocks do not tell apart
 _HARDLY = 0.9  # a runner-up explains so much of what the winner does, in logarithms of the misfit
 
@@ -52,7 +53,7 @@ class Attributed:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Score:
-    total: float  # logarithms of the reduction of the misfit, over all scales
+    total: float  # mean logarithm of the reduction of the misfit, over the scales
     share: float
     factor: int
     sure: bool
@@ -74,7 +75,7 @@ def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
     reached = np.zeros(count)
     while len(found) < _MOST:
         scores = {
-            index: _score(scaled, base, places[index], whole)
+            index: _score(scaled[:1] if each.finest else scaled, base, places[index], whole)
             for index, each in enumerate(tried)
             if _family(each) not in taken
         }
@@ -138,19 +139,24 @@ def _score(
             best, at = 1.0 - ratio, factor
         enough = float((before - after).sum()) > _SHARE_OF_ALL * whole.get(factor, np.inf)
         sure |= enough and 1.0 - ratio > _SHARE and _steady(before, after)
-    return _Score(float(total), best, at, sure)
+    return _Score(float(total) / max(1, len(scaled)), best, at, sure)
 
 
 def _steady(before: Array, after: Array) -> bool:
     """Whether the misfit falls in most blocks, not by luck in one.
 
     The logarithms of the blocks' ratios count blocks alike, their differences count them by their
-    misfit: a cause at reversals is silent in the blocks without one.
+    misfit. A cause at reversals is silent in the blocks without one: the loud blocks must then fall
+    together.
     """
     floor = 1e-12 * before.sum()
     ratios = np.log((before + floor) / (after + floor))
     differences = before - after
-    return max(_steadiness(ratios), _steadiness(differences)) > _SURE
+    if max(_steadiness(ratios), _steadiness(differences)) > _SURE:
+        return True
+    loud = before > 0.2 * before.mean()
+    half = after.sum() < 0.5 * before.sum()
+    return bool(half and loud.sum() >= _FEWEST and np.mean(after[loud] < 0.7 * before[loud]) > 0.8)
 
 
 def _steadiness(values: Array) -> float:
@@ -161,9 +167,7 @@ def _steadiness(values: Array) -> float:
 def _parsimonious(scores: dict[int, _Score], tried: list[Candidate]) -> int:
     """The candidate with the fewest columns among those as good as the best."""
     top = max(score.total for score in scores.values())
-    near = [
-        index for index, score in scores.items() if score.total > top - np.log(_ALIKE) * len(SCALES)
-    ]
+    near = [index for index, score in scores.items() if score.total > top - np.log(_ALIKE)]
     return min(near, key=lambda index: (tried[index].columns.shape[1], -scores[index].total))
 
 

@@ -16,7 +16,7 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-_PERIOD = 4.0  # [rad] of a harmonic that the motion covers, at least
+_PERIOD = np.pi  # [rad] of a harmonic that the motion covers, at least
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -33,12 +33,15 @@ class Candidate:
         Which of its kind, e.g. the order of a harmonic.
     family : str
         Causes that a recording hardly separates share one.
+    finest : bool
+        Whether only the windows as they are can show it.
     """
 
     name: str
     columns: Array
     detail: str = ""
     family: str = ""
+    finest: bool = False
 
 
 def candidates(fit: Fitted) -> list[Candidate]:
@@ -151,22 +154,22 @@ def _harmonic(fit: Fitted) -> Iterator[Candidate]:
     if not _revolute(fit):
         return
     reach = max(float(np.ptp(run.position)) for run in fit.problem.recordings)
-    for order in range(2, 9):
-        # Little more than half a period is a bow, which other candidates are, too.
+    for order in range(2, 7):
+        # Less than half a period is a slope, which other candidates are, too.
         if order * reach > _PERIOD and not _has_order(fit, "position", float(order)):
             yield Candidate(name="harmonic", columns=_angle(fit, float(order)), detail=str(order))
 
 
 def _ripple(fit: Fitted) -> Iterator[Candidate]:
+    """Over longer windows only the ripple at reversals is left, which any cause at reversals resembles."""
     joint = fit.problem.joint
     gear = abs(joint.gear_ratio) if joint is not None else 1.0
     if gear == 1.0 or not _revolute(fit):
         return
     for order in (0.5, 1.0, 2.0, 3.0, 4.0):
         if not _has_order(fit, "ripple", order):
-            yield Candidate(
-                name="ripple", columns=_angle(fit, order * gear), detail=f"{order:g}"
-            )
+            columns = _angle(fit, order * gear)
+            yield Candidate(name="ripple", columns=columns, detail=f"{order:g}", finest=True)
 
 
 def _delay(fit: Fitted) -> Iterator[Candidate]:

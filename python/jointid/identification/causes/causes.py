@@ -77,10 +77,11 @@ def _cause(
         fit.names[index]: float(shift) for index, shift in zip(fit.free, each.shifts, strict=True)
     }
     shifts |= _of_itself(fit, each)
+    scales = {name: _scale(parameters[name], parameters, torque_level) for name in shifts}
     relative = {
         name: share
         for name, shift in shifts.items()
-        if (share := _matters(parameters[name], shift, torque_level)) is not None
+        if (share := _matters(parameters[name], shift, 1.0 - each.share, scales[name])) is not None
     }
     return Cause(
         name=each.candidate.name,
@@ -95,19 +96,40 @@ def _cause(
     )
 
 
-def _matters(p: ParameterEstimate, shift: float, torque_level: float) -> float | None:
-    """The shift as a share of the value where it is noticeable, else None."""
-    scale = max(abs(p.value), torque_level) if "offset" in p.name else abs(p.value)
+def _matters(
+    p: ParameterEstimate, shift: float, left: float, scale: float
+) -> float | None:
+    """The shift as a share of the value where it is noticeable, else None.
+
+    Parameters
+    ----------
+    left : float
+        Share of the misfit that is left with the cause in the model: the error falls with it.
+    scale : float
+        What the shift is held against.
+    """
     if scale == 0.0:
         return None
     share = abs(shift) / scale
     error = p.stderr or 0.0
     errors = abs(shift) / error if error > 0.0 else 0.0
-    if error > _UNKNOWN * scale and errors < _CLEARLY:
+    after = error * np.sqrt(max(left, 0.0))
+    if after > _UNKNOWN * scale and abs(shift) < _CLEARLY * after:
         return None
     if share > _MOVED or (errors > _ERRORS and share > _LEAST):
         return float(np.copysign(share, shift))
     return None
+
+
+def _scale(p: ParameterEstimate, parameters: Mapping[str, ParameterEstimate], level: float) -> float:
+    """What a shift is held against: an offset, or one phase of a harmonic, may be zero."""
+    if "offset" in p.name:
+        return max(abs(p.value), level)
+    for one, other in (("_cos", "_sin"), ("_sin", "_cos")):
+        pair = parameters.get(p.name.replace(one, other)) if one in p.name else None
+        if pair is not None:
+            return float(np.hypot(p.value, pair.value))
+    return abs(p.value)
 
 
 def _of_itself(fit: Fitted, each: Attributed) -> dict[str, float]:

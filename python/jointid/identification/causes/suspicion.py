@@ -11,7 +11,7 @@ from jointid.problem.inner_products import inner
 Array = NDArray[np.float64]
 
 _SCALES = (1, 4, 16)
-_CORRELATED = 0.2
+_CORRELATED = 0.1
 _SURE = 4.0  # correlation over its error by chance
 _FEWEST = 40  # sums of windows
 _SLOW = 0.2  # share of the windows, the slowest

@@ -17,10 +17,17 @@ def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
     kept = [found for check, found in raised if not (ripples and check is sensor_lag.CHECK)]
     units = [found for found in kept if found.code == "implausible_units"]
     # With degrees the motor's angle is wrong, too: a residual that oscillates with it is not ripple.
-    spurious = [found for found in kept if units and found.code == "ripple"]
+    other = _another_cause(evidence)
+    spurious = [found for found in kept if found.code == "ripple" and (units or other)]
     left = [found for found in kept if found not in (*units[1:], *spurious)]
     left = [found for place, found in enumerate(left) if not _again(found, left[:place])]
     return tuple(sorted(left, key=lambda found: _ORDER.index(found.severity)))
+
+
+def _another_cause(evidence: Evidence) -> bool:
+    """Whether most of the misfit has another cause: events have all multiples of the motor's angle."""
+    causes = evidence.causes.found if evidence.causes is not None else ()
+    return bool(causes) and causes[0].share > 0.5 and all(each.name != "ripple" for each in causes)
 
 
 def _again(found: Finding, before: list[Finding]) -> bool:
