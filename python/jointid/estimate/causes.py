@@ -55,7 +55,9 @@ class Cause:
         text = MEANINGS[self.name]
         inside = ", ".join(part for part in (self.detail, self.size) if part)
         text += f" ({inside})" if inside else ""
-        text += f" explains {percent(self.share)} of the misfit over windows of {_seconds(self.scale)}"
+        text += (
+            f" explains {percent(self.share)} of the misfit over windows of {_seconds(self.scale)}"
+        )
         if self.relative:
             moved = sorted(self.relative.items(), key=lambda entry: -abs(entry[1]))[:3]
             changes = ", ".join(f"{name} by {_signed(change)}" for name, change in moved)

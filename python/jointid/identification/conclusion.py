@@ -89,7 +89,7 @@ def infer(
     if (
         statistics.r_squared < POORLY_EXPLAINED
         or suspicious(table.residual, run, table.duration, table.velocity)
-    ) and not penalty.cumulative:
+    ) and not (penalty.cumulative or not free):
         causes = find_causes(
             problem,
             penalty,

@@ -64,12 +64,15 @@ def _inertia_varies(fit: Fitted) -> Iterator[Candidate]:
             mean = inertia_basis(fit, order).mean(axis=0)
             parts.append(
                 fit.rise(
-                    lambda _, run, k=order, m=mean: (_pair(k * run.position) - m)
-                    * run.velocity[:, None]
+                    lambda _, run, k=order, m=mean: (
+                        (_pair(k * run.position) - m) * run.velocity[:, None]
+                    )
                 )
                 - 0.5
                 * fit.integral(
-                    lambda _, run, k=order: k * _slope(k * run.position) * run.velocity[:, None] ** 2
+                    lambda _, run, k=order: (
+                        k * _slope(k * run.position) * run.velocity[:, None] ** 2
+                    )
                 )
             )
         detail = " and ".join(f"{order:g}" for order in orders)
@@ -113,8 +116,9 @@ def _slow(fit: Fitted) -> Iterator[Candidate]:
         )
     )
     since = fit.integral(
-        lambda _, run: np.exp(-_since_reversal(run)[:, None] / ways)
-        * np.sign(run.velocity)[:, None]
+        lambda _, run: (
+            np.exp(-_since_reversal(run)[:, None] / ways) * np.sign(run.velocity)[:, None]
+        )
     )
     family = "slow_motion"
     known = "static" in fit.names or "static_positive" in fit.names
@@ -132,9 +136,7 @@ def _slow(fit: Fitted) -> Iterator[Candidate]:
             detail=f"within about {way:.2g} of a reversal",
             family=family,
         )
-    yield Candidate(
-        name="slow_motion", columns=np.hstack([linear[:, ::2], since]), family=family
-    )
+    yield Candidate(name="slow_motion", columns=np.hstack([linear[:, ::2], since]), family=family)
 
 
 def _drift(fit: Fitted) -> Iterator[Candidate]:
@@ -212,12 +214,12 @@ def _other_signal(fit: Fitted) -> Iterator[Candidate]:
         level = values - values.mean()
         yield Candidate(
             name="other_signal",
-            columns=fit.integral(lambda _, run, x=level: x)[:, None],
+            columns=fit.integral(lambda *_, x=level: x)[:, None],
             detail=name,
         )
         yield Candidate(
             name="other_signal",
-            columns=fit.rise(lambda _, run, x=level: x)[:, None],
+            columns=fit.rise(lambda *_, x=level: x)[:, None],
             detail=f"the change of {name}",
         )
 

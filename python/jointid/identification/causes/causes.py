@@ -96,9 +96,7 @@ def _cause(
     )
 
 
-def _matters(
-    p: ParameterEstimate, shift: float, left: float, scale: float
-) -> float | None:
+def _matters(p: ParameterEstimate, shift: float, left: float, scale: float) -> float | None:
     """The shift as a share of the value where it is noticeable, else None.
 
     Parameters
@@ -121,7 +119,9 @@ def _matters(
     return None
 
 
-def _scale(p: ParameterEstimate, parameters: Mapping[str, ParameterEstimate], level: float) -> float:
+def _scale(
+    p: ParameterEstimate, parameters: Mapping[str, ParameterEstimate], level: float
+) -> float:
     """What a shift is held against: an offset, or one phase of a harmonic, may be zero."""
     if "offset" in p.name:
         return max(abs(p.value), level)

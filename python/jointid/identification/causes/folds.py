@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,7 +52,7 @@ class Folds:
         edges = np.linspace(0, rows, blocks + 1).astype(int)
         products = [
             np.einsum("ni,nj->ij", both[low:high], both[low:high])
-            for low, high in zip(edges[:-1], edges[1:], strict=True)
+            for low, high in itertools.pairwise(edges)
         ]
         return cls(np.array(products))
 

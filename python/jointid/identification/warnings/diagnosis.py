@@ -1,5 +1,7 @@
 """All findings about an estimate: the results of all checks, without those that another finding explains."""
 
+from dataclasses import replace
+
 from jointid.estimate.findings import Finding, Severity
 from jointid.identification.warnings import registry, sensor_lag
 from jointid.identification.warnings.evidence import Evidence
@@ -9,7 +11,13 @@ _ORDER: tuple[Severity, ...] = ("blocking", "warning", "info")
 
 def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
     """All findings, the most severe first; those of one severity in the order of the checks."""
-    raised = [(check, found) for check in registry.CHECKS for found in check.find(evidence)]
+    raised = []
+    for check in registry.CHECKS:
+        found_here = list(check.find(evidence))
+        raised += [(check, found) for found in found_here]
+        if any(found.severity == "blocking" for found in found_here):
+            # A signal that cannot be right explains the misfit; what else does is no cause.
+            evidence = replace(evidence, causes=None)
     codes = {found.code for _, found in raised}
     # A controller feeds the ripple of a sensor back; the resulting motion looks like a lag of the sensor.
     modelled = any(name.startswith("ripple_") for name in evidence.parameters)
