@@ -65,7 +65,7 @@ FOLDERS: dict[str, Folder] = {
         },
         packages={"numpy"},
     ),
-    "identification/causes": Folder(may_use=_FOUND, packages={"numpy"}),
+    "identification/causes": Folder(may_use=_FOUND - {"joint"}, packages={"numpy"}),
     "identification/search": Folder(may_use=_FOUND - {"recording"}, packages={"numpy", "scipy"}),
     "identification/inference": Folder(
         may_use={*_FOUND, "identification/search"} - {"base"}, packages={"numpy", "scipy"}

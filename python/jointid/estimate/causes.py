@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import Any
 
 from jointid.base.advice import Action
+from jointid.estimate.findings import Measured
 from jointid.estimate.wording import percent
 
 
@@ -26,6 +28,8 @@ class Cause:
         Length of the windows at which that share was taken [s].
     size : str
         How large it is, with its unit; empty where one number does not say it.
+    numbers : mapping of str to Measured
+        The numbers in `detail` and `size`.
     shifts : mapping of str to float
         How much each parameter would change if the model had it, in the parameter's unit.
     relative : mapping of str to float
@@ -41,12 +45,14 @@ class Cause:
     share: float
     scale: float
     size: str = ""
+    numbers: Mapping[str, Measured] = field(default_factory=dict, hash=False)
     shifts: Mapping[str, float] = field(default_factory=dict, hash=False)
     relative: Mapping[str, float] = field(default_factory=dict, hash=False)
     alike: tuple[str, ...] = ()
     advice: tuple[Action, ...] = field(default=(), hash=False)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "numbers", MappingProxyType(dict(self.numbers)))
         object.__setattr__(self, "shifts", MappingProxyType(dict(self.shifts)))
         object.__setattr__(self, "relative", MappingProxyType(dict(self.relative)))
 
@@ -68,8 +74,9 @@ class Cause:
 
     def __reduce__(self) -> tuple[object, ...]:
         # A read-only mapping cannot be pickled.
-        values = {name: getattr(self, name) for name in self.__slots__}
-        values["shifts"], values["relative"] = dict(self.shifts), dict(self.relative)
+        values: dict[str, Any] = {name: getattr(self, name) for name in self.__slots__}
+        for name in ("numbers", "shifts", "relative"):
+            values[name] = dict(values[name])
         return _rebuilt, (values,)
 
 
@@ -114,8 +121,8 @@ class Causes:
         return self.report()
 
 
-def _rebuilt(values: dict[str, object]) -> Cause:
-    return Cause(**values)  # type: ignore[arg-type]
+def _rebuilt(values: dict[str, Any]) -> Cause:
+    return Cause(**values)
 
 
 def _seconds(value: float) -> str:

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.identification.causes.candidates import Candidate
+from jointid.identification.causes.events import LocalEvent, local_event
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.folds import Folds, summed
-from jointid.identification.causes.local_event import LocalEvent, local_event
 
 Array = NDArray[np.float64]
 
@@ -161,7 +161,7 @@ def _steady(before: Array, after: Array) -> bool:
 
 def _steadiness(values: Array) -> float:
     error = float(values.std(ddof=1)) / np.sqrt(len(values))
-    return float(values.mean()) / max(error, 1e-300)
+    return float(values.mean() / max(error, 1e-300))
 
 
 def _parsimonious(scores: dict[int, _Score], tried: list[Candidate]) -> int:

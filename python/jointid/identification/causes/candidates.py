@@ -5,12 +5,14 @@ A new cause is a function here and a line in `FAMILIES`.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid import _core
 from jointid.identification.causes.fitted import Fitted
 from jointid.recording.recording import Recording
 
@@ -31,6 +33,8 @@ class Candidate:
         Integrals of torque for a coefficient of 1.
     detail : str
         Which of its kind, e.g. the order of a harmonic.
+    numbers : tuple
+        Name, value and unit behind the length of the numbers in `detail`, where @ is the unit of length.
     family : str
         Causes that a recording hardly separates share one.
     finest : bool
@@ -40,11 +44,12 @@ class Candidate:
     name: str
     columns: Array
     detail: str = ""
+    numbers: tuple[tuple[str, float, str], ...] = ()
     family: str = ""
     finest: bool = False
 
 
-def candidates(fit: Fitted) -> list[Candidate]:
+def listed_candidates(fit: Fitted) -> list[Candidate]:
     """Return all candidates that the model lacks and the recordings can show."""
     return [each for family in FAMILIES for each in family(fit) if np.any(each.columns)]
 
@@ -63,20 +68,19 @@ def _inertia_varies(fit: Fitted) -> Iterator[Candidate]:
         for order in orders:
             mean = inertia_basis(fit, order).mean(axis=0)
             parts.append(
-                fit.rise(
-                    lambda _, run, k=order, m=mean: (
-                        (_pair(k * run.position) - m) * run.velocity[:, None]
-                    )
-                )
-                - 0.5
-                * fit.integral(
-                    lambda _, run, k=order: (
-                        k * _slope(k * run.position) * run.velocity[:, None] ** 2
-                    )
-                )
+                fit.rise(functools.partial(_momentum, order=order, mean=mean))
+                - 0.5 * fit.integral(functools.partial(_centrifugal, order=order))
             )
         detail = " and ".join(f"{order:g}" for order in orders)
         yield Candidate(name="inertia_varies", columns=np.hstack(parts), detail=detail)
+
+
+def _momentum(_: int, run: Recording, order: float, mean: Array) -> Array:
+    return np.asarray((_pair(order * run.position) - mean) * run.velocity[:, None])
+
+
+def _centrifugal(_: int, run: Recording, order: float) -> Array:
+    return np.asarray(order * _slope(order * run.position) * run.velocity[:, None] ** 2)
 
 
 def inertia_basis(fit: Fitted, order: float) -> Array:
@@ -126,14 +130,16 @@ def _slow(fit: Fitted) -> Iterator[Candidate]:
         yield Candidate(
             name="stribeck_exponent" if known else "slow_motion",
             columns=linear[:, k : k + 1],
-            detail=f"below about {speed:.2g}",
+            detail=f"below about {speed:.2g} @/s",
+            numbers=(("speed", float(speed), "/s"),),
             family=family,
         )
     for k, way in enumerate(ways):
         yield Candidate(
             name="presliding",
             columns=since[:, k : k + 1],
-            detail=f"within about {way:.2g} of a reversal",
+            detail=f"within about {way:.2g} @ of a reversal",
+            numbers=(("way", float(way), ""),),
             family=family,
         )
     yield Candidate(name="slow_motion", columns=np.hstack([linear[:, ::2], since]), family=family)
@@ -183,6 +189,20 @@ def _delay(fit: Fitted) -> Iterator[Candidate]:
         gain = fit.value("sensor_gain")
         rise = gain * fit.rise(lambda _, run: _present(run.sensor))
         yield Candidate(name="delay", columns=rise[:, None], detail="sensor")
+    if not fit.problem.recordings[0].velocity_derived:
+        rise = -fit.rise(lambda _, run: _of_velocity(fit, run))
+        yield Candidate(name="delay", columns=rise[:, None], detail="velocity")
+
+
+def _of_velocity(fit: Fitted, run: Recording) -> Array:
+    """Torque of the terms that the velocity enters: inertia and friction, but for what the travel gives."""
+    total = fit.value("inertia") * np.gradient(run.velocity, run.time)
+    shapes = {shape: fit.value(shape) for term in fit.penalty.terms for shape in term.shapes}
+    for index, term in enumerate(fit.penalty.terms):
+        if term.friction and not term.needs_load:
+            values = np.array([shapes[shape] for shape in term.shapes])
+            total += fit.best[index] * _core.friction_basis(term.key, run.velocity, values)
+    return np.asarray(total - fit.value("viscous") * run.velocity)
 
 
 def _asymmetry(fit: Fitted) -> Iterator[Candidate]:

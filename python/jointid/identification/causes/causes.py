@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.estimate.causes import Cause, Causes
+from jointid.estimate.findings import Measured
 from jointid.estimate.statistics import ParameterEstimate
-from jointid.identification.causes.advice import advice
 from jointid.identification.causes.attribution import Attributed, attribute
-from jointid.identification.causes.candidates import candidates, inertia_basis
+from jointid.identification.causes.candidates import inertia_basis, listed_candidates
 from jointid.identification.causes.fitted import Fitted
+from jointid.identification.causes.remedies import advice_against
 from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
@@ -56,8 +57,9 @@ def find_causes(
         if parameters[name].vary and parameters[name].at_bound is None
     )
     fit = Fitted.of(problem, penalty, best, free, signals)
-    tried = candidates(fit)
-    found, harmless = [], []
+    tried = listed_candidates(fit)
+    found: list[Cause] = []
+    harmless: list[Cause] = []
     for each in attribute(fit, tried):
         cause = _cause(fit, each, parameters, torque_level)
         # A large part of what was measured matters, however badly the values are known without it.
@@ -83,16 +85,18 @@ def _cause(
         for name, shift in shifts.items()
         if (share := _matters(parameters[name], shift, 1.0 - each.share, scales[name])) is not None
     }
+    detail, size, numbers = _described(fit, each)
     return Cause(
         name=each.candidate.name,
-        detail=_detail(fit, each),
+        detail=detail,
         share=each.share,
         scale=each.factor * float(fit.penalty.window_duration),
-        size=_size(fit, each),
+        size=size,
+        numbers=numbers,
         shifts=shifts,
         relative=relative,
         alike=each.alike,
-        advice=advice(fit, each),
+        advice=advice_against(fit, each),
     )
 
 
@@ -155,34 +159,38 @@ def _span(fit: Fitted) -> float:
     return max(run.duration for run in fit.problem.recordings)
 
 
-def _detail(fit: Fitted, each: Attributed) -> str:
-    name, detail = each.candidate.name, each.candidate.detail
-    length = "m" if fit.problem.recordings[0].kind == "prismatic" else "rad"
-    if name in ("harmonic", "ripple"):
-        return f"{detail} × {'motor ' if name == 'ripple' else ''}angle"
-    if name == "inertia_varies":
-        return " and ".join(f"{order} × angle" for order in detail.split(" and "))
-    if name in ("slow_motion", "stribeck_exponent") and detail:
-        return f"{detail} {length}/s"
-    return f"{detail}".replace(" of a reversal", f" {length} of a reversal")
-
-
-def _size(fit: Fitted, each: Attributed) -> str:
+def _described(fit: Fitted, each: Attributed) -> tuple[str, str, dict[str, Measured]]:
+    """Detail and size as texts, and their numbers."""
     name, found = each.candidate.name, each.coefficients
-    torque = "N" if fit.problem.recordings[0].kind == "prismatic" else "N·m"
+    prismatic = fit.problem.recordings[0].kind == "prismatic"
+    length, torque = ("m", "N") if prismatic else ("rad", "N·m")
+    detail, size = each.candidate.detail, ""
+    numbers = {key: Measured(value, length + unit) for key, value, unit in each.candidate.numbers}
     if name in ("gravity", "harmonic", "ripple"):
-        return f"{np.hypot(*found):.3g} {torque}"
-    if name in ("offset", "disturbance"):
-        return f"{found[0]:.3g} {torque}"
-    if name == "delay":
-        return f"{1e3 * found[0]:.2g} ms late"
-    if name == "load_friction":
-        return f"{found[0]:.3g} of the load"
-    if name == "drift":
-        value = fit.value(each.candidate.detail)
-        percent = 100.0 * found[0] / (abs(value) or 1.0)
-        return f"{percent * _span(fit):+.3g} % over the recording, {60.0 * percent:+.3g} % a minute"
-    if name == "inertia_varies":
-        value = fit.value("inertia") or 1.0
-        return f"±{100.0 * _half_range(fit, each) / abs(value):.2g} %"
-    return ""
+        amplitude = float(np.hypot(*found))
+        size, numbers["amplitude"] = f"{amplitude:.3g} {torque}", Measured(amplitude, torque)
+    elif name in ("offset", "disturbance"):
+        size, numbers["torque"] = f"{found[0]:.3g} {torque}", Measured(float(found[0]), torque)
+    elif name == "delay":
+        late = float(found[0])
+        size, numbers["delay"] = f"by about {1e3 * late:.2g} ms", Measured(late, "s")
+    elif name == "load_friction":
+        size, numbers["coefficient"] = f"{found[0]:.3g} of the load", Measured(float(found[0]))
+    elif name == "drift":
+        rate = float(found[0]) / (abs(fit.value(detail)) or 1.0)
+        change, minute = rate * _span(fit), 60.0 * rate
+        size = f"{100.0 * change:+.3g} % over the recording, {100.0 * minute:+.3g} % a minute"
+        numbers |= {"change": Measured(change), "change_a_minute": Measured(minute)}
+    elif name == "inertia_varies":
+        range_of_it = _half_range(fit, each) / (abs(fit.value("inertia")) or 1.0)
+        size, numbers["range"] = f"±{100.0 * range_of_it:.2g} %", Measured(range_of_it)
+    if name in ("harmonic", "ripple", "inertia_varies"):
+        orders = detail.split(" and ")
+        detail = " and ".join(f"{order} × {_OF.get(name, '')}angle" for order in orders)
+        numbers |= {f"order_{order}": Measured(float(order)) for order in orders}
+    for unit in ("@/s", "@"):
+        detail = detail.replace(unit, unit.replace("@", length))
+    return detail, size, numbers
+
+
+_OF = {"ripple": "motor "}

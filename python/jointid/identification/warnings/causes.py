@@ -36,18 +36,20 @@ TYPES = {
         picture="windows",
     )
     for name, remedy in _REMEDIES.items()
-} | {"ripple": RIPPLE, "wrong_scale": WRONG_SCALE}
+} | {"ripple": RIPPLE}
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
     if evidence.causes is None:
         return
     for cause in evidence.causes.found:
-        yield _finding(cause)
+        if cause.name != WRONG_SCALE.code:  # its own check asks for more
+            yield _finding(cause)
 
 
 def _finding(cause: Cause) -> Finding:
     measured = {"share": Measured(cause.share), "windows": Measured(cause.scale, "s")}
+    measured |= cause.numbers
     measured |= {f"{name}.shift": Measured(share) for name, share in cause.relative.items()}
     return TYPES[cause.name].finding(
         str(cause), *cause.advice, evidence=measured, parameters=tuple(cause.relative)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,7 +41,8 @@ class Lack:
         What there is, in figures, and what is needed.
     motion : str
         What to record.
-    measured : Measured
+    measured : mapping of str to Measured
+        The figures of the text.
     wanted : float
         How much of it would do.
     """
@@ -48,7 +50,7 @@ class Lack:
     quantity: str
     text: str
     motion: str
-    measured: Measured
+    measured: Mapping[str, Measured]
     wanted: float = 0.0
 
 
@@ -103,7 +105,12 @@ class Excitation:
         if windows > 3 * free:
             return None
         text = f"the log has {windows} windows for {free} parameters"
-        return Lack("windows", text, "more motion", Measured(float(windows)))
+        return Lack(
+            "windows",
+            text,
+            "more motion",
+            {"windows": Measured(float(windows)), "free_parameters": Measured(float(free))},
+        )
 
     def lack(self, p: ParameterEstimate) -> Lack | None:
         """Return what the recordings lack for a parameter; None if they have enough of all it needs."""
@@ -138,13 +145,15 @@ class Excitation:
             f"{_two(needed)} s like it would do"
         )
         motion = f"about {_two(needed)} s of such motion"
-        return Lack("duration", text, motion, Measured(duration, "s"), needed)
+        measured = {"duration": Measured(duration, "s"), "duration.needed": Measured(needed, "s")}
+        return Lack("duration", text, motion, measured, needed)
 
     def noise(self) -> Lack:
         """What is missing where the velocity's noise hides the inertia: resolution."""
         share = self.evidence.residuals.noise_share
         text = f"noise makes up {percent(share)} of the change of the velocity over a window"
-        return Lack("velocity_noise", text, "the position with a finer resolution", Measured(share))
+        motion = "the position with a finer resolution"
+        return Lack("velocity_noise", text, motion, {"velocity_noise": Measured(share)})
 
     def _both_ways(self, name: str) -> Lack | None:
         if self.reversals < _REVERSALS and not name.endswith(("_positive", "_negative")):
@@ -153,14 +162,17 @@ class Excitation:
                 "reversals",
                 f"the log has {count} reversal{'s' * (count != 1)}, and {_REVERSALS} or more are needed",
                 "motion in both directions, with several reversals",
-                Measured(float(count)),
+                {
+                    "reversals": Measured(float(count)),
+                    "reversals.needed": Measured(float(_REVERSALS)),
+                },
             )
         if self.rarer < _DIRECTION:
             return Lack(
                 "direction",
                 f"the log moves in one direction during {100.0 * (1.0 - self.rarer):.0f} % of the time",
                 "as much motion in one direction as in the other",
-                Measured(self.rarer),
+                {"direction": Measured(1.0 - self.rarer)},
             )
         return None
 
@@ -174,7 +186,11 @@ class Excitation:
             f"the log's speeds are {_two(slow)} to {_two(fast)} {unit}, and a wider range is needed, e.g. "
             f"{_two(0.2 * fast)} to {_two(fast)}",
             f"motion at several speeds, e.g. {_two(0.2 * fast)} to {_two(fast)} {unit}",
-            Measured(fast / max(slow, 1e-300)),
+            {
+                "speed.slow": Measured(slow, unit),
+                "speed.fast": Measured(fast, unit),
+                "speed.needed": Measured(0.2 * fast, unit),
+            },
         )
 
     def _viscous_share(self, p: ParameterEstimate) -> Lack | None:
@@ -188,7 +204,7 @@ class Excitation:
             f"at the log's top speed, {_two(fast)} {unit}, viscous friction is {percent(share)} of the torque: faster "
             "motion is needed",
             f"faster motion than {_two(fast)} {unit}",
-            Measured(fast, unit),
+            {"speed.fast": Measured(fast, unit), "viscous.share": Measured(share)},
         )
 
     def _slow_motion(self) -> Lack | None:
@@ -203,14 +219,14 @@ class Excitation:
                 f"{percent(share)} of the windows are slower than {_two(2.0 * slow)} {unit}, where static friction "
                 "shows",
                 f"slow motion through zero speed, below {_two(2.0 * slow)} {unit}",
-                Measured(share),
+                {"slow_windows": Measured(share), "speed.slow": Measured(2.0 * slow, unit)},
             )
         if fast < 2.0 * slow:
             return Lack(
                 "top_speed",
                 f"the log's top speed is {_two(fast)} {unit}, and static friction decays at {_two(slow)}",
                 f"faster motion, above {_two(2.0 * slow)} {unit}",
-                Measured(fast, unit),
+                {"speed.fast": Measured(fast, unit), "speed.decay": Measured(slow, unit)},
             )
         return None
 
@@ -230,7 +246,7 @@ class Excitation:
             "acceleration",
             f"acceleration takes {percent(share)} of the log's torque, and {percent(_ACCELERATION)} is needed",
             "harder acceleration",
-            Measured(share),
+            {"acceleration": Measured(share), "acceleration.needed": Measured(_ACCELERATION)},
         )
 
     def _load(self, of: str) -> Lack | None:
@@ -250,7 +266,11 @@ class Excitation:
             f"the sensed torque varies by {_two(spread)} {unit}, {percent(share)} of the drive's torque, and {of} "
             f"needs {percent(_LOAD)}",
             "motion of the link through a wider range of gravity torque",
-            Measured(spread, unit),
+            {
+                "load_range": Measured(spread, unit),
+                "load_range.share": Measured(share),
+                "load_range.needed": Measured(_LOAD),
+            },
         )
 
     def _angle(self, base: str) -> Lack | None:
@@ -267,7 +287,7 @@ class Excitation:
             "travel",
             f"the log's angles cover {_two(self.travel)} rad, and {_two(needed)} are needed",
             f"motion through {_two(needed)} rad or more",
-            Measured(self.travel, "rad"),
+            {"travel": Measured(self.travel, "rad"), "travel.needed": Measured(needed, "rad")},
             needed,
         )
 

@@ -42,7 +42,8 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
 
 def named(evidence: Evidence) -> bool:
     """Whether a cause of the misfit is found."""
-    return evidence.causes is not None and bool(evidence.causes.found)
+    causes = evidence.causes.found if evidence.causes is not None else ()
+    return any(cause.name != "wrong_scale" for cause in causes)
 
 
 def excluded(evidence: Evidence) -> str:

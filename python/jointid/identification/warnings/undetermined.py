@@ -66,7 +66,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         measured[f"{first}.{second}.correlation"] = Measured(correlation)
     for lack in lacks.values():
         cause += f"; {lack.text}"
-        measured[lack.quantity] = lack.measured
+        measured |= lack.measured
     yield UNDETERMINED.finding(
         cause,
         *_advice(evidence, reasons, lacks, guessed is not None),

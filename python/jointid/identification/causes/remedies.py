@@ -35,7 +35,7 @@ _OTHERWISE: dict[str, tuple[Action, ...]] = {
 _SLOW = (Action("record", text="motion that passes zero speed faster, and slow motion by itself"),)
 
 
-def advice(fit: Fitted, cause: Attributed) -> tuple[Action, ...]:
+def advice_against(fit: Fitted, cause: Attributed) -> tuple[Action, ...]:
     """Return the actions against a cause."""
     name, detail = cause.candidate.name, cause.candidate.detail
     model = fit.problem.choice.model.resolved
