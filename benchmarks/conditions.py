@@ -20,6 +20,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 from plants import Bench, Law, Log, Motion, Plant, chirp, sines, thesis, trapezoids
 
 DURATION = 12.0
+TURN = 101.0  # of the motor, an output turn
 Value = float | tuple[float, float]  # a pair: drawn evenly between the two for each joint
 
 
@@ -71,6 +72,7 @@ class Condition:
         inertia = recording.metadata["plant"]["inertia"] if self.sensor else None
         return jid.Joint(
             inertia=inertia,
+            gear_ratio=TURN,
             sensor=self.sensor,
             model=jid.Model.of(self.called_with),
             torque_hold="zoh",
@@ -145,7 +147,6 @@ def _clean(name: str, **fields: Any) -> Condition:
     return Condition(name=name, clean=True, **fields)
 
 
-TURN = 101.0  # of the motor, an output turn
 MEASURED: Mapping[str, Value] = {"on_reference": 0.0, "stiffness": 40.0}
 LAGGING: Mapping[str, Value] = {"differenced": 1.0, "counts": 8000 * TURN}
 LUGRE: Mapping[str, Value] = {"bristle_stiffness": 1e5, "bristle_damping": 300.0}

@@ -61,12 +61,21 @@ FOLDERS: dict[str, Folder] = {
     "identification": Folder(
         may_use={
             *_SOUGHT,
-            *("identification/inference", "identification/warnings", "identification/causes"),
+            *("identification/selection", "identification/inference", "identification/warnings"),
+            *("identification/self_test", "identification/causes"),
         },
         packages={"numpy"},
     ),
     "identification/causes": Folder(may_use=_FOUND - {"joint"}, packages={"numpy"}),
     "identification/search": Folder(may_use=_FOUND - {"recording"}, packages={"numpy", "scipy"}),
+    "identification/selection": Folder(
+        may_use={*_FOUND, "identification/search"}, packages={"numpy"}
+    ),
+    # It identifies again, and is imported when an estimate is asked for it.
+    "identification/self_test": Folder(
+        may_use={*(_FOUND - {"joint"}), *("identification/search", "identification/inference")},
+        packages={"numpy"},
+    ),
     "identification/inference": Folder(
         may_use={*_FOUND, "identification/search"} - {"base"}, packages={"numpy", "scipy"}
     ),

@@ -37,6 +37,7 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.comparison.comparison import compare_models
 from jointid.comparison.result import Comparison
+from jointid.estimate.bootstrap import Bootstrap
 from jointid.estimate.estimate import Estimate
 from jointid.identification.identification import identify
 from jointid.identification.search.search import Search
@@ -67,6 +68,7 @@ __version__ = _core.__version__
 __all__ = [
     "Action",
     "AdaptiveRobust",
+    "Bootstrap",
     "Bristle",
     "Comparison",
     "CompensatedPid",

@@ -77,9 +77,9 @@ def one(estimate: jid.Estimate, name: str) -> DerivedValue:
     return estimate.derived[name]
 
 
-def test_the_interval_is_students(estimate: jid.Estimate) -> None:
-    # A parameter's own interval has the same factor.
-    p, found = estimate.parameters["coulomb"], one(estimate, "breakaway")
+def test_the_interval_has_the_factor_of_its_parameter(estimate: jid.Estimate) -> None:
+    # Quantile and systematic parts are in it, not in the error of chance.
+    p, found = estimate.parameters["stribeck"], one(estimate, "stribeck_velocity")
     assert p.interval is not None
     assert found.interval is not None
     assert (found.interval[1] - found.value) / (found.stderr or 1.0) == pytest.approx(

@@ -41,7 +41,8 @@ def test_json_holds_everything(estimate: jid.Estimate) -> None:
                     part.name
                 )
         elif item.name == "follow_up":
-            assert before is not None and after is None  # a file does not hold the recordings
+            assert before is not None
+            assert after is None
         else:
             assert before == after, item.name
     assert again.report() == estimate.report()

@@ -18,7 +18,8 @@ from jointid.cli.demo import data_folder
 from jointid.estimate.findings import Finding
 from jointid.report import html as report
 
-SAVED = Path(__file__).with_name("estimate_schema_1.json")
+FOLDER = Path(__file__).parent
+SAVED = FOLDER / "estimate_schema_1.json"
 SCRIPT = "<script>alert(1)</script>"
 DEEP = "[" * 100_000 + "]" * 100_000
 # By name, as it stands in the file: JSON knows no 1e400 and no NaN, Python's reader does.
@@ -41,9 +42,9 @@ Path_ = tuple[str | int, ...]
 
 @functools.cache
 def text_of(schema: int) -> str:
-    """An estimate as this code saves it, and one saved by code with an older schema."""
-    if schema == 1:
-        return SAVED.read_text(encoding="utf-8")
+    """An estimate as this code saves it, and those saved by code with an older schema."""
+    if schema < 3:
+        return (FOLDER / f"estimate_schema_{schema}.json").read_text(encoding="utf-8")
     run = jid.load(data_folder() / "kr300_joint1.csv.gz")
     joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
     ga = jid.GaOptions(population=20, generations=3)
@@ -52,7 +53,7 @@ def text_of(schema: int) -> str:
     ).to_json()
 
 
-def document(schema: int = 2) -> dict[str, Any]:
+def document(schema: int = 3) -> dict[str, Any]:
     return dict(json.loads(text_of(schema)))
 
 
@@ -68,7 +69,7 @@ def paths(value: Any, here: Path_ = ()) -> Iterator[Path_]:
             yield from paths(value[i], (*here, i))
 
 
-def damaged(path: Path_, junk: str, schema: int = 2) -> str:
+def damaged(path: Path_, junk: str, schema: int = 3) -> str:
     """The saved estimate with one place set to this JSON text."""
     changed: Any = {"all": document(schema)}
     inner = changed
@@ -110,7 +111,7 @@ def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(report, "_pictures", lambda _: [])
 
 
-@pytest.mark.parametrize("schema", [1, 2])
+@pytest.mark.parametrize("schema", [1, 2, 3])
 @pytest.mark.parametrize("junk", JUNK)
 def test_every_place_of_a_saved_estimate(junk: str, schema: int, no_pictures: None) -> None:
     accepted = 0
@@ -224,7 +225,7 @@ def test_a_file_is_read_and_named(tmp_path: Path) -> None:
 
 
 def test_what_a_finding_may_hold_is_read_again() -> None:
-    estimate = jid.Estimate.from_json(text_of(2))
+    estimate = jid.Estimate.from_json(text_of(3))
     unknown = {"columns": {"sensor": ...}, "models": ["stribeck", ...]}
     found = Finding(
         code="undetermined", cause="x" * 50_000, advice=(Action("call", unknown, function="load"),)

@@ -33,7 +33,12 @@ def test_every_shape_of_the_core_has_bounds() -> None:
 @pytest.mark.parametrize(
     ("parameters", "argument", "reason", "remedy"),
     [
-        ({"static": 1.0}, "static", "it is not part of this identification; its", None),
+        (
+            {"static_positive": 1.0},
+            "static_positive",
+            "it is not part of this identification; its",
+            None,
+        ),
         ({"coulomb": {"min": 2.0, "max": 2.0}}, "coulomb", "between min 2 and max 2", "widen"),
         ({"coulomb": {"min": 2.0, "max": 1.0}}, "min", "above max", "swap"),
     ],
@@ -56,7 +61,7 @@ def test_parameters_are_a_mapping() -> None:
 
 def test_something_is_left_to_identify() -> None:
     fixed = dict.fromkeys(("inertia", "coulomb", "viscous", "torque_offset"), 1.0)
-    error = refused(PLAIN, parameters=fixed)
+    error = refused(PLAIN, model="coulomb_viscous", parameters=fixed)
     assert error.argument == "parameters"
     assert "leave at least one free" in error.reason
 

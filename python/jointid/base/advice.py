@@ -23,7 +23,8 @@ class Action:
         Of a call: the arguments to change, by name, e.g. ``{"model": "stribeck"}``,
         ``{"columns": {"velocity": None}}``, ``{"parameters": {"viscous": 12.0}}``. Default: none.
         `parameters` is merged over that of the call, field by field of each parameter (None takes a field
-        away); every other argument replaces that of the call.
+        away), and `columns`, `units` and `scale` of a load signal by signal; every other argument replaces
+        that of the call.
     text : str
         Of "record" and "inspect": what, in a phrase without the syntax of any face. Of a call: what for,
         if that needs to be said. Default: nothing.

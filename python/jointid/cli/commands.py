@@ -19,6 +19,7 @@ from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
+    from jointid.estimate.self_test import SelfTest
     from jointid.joint.joint import Joint
     from jointid.recording.recording import Recording
 
@@ -86,9 +87,23 @@ def identify(arguments: argparse.Namespace) -> int:
             windows=arguments.windows,
             torque_hold=arguments.torque_hold,
         )
+    tested = estimate.selftest(seed=arguments.seed) if arguments.selftest else None
     refused = _write(estimate, arguments)
-    print(estimate.to_json() if arguments.json else Wording.of(arguments).of_report(estimate))
+    if arguments.json:
+        print(_with_self_test(estimate, tested))
+    else:
+        print(Wording.of(arguments).of_report(estimate))
+        if tested is not None:
+            print(f"\n{tested.report()}")
     return _exit_code(refused, arguments)
+
+
+def _with_self_test(estimate: Estimate, tested: SelfTest | None) -> str:
+    """The estimate as JSON, with the result of its self-test if there was one."""
+    if tested is None:
+        return estimate.to_json()
+    document = json.loads(estimate.to_json()) | {"selftest": tested.document()}
+    return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
 
 
 def compare(arguments: argparse.Namespace) -> int:

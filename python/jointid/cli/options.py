@@ -35,6 +35,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         **_ESTIMATE,
         "ga.population": "--population",
         "ga.generations": "--generations",
+        "selftest": "--selftest",
         "checkpoint": "--checkpoint",
         "resume": "--resume",
     },
@@ -97,7 +98,9 @@ FILES: Mapping[str, str] = {
 }
 """Options that take a file, and what stands for one that the user has to choose."""
 
-FLAGS = frozenset({"--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run"})
+FLAGS = frozenset(
+    {"--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run", "--selftest"}
+)
 """Options that may stand without a value."""
 
 # The core and the simulation name a field by the class that has it.

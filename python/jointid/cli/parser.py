@@ -117,7 +117,16 @@ def _add_identify(commands: Any) -> None:
     identify.add_argument(
         "--model",
         metavar="NAME[:OPTION[=VALUE]]",
-        help=f"friction model: {', '.join(model_names())}; with options: stribeck:asymmetric:ripple=2,4",
+        help=(
+            f"friction model: {', '.join(model_names())}, or auto (default where the joint names none): the one of "
+            "the first two, with or without gravity, that predicts held-out torque; with options: "
+            "stribeck:asymmetric:ripple=2,4"
+        ),
+    )
+    identify.add_argument(
+        "--selftest",
+        action="store_true",
+        help="inject the result into the recorded motion, with noise as recorded, and identify it again",
     )
     identify.add_argument("--population", type=whole, help="individuals of the genetic algorithm")
     identify.add_argument("--generations", type=whole, help="generations of the genetic algorithm")

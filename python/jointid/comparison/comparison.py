@@ -64,7 +64,7 @@ def compared_models(models: object) -> tuple[Model, ...]:
     if not entries:
         raise InputError("at least one is expected, e.g. stribeck", argument="models", value=[])
     for index, model in enumerate(entries):
-        if model.name is None:
+        if not model.named:
             raise InputError("a compared model needs a name", argument="models", value=_text(model))
         if model in entries[:index]:
             raise InputError("it is given twice", argument="models", value=_text(model))

@@ -9,11 +9,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from jointid.estimate.student import quantile
+from jointid.estimate.intervals import squared_half_widths
 
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
+
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,7 +35,7 @@ class DerivedValue:
         Standard error by the delta method, correlations of the parameters included; None when a
         parameter was held at a bound, or is not determined, or all are fixed.
     interval : tuple of float or None
-        95 % confidence interval (Student's t).
+        95 % interval, with the correlations of the parameters and what theirs contain.
     formula : str
         How it follows, e.g. "coulomb + static".
     """
@@ -105,12 +109,9 @@ def _derived(
     slopes: Mapping[str, float],
     formula: str,
 ) -> DerivedValue:
-    stderr = _error(estimate, slopes)
-    interval = None
-    if stderr is not None:
-        freedom = max(1, estimate.residuals.windows - len(estimate.free))
-        half = quantile(0.975, freedom) * stderr
-        interval = (value - half, value + half)
+    stderr = _error(estimate, slopes, estimate.covariance)
+    half = _error(estimate, slopes, squared_half_widths(estimate))
+    interval = None if stderr is None or half is None else (value - half, value + half)
     return DerivedValue(
         name=name,
         meaning=meaning,
@@ -122,8 +123,8 @@ def _derived(
     )
 
 
-def _error(estimate: Estimate, slopes: Mapping[str, float]) -> float | None:
-    """Standard error of a quantity with these slopes by the parameters: √(slopes · covariance · slopes)."""
+def _error(estimate: Estimate, slopes: Mapping[str, float], matrix: Array) -> float | None:
+    """Error of a quantity with these slopes by the parameters: √(slopes · matrix · slopes)."""
     free = [name for name in slopes if name in estimate.free]
     held = [name for name in slopes if name not in free and estimate.parameters[name].vary]
     if not free or held:
@@ -132,5 +133,5 @@ def _error(estimate: Estimate, slopes: Mapping[str, float]) -> float | None:
     slope = np.array([slopes[name] for name in free])
     if not np.isfinite(slope).all():
         return None
-    variance = float(slope @ estimate.covariance[np.ix_(places, places)] @ slope)
+    variance = float(slope @ matrix[np.ix_(places, places)] @ slope)
     return math.sqrt(max(variance, 0.0)) if math.isfinite(variance) else None

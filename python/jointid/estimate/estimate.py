@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from jointid.base.argument_checks import require_kind, require_path
+from jointid.base.argument_checks import require_kind, require_path, whole_number
 from jointid.base.errors import InputError
 from jointid.estimate.findings import Finding
+from jointid.estimate.selection import Selection
 from jointid.estimate.statistics import (
     Convergence,
     FrictionCurve,
@@ -22,9 +23,11 @@ from jointid.estimate.statistics import (
 from jointid.problem.window_table import Prediction, WindowTable
 
 if TYPE_CHECKING:
+    from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.causes import Causes
     from jointid.estimate.derived import DerivedValue
     from jointid.estimate.follow_up import FollowUp
+    from jointid.estimate.self_test import SelfTest
     from jointid.joint.joint import Joint
     from jointid.recording.recording import Recording
 
@@ -70,6 +73,8 @@ class Estimate:
         Everything needed to repeat the run: method, residual, terms, options, seed, versions, fingerprints.
     seconds : float
         Wall time.
+    selection : Selection or None
+        How the model was chosen; None if it was named.
     follow_up : FollowUp or None
         Answers questions that need the recordings; None in an estimate that was read from a file.
     """
@@ -90,6 +95,7 @@ class Estimate:
     joint: Joint
     settings: Mapping[str, Any]
     seconds: float = field(repr=False)
+    selection: Selection | None = field(default=None, repr=False)
     follow_up: FollowUp | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:
@@ -163,6 +169,79 @@ class Estimate:
 
         return predict(self, recording)
 
+    def selftest(self, trials: int = 3, seed: int = 0) -> SelfTest:
+        """Test whether known parameters come back from the recorded motion with the noise of the recordings.
+
+        Each trial keeps the recorded motion, without its noise, and computes the torque and the sensor's
+        reading that known parameters need there. Noise as in the recordings is added: the quantum and the
+        white noise of position, velocity and sensor, and the residuals of the estimate as a disturbance
+        torque, in blocks in another order and with other signs. Then the parameters are identified with the
+        same settings. The first trial injects the estimate itself, the others parameters from its intervals.
+
+        What comes back can be identified from such a motion *if the joint is as modelled*; what does not,
+        cannot.
+
+        Parameters
+        ----------
+        trials : int
+            1 to 1000. Default 3.
+        seed : int
+            The same seed gives the same bits, on any number of threads. Default 0.
+
+        Returns
+        -------
+        SelfTest
+
+        Raises
+        ------
+        InputError
+            The estimate was read from a file, which does not hold the recordings; or another number.
+        KeyboardInterrupt
+            Ctrl-C; it is raised within 0.1 s.
+
+        Examples
+        --------
+        >>> estimate.selftest().lost  # doctest: +SKIP
+        ('sensor_gain', 'sensor_offset')
+        """
+        trials = whole_number("trials", trials, 1, 1000)
+        seed = whole_number("seed", seed, 0, 2**64 - 1)
+        return self._with_recordings("selftest").selftest(self, trials, seed)
+
+    def bootstrap(self, n: int = 1000, seed: int = 0) -> Bootstrap:
+        """Draw stretches of the recordings anew, and refit the parameters to each draw (block bootstrap).
+
+        A check of the standard errors that does not rest on their formula. The blocks are as long as a segment
+        of motion: an eighth of the motion, between 0.25 and 1 s, and longer on recordings over 10 min. A draw is
+        refitted inside the bounds of the search, with the torque balance linearised at the estimate.
+
+        Parameters
+        ----------
+        n : int
+            Draws, 20 to 1,000,000. Default 1000.
+        seed : int
+            The same seed gives the same bits, on any number of threads. Default 0.
+
+        Returns
+        -------
+        Bootstrap
+
+        Raises
+        ------
+        InputError
+            The estimate was read from a file, which does not hold the recordings; or another number.
+        KeyboardInterrupt
+            Ctrl-C; it is raised within 0.1 s.
+
+        Examples
+        --------
+        >>> estimate.bootstrap().parameters["coulomb"].ratio  # doctest: +SKIP
+        1.04
+        """
+        n = whole_number("n", n, 20, 1_000_000)
+        seed = whole_number("seed", seed, 0, 2**64 - 1)
+        return self._with_recordings("bootstrap").bootstrap(self, n, seed)
+
     def causes(self, signals: Mapping[str, ArrayLike] | None = None) -> Causes:
         """Say why the model does not fit: causes by name, what they explain, what they move, what to do.
 
@@ -183,21 +262,25 @@ class Estimate:
         Raises
         ------
         InputError
-            The estimate was read from a file, which does not hold its recordings; or a signal that does
+            The estimate was read from a file, which does not hold the recordings; or a signal that does
             not fit the recording.
 
         Examples
         --------
-        >>> print(estimate.causes())  # doctest: +SKIP
-        drift: a coefficient that changes during the recording (viscous, −30 % over the recording) ...
+        >>> [cause.name for cause in estimate.causes().found]  # doctest: +SKIP
+        ['drift']
         """
+        return self._with_recordings("causes").causes(self, signals or {})
+
+    def _with_recordings(self, question: str) -> FollowUp:
+        """Return what answers questions that need the recordings."""
         if self.follow_up is None:
             raise InputError(
-                "an estimate that was read from a file has no recordings",
-                argument="follow_up",
-                remedy="identify the recordings again",
+                "this estimate was read from a file, which does not hold the recordings",
+                argument=question,
+                remedy="identify again, and ask the new estimate",
             )
-        return self.follow_up.causes(self, signals)
+        return self.follow_up
 
     def report(self) -> str:
         """Return the estimate as text: parameters, quality of the fit, findings."""

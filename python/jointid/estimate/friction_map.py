@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.intervals import squared_half_widths
 from jointid.estimate.statistics import FrictionCurve
-from jointid.estimate.student import quantile
 
 Array = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ def friction_torque(
 
 
 def friction_curve(estimate: Estimate, velocity: Array, load: float = 0.0) -> FrictionCurve:
-    """Friction at each velocity, and its pointwise 95 % band by linear propagation of the covariance."""
+    """Friction at each velocity, and its pointwise 95 % band by linear propagation of the intervals."""
     values = {name: parameter.value for name, parameter in estimate.parameters.items()}
     terms = estimate.settings["terms"]
     torque = friction_torque(terms, values, velocity, load)
@@ -48,10 +48,10 @@ def friction_curve(estimate: Estimate, velocity: Array, load: float = 0.0) -> Fr
         below = friction_torque(terms, {**values, name: values[name] - step}, velocity, load)
         sensitivity[:, column] = (above - below) / (2.0 * step)
     # An infinite variance must not meet a sensitivity of exactly zero.
-    finite = np.where(np.isfinite(estimate.covariance), estimate.covariance, 0.0)
-    unknown = ~np.isfinite(np.diag(estimate.covariance))
-    variance = np.einsum("ij,jk,ik->i", sensitivity, finite, sensitivity)
-    variance[np.any(np.abs(sensitivity[:, unknown]) > 0.0, axis=1)] = np.inf
-    freedom = max(1, estimate.residuals.windows - len(estimate.free))
-    half = quantile(0.975, freedom) * np.sqrt(np.maximum(variance, 0.0))
+    matrix = squared_half_widths(estimate)
+    finite = np.where(np.isfinite(matrix), matrix, 0.0)
+    unknown = ~np.isfinite(np.diag(matrix))
+    square = np.einsum("ij,jk,ik->i", sensitivity, finite, sensitivity)
+    square[np.any(np.abs(sensitivity[:, unknown]) > 0.0, axis=1)] = np.inf
+    half = np.sqrt(np.maximum(square, 0.0))
     return FrictionCurve(velocity=velocity, torque=torque, lower=torque - half, upper=torque + half)

@@ -84,6 +84,8 @@ def html_summary(estimate: Estimate) -> Html:
         f"R² {r.r_squared:.5f}, relative residual {100.0 * r.relative:.2f} %, {r.windows} windows of "
         f"{1e3 * r.window_duration:.4g} ms"
     )
+    if estimate.selection is not None:
+        caption += f"; chosen: {estimate.selection.sentence}"
     title = element("b", f"jointid estimate — {estimate.joint.name or 'joint'}")
     return element(
         "div", title, html_table(estimate), element("p", caption), html_findings(estimate)

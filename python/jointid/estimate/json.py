@@ -15,14 +15,16 @@ from jointid.base.schema import Number, read_json
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.json_schema import ESTIMATE
+from jointid.estimate.selection import Candidate, Selection
 from jointid.estimate.settings import model_of
 from jointid.estimate.statistics import Convergence, ParameterEstimate, ResidualStatistics
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_document, joint_from_document
 from jointid.problem.window_table import WindowTable
 
-SCHEMA = 2
-"""Raised when a reader of the old form would misread the new one. 2: findings in place of warnings."""
+SCHEMA = 3
+"""Raised when a reader of the old form would misread the new one. 2: findings in place of warnings; 3: a standard
+error is of chance alone, its systematic parts are beside it."""
 
 _KIND = "jointid estimate"
 
@@ -88,6 +90,7 @@ def _estimate(d: Mapping[str, Any]) -> Estimate:
         joint=joint_from_document(d["joint"], "joint"),
         settings=d["settings"],
         seconds=d["seconds"],
+        selection=_selection(d.get("selection")),
     )
 
 
@@ -112,6 +115,11 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
             yield field, "lists of the same length are expected"
     if max(d["windows"]["recording"]) >= len(d["settings"]["recordings"]):
         yield "windows.recording", "there are not so many recordings in settings.recordings"
+    if (chosen := d.get("selection")) is not None:
+        texts = [each["model"] for each in chosen["candidates"]]
+        for field in ("model", "runner_up"):
+            if chosen[field] is not None and chosen[field] not in texts:
+                yield f"selection.{field}", "this is none of the candidates"
     values = {name.partition("[")[0] for name in names}  # coulomb[0] is one recording's own
     for i, key in enumerate(d["settings"]["terms"]):
         term = _term(key)
@@ -129,6 +137,12 @@ def _term(key: str) -> _core.Term | None:
 def _parameter(entry: Mapping[str, Any]) -> ParameterEstimate:
     interval = None if entry["interval"] is None else tuple(entry["interval"])
     return ParameterEstimate(**{**entry, "interval": interval})
+
+
+def _selection(entry: Mapping[str, Any] | None) -> Selection | None:
+    if entry is None:
+        return None
+    return Selection(**{**entry, "candidates": tuple(Candidate(**c) for c in entry["candidates"])})
 
 
 def _finding(entry: Mapping[str, Any]) -> Finding:

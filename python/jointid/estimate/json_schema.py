@@ -5,32 +5,35 @@ from typing import get_args
 from jointid.base.advice import Kind as ActionKind
 from jointid.base.schema import Flag, Kind, ListOf, Number, OrNull, Plain, Record, TableOf, Text
 from jointid.estimate.findings import Severity
+from jointid.estimate.selection import SELECTION
 from jointid.estimate.settings import SETTINGS
+from jointid.estimate.statistics import SYSTEMATIC_PARTS
 
 _VALUE = Number(low=-1e100, high=1e100)  # far beyond any joint, and its square is still a number
 _NOT_NEGATIVE = Number(low=0.0, high=1e100)
 _POSITIVE = Number(low=1e-12, high=1e100)
 _COUNT = Number(low=0, high=2**62, whole=True)
 _LIMIT = Number(infinite=True)
+_SIZE = Number(low=0.0, infinite=True, undefined=True)
 _ANY = Number(infinite=True, undefined=True)
 _MATRIX = ListOf(ListOf(_ANY))
 
-_PARAMETER = Record(
-    {
-        "name": Text(),
-        "meaning": Text(),
-        "unit": Text(),
-        "value": _VALUE,
-        "stderr": OrNull(_ANY),
-        "interval": OrNull(ListOf(_ANY, 2, 2)),
-        "min": _LIMIT,
-        "max": _LIMIT,
-        "vary": Flag(),
-        "at_bound": OrNull(Text(known=("min", "max"))),
-        "shift_halved": OrNull(_ANY),
-        "shift_doubled": OrNull(_ANY),
-    }
-)
+_OLD_PARAMETER: dict[str, Kind] = {
+    "name": Text(),
+    "meaning": Text(),
+    "unit": Text(),
+    "value": _VALUE,
+    "stderr": OrNull(_ANY),
+    "interval": OrNull(ListOf(_ANY, 2, 2)),
+    "min": _LIMIT,
+    "max": _LIMIT,
+    "vary": Flag(),
+    "at_bound": OrNull(Text(known=("min", "max"))),
+    "shift_halved": OrNull(_ANY),
+    "shift_doubled": OrNull(_ANY),
+}
+_SYSTEMATIC = Record({}, optional=dict.fromkeys(SYSTEMATIC_PARTS, _SIZE))
+_PARAMETER = Record({**_OLD_PARAMETER, "systematic": _SYSTEMATIC})
 _RESIDUALS = Record(
     {
         "windows": _COUNT,
@@ -96,8 +99,13 @@ _FIELDS: dict[str, Kind] = {
     "settings": SETTINGS,
     "seconds": _NOT_NEGATIVE,
 }
+_OLD_FIELDS: dict[str, Kind] = {**_FIELDS, "parameters": TableOf(Record(_OLD_PARAMETER))}
 ESTIMATE: dict[int, Kind] = {
-    1: Record({**_FIELDS, "warnings": ListOf(_WARNING)}),
+    1: Record({**_OLD_FIELDS, "warnings": ListOf(_WARNING)}),
     # What is derived is computed again.
-    2: Record({**_FIELDS, "findings": ListOf(_FINDING)}, {"derived": Plain()}),
+    2: Record({**_OLD_FIELDS, "findings": ListOf(_FINDING)}, {"derived": Plain()}),
+    3: Record(
+        {**_FIELDS, "findings": ListOf(_FINDING)},
+        {"derived": Plain(), "selection": OrNull(SELECTION), "selftest": Plain()},
+    ),
 }

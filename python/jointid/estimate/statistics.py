@@ -1,12 +1,17 @@
 """The parts of an estimate: parameters, residuals, convergence, curves."""
 
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+
+SYSTEMATIC_PARTS = ("windows", "sampling", "lag", "velocity", "residual_side", "given")
+"""What moves a value however long the recording is."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -18,10 +23,11 @@ class ParameterEstimate:
     value : float
         In `unit`.
     stderr : float or None
-        Standard error, robust to autocorrelated residuals, with how the value moves with the windows and
-        with the instant at which a sensor is sampled; None when fixed or held at a bound.
+        Standard error: of chance alone, clustered over motion segments where the residuals hang together; None when
+        fixed or held at a bound.
     interval : tuple of float or None
-        95 % confidence interval (Student's t).
+        95 % interval: of chance (Student's t, with as many degrees of freedom as the segments give), and of the
+        systematic parts that the recording itself shows: all but "given". It holds if the given facts are right.
     min, max : float
         Bounds of the search.
     vary : bool
@@ -30,6 +36,12 @@ class ParameterEstimate:
         "min" or "max" when the search ended on a bound.
     shift_halved, shift_doubled : float or None
         How the value moves when the windows are halved and doubled.
+    systematic : mapping of str to float
+        Sizes of errors that do not decrease with the recording's length, by name:
+        "windows" (how the value moves when they are halved and doubled), "sampling" (the unknown instant of the
+        sensor's sample), "lag" (delays between signals), "velocity" (its noise), "residual_side" (which signal is
+        compared), all as one standard error; "given" (the tolerances of the joint's facts, at their limits).
+        Parts that do not apply are missing.
     """
 
     name: str
@@ -44,6 +56,23 @@ class ParameterEstimate:
     at_bound: str | None
     shift_halved: float | None
     shift_doubled: float | None
+    systematic: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def systematic_total(self) -> float:
+        """The systematic parts together: the root of the sum of their squares."""
+        return math.hypot(*self.systematic.values())
+
+    @property
+    def largest_part(self) -> str | None:
+        """Name of the largest systematic part; None when all are zero."""
+        name = max(self.systematic, key=self.systematic.__getitem__, default=None)
+        return name if name is not None and self.systematic[name] > 0.0 else None
+
+    @property
+    def uncertainty(self) -> float:
+        """Chance and all systematic parts together, as one standard error."""
+        return math.hypot(self.stderr or 0.0, self.systematic_total)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

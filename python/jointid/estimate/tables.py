@@ -56,6 +56,7 @@ def quality(estimate: Estimate) -> list[tuple[str, str]]:
     unit = residual_unit(estimate.settings)
     return [
         ("model", model_description(estimate.settings)),
+        *([("chosen", estimate.selection.sentence)] if estimate.selection else []),
         (
             "fit",
             f"R² {r.r_squared:.5f}, relative residual {100.0 * r.relative:.2f} %, rms {r.rms:.3g} {unit}",

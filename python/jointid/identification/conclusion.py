@@ -12,13 +12,14 @@ from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence
 from jointid.identification.causes.causes import find_causes
 from jointid.identification.causes.suspicion import suspicious
-from jointid.identification.inference.covariance import parameter_covariance, widened
+from jointid.identification.inference.covariance import parameter_covariance
 from jointid.identification.inference.inference import (
     freedom_of,
     joint_of,
     parameters_of,
     statistics_of,
 )
+from jointid.identification.inference.segments import Motion, motion_segments
 from jointid.identification.inference.systematic import systematic_errors
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.warnings.diagnosis import diagnose
@@ -41,6 +42,7 @@ def infer(
     domain: SearchDomain,
     best: Array,
     shifts: tuple[Array | None, Array | None],
+    given: Array | None,
     convergence: Convergence | None,
     status: str,
     message: str,
@@ -53,6 +55,8 @@ def infer(
     ----------
     shifts : tuple of ndarray or None
         Change of each parameter when the windows are halved and doubled.
+    given : ndarray or None
+        Change of each parameter when the given facts are at the limits of their tolerances.
     """
     threads = problem.threads
     # First, before arrays of one value per window are allocated, and these are freed early: a recording
@@ -71,15 +75,17 @@ def infer(
     free_jacobian = jacobian[:, free]
     del jacobian
     centre = _centre(penalty, columns, free)
-    by_chance = parameter_covariance(free_jacobian, residual, centre, threads=threads)
-    systematic = systematic_errors(problem, penalty, best, free, free_jacobian, columns, shifts)
+    segments = motion_segments(Motion.of(problem, penalty))
+    spread = parameter_covariance(
+        free_jacobian, residual, centre, threads=threads, segments=segments
+    )
+    parts = systematic_errors(problem, penalty, best, free, free_jacobian, columns, shifts)
+    if given is not None:
+        parts["given"] = given
     del free_jacobian
-    spread = widened(by_chance, systematic)
     at_best = regressor(penalty, columns, threads)
     del columns
-    parameters = parameters_of(
-        problem, penalty, domain, best, freedom, spread, len(residual), shifts
-    )
+    parameters = parameters_of(problem, penalty, domain, best, freedom, spread, parts, shifts)
     statistics = statistics_of(problem, penalty, table)
     named = sorted(zip(free, np.abs(spread.weakest), strict=True), key=lambda pair: -pair[1])
     weakest = tuple(domain.names[i] for i, share in named if share > _NAMED)
@@ -105,7 +111,7 @@ def infer(
             residual=residual,
             table=table,
             parameters=parameters,
-            chance=dict(zip((domain.names[i] for i in free), by_chance.stderr, strict=True)),
+            chance=dict(zip((domain.names[i] for i in free), spread.stderr, strict=True)),
             residuals=statistics,
             torque_level=torque_level,
             status=status,

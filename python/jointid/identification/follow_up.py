@@ -6,18 +6,22 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
-from jointid.base.errors import InputError
+from jointid.identification.causes.causes import attributed
+from jointid.identification.inference.bootstrap import block_bootstrap
+from jointid.identification.self_test.testing import self_test
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.causes import Causes
     from jointid.estimate.estimate import Estimate
+    from jointid.estimate.self_test import SelfTest
     from jointid.identification.search.domain import SearchDomain
     from jointid.identification.search.search import Search
     from jointid.problem.problem import Problem
     from jointid.problem.windows import Windows
+    from jointid.recording.recording import Recording
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,52 +35,31 @@ class EstimateSource:
     windows : int, float, str, WindowOptions or None
         As given in the call.
     search : Search
+    again : callable
+        Returns the estimate from other recordings, with the same settings.
     """
 
     problem: Problem
     domain: SearchDomain
     windows: Windows
     search: Search
+    again: Callable[[tuple[Recording, ...]], Estimate]
 
-    def causes(self, estimate: Estimate, signals: Mapping[str, ArrayLike] | None) -> Causes:
-        """Attribute the misfit of the estimate.
-
-        Raises
-        ------
-        InputError
-            Several recordings with `signals`, or a signal with another number of values.
-        """
-        from jointid.identification.causes.causes import find_causes
-
-        penalty = self.problem.penalty(self.windows)
-        torque = np.asarray(penalty.target) / np.asarray(penalty.usable_duration)
-        return find_causes(
-            self.problem,
-            penalty,
-            estimate.parameters,
-            torque_level=float(np.sqrt(np.mean(torque**2))),
-            r_squared=estimate.residuals.r_squared,
-            signals=self._checked(signals or {}),
+    def selftest(self, estimate: Estimate, trials: int, seed: int) -> SelfTest:
+        """Inject known parameters into the recorded motion, and identify them again."""
+        return self_test(
+            self.problem, self.domain, self.windows, self.again, estimate, trials, seed
         )
 
-    def _checked(self, signals: Mapping[str, ArrayLike]) -> dict[str, NDArray[np.float64]]:
-        if signals and len(self.problem.recordings) > 1:
-            raise InputError(
-                "further signals need an estimate of one recording",
-                argument="signals",
-                value=list(signals),
-            )
-        found = {}
-        for name, values in signals.items():
-            array = np.asarray(values, dtype=np.float64)
-            if array.shape != (len(self.problem.recordings[0]),) or not np.all(np.isfinite(array)):
-                raise InputError(
-                    f"one finite value a sample of the recording is expected, {len(self.problem.recordings[0])}",
-                    argument=f"signals.{name}",
-                    value=f"shape {array.shape}",
-                )
-            found[name] = array
-        return found
+    def bootstrap(self, estimate: Estimate, n: int, seed: int) -> Bootstrap:
+        """Draw stretches of the recordings anew, and refit the parameters to each draw."""
+        penalty = self.problem.penalty(self.windows)
+        return block_bootstrap(self.problem, penalty, self.domain, estimate, n, seed)
+
+    def causes(self, estimate: Estimate, signals: Mapping[str, ArrayLike]) -> Causes:
+        """Attribute the misfit to what the model lacks."""
+        penalty = self.problem.penalty(self.windows)
+        return attributed(self.problem, penalty, estimate, signals)
 
     def __reduce__(self) -> tuple[Callable[[], None], tuple[()]]:
         """Leave the recordings out of a pickled estimate."""

@@ -39,11 +39,13 @@ def identify(
     recordings : Recording or sequence of Recording
         One recording, or several that share all parameters but those of `per_recording`.
     joint : Joint, optional
-        Known values, bounds and the model. Without one, inertia, Coulomb and viscous friction and an
-        offset are identified with bounds from the data, and the sensor if the recording has one.
+        Known values, bounds and the model. Without one, inertia, friction and an offset are identified with
+        bounds from the data, and the sensor if the recording has one.
     model : Model, str or mapping, optional
         Terms of the torque balance, e.g. ``"stribeck:ripple=2"``; each stated field overrides that of the
-        joint's model. Default: the joint's, else "coulomb_viscous".
+        joint's model. Default: the joint's. Where neither names one, or the name is "auto", the model is
+        chosen by held-out prediction: "coulomb_viscous" or "stribeck", with gravity free or none where that
+        is neither stated nor known; `Estimate.selection` has the scores.
     parameters : mapping, optional
         Changes by name: a number fixes the parameter; {"value", "min", "max", "vary"} or a `Parameter`
         changes those fields. Values in SI units.
@@ -85,6 +87,7 @@ def identify(
         torque_hold=torque_hold,
         mask_standstill=mask_standstill,
         threads=chosen.threads,
+        choose=True,
     )
     outcome = run_search(chosen, prepared.penalty, prepared.domain)
     return prepared.estimate(chosen, outcome, started)

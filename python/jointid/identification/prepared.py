@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -11,16 +12,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.advice import Action
 from jointid.base.argument_checks import whole_number
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.selection import Selection
 from jointid.identification.conclusion import infer
 from jointid.identification.follow_up import EstimateSource
+from jointid.identification.inference.given import of_given_facts
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Outcome
+from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Search
+from jointid.identification.selection.selecting import select_model
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model
+from jointid.joint.model import AUTO, Model
 from jointid.joint.parameters import Parameter
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import listed
@@ -43,12 +49,15 @@ class Prepared:
     domain : SearchDomain
     windows : int, float, str, WindowOptions or None
         As given in the call.
+    selection : Selection or None
+        How the model was chosen; None if it was named.
     """
 
     problem: Problem
     penalty: _core.Penalty
     domain: SearchDomain
     windows: Windows
+    selection: Selection | None = None
 
     def estimate(self, search: Search, outcome: Outcome, started: float) -> Estimate:
         """Return the estimate of a search's outcome: intervals, checks, warnings.
@@ -66,6 +75,7 @@ class Prepared:
             domain=self.domain,
             best=outcome.best,
             shifts=self._window_shifts(outcome.best),
+            given=of_given_facts(self.problem, self.windows, self.domain, outcome.best),
             convergence=outcome.convergence,
             status=outcome.status,
             message=outcome.message,
@@ -73,9 +83,21 @@ class Prepared:
             seconds=time.perf_counter() - started,
         )
         source = EstimateSource(
-            problem=self.problem, domain=self.domain, windows=self.windows, search=search
+            problem=self.problem,
+            domain=self.domain,
+            windows=self.windows,
+            search=search,
+            again=functools.partial(self._again, search),
         )
-        return replace(estimate, follow_up=source)
+        return replace(estimate, follow_up=source, selection=self.selection)
+
+    def _again(self, search: Search, recordings: tuple[Recording, ...]) -> Estimate:
+        """Return the estimate from other recordings with the same terms, windows and domain."""
+        started = time.perf_counter()
+        problem = replace(self.problem, recordings=recordings)
+        other = replace(self, problem=problem, penalty=problem.penalty(self.windows))
+        quick = Search("separable", seed=search.seed, threads=search.threads)
+        return other.estimate(quick, run_search(quick, other.penalty, other.domain), started)
 
     def _settings(self, search: Search) -> dict[str, Any]:
         problem, penalty, choice = self.problem, self.penalty, self.problem.choice
@@ -128,8 +150,15 @@ def prepare(
     torque_hold: str | None = None,
     mask_standstill: bool = True,
     threads: int = 0,
+    choose: bool = False,
 ) -> Prepared:
     """Return an identification ready to search; parameters as in `identify`.
+
+    Parameters
+    ----------
+    choose : bool
+        Whether a model without a name is chosen from the recordings. Default False: it is coulomb_viscous,
+        and the name "auto" is refused.
 
     Raises
     ------
@@ -143,8 +172,15 @@ def prepare(
             "true or false is expected", argument="mask_standstill", value=mask_standstill
         )
     stated = Model.of(model)
+    merged = stated if joint is None else stated.over(joint.model)
+    if merged.name == AUTO and not choose:
+        raise InputError(
+            "a model with a name is needed here; only an identification by itself chooses one",
+            argument="model",
+            value=str(merged),
+            remedy=Action("call", {"model": "stribeck"}),
+        )
     if joint is not None:
-        merged = stated.over(joint.model)
         # What only this call's recordings have apart does not become a property of the joint.
         joint = joint.replace(model=merged.replace(per_recording=joint.model.per_recording))
     request = Request(model=stated, residual=residual)
@@ -156,9 +192,14 @@ def prepare(
         mask_standstill=mask_standstill,
         threads=whole_number("threads", threads, 0, 1024),
     )
+    selection = None
+    if choose and not merged.named:
+        problem, selection = select_model(problem, request, parameters, windows)
     penalty = problem.penalty(windows)
-    domain = domain_for(penalty, joint, parameters, problem.peak_speed)
-    return Prepared(problem=problem, penalty=penalty, domain=domain, windows=windows)
+    domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
+    return Prepared(
+        problem=problem, penalty=penalty, domain=domain, windows=windows, selection=selection
+    )
 
 
 def require_joint(joint: object) -> None:

@@ -25,6 +25,7 @@ from jointid.joint.checks import (
 from jointid.joint.link import GravityCoefficients, Limits, Link
 from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter, merge, parameter_table
+from jointid.joint.tolerances import Tolerances
 
 if TYPE_CHECKING:
     from jointid.recording.recording import Recording
@@ -72,6 +73,9 @@ class Joint:
         Known values of parameters, and bounds of the search. Default: none.
     limits : Limits
         Default: none known.
+    tolerances : Tolerances or mapping
+        How well the given facts are known, e.g. ``{"torque_constant": "5 %"}``; `identify` shows what they
+        mean for each parameter. Default: none stated.
 
     Raises
     ------
@@ -92,6 +96,7 @@ class Joint:
     link: Link | None = None
     parameters: Mapping[str, Parameter] = field(default_factory=dict, hash=False)
     limits: Limits = field(default_factory=Limits)
+    tolerances: Tolerances = field(default_factory=Tolerances)
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
@@ -129,10 +134,15 @@ class Joint:
             raise InputError(
                 "Limits are expected", argument="limits", value=self.limits, place=owner
             )
+        try:
+            object.__setattr__(self, "tolerances", Tolerances.of(self.tolerances))
+        except InputError as error:
+            raise error.at(owner) from None
         table = MappingProxyType(parameter_table(self.parameters))
         object.__setattr__(self, "parameters", table)
         self._check_inertia(owner)
         self._check_gravity(owner)
+        self._check_tolerances(owner)
 
     @property
     def owner(self) -> str:
@@ -179,6 +189,40 @@ class Joint:
                 place=owner,
                 remedy="give the link's mass and centre_of_mass",
             )
+
+    def _check_tolerances(self, owner: str) -> None:
+        facts = self.facts
+        for name, stated in self.tolerances.given.items():
+            if name in ("mass", "centre_of_mass", "link_inertia") and self.link is None:
+                raise InputError(
+                    "there is no link",
+                    argument=name,
+                    value=stated,
+                    place=f"{owner}: tolerances",
+                    remedy="give the link's mass and centre_of_mass",
+                )
+            if not isinstance(stated, str) and facts[name] is None:
+                raise InputError(
+                    "the fact itself is not given",
+                    argument=name,
+                    value=stated,
+                    place=f"{owner}: tolerances",
+                    remedy='give the fact, or a share such as "5 %"',
+                )
+
+    @property
+    def facts(self) -> dict[str, float | None]:
+        """The given facts that may have a tolerance, by its name."""
+        link = self.link
+        return {
+            "torque_constant": self.torque_constant,
+            "gear_ratio": self.gear_ratio,
+            "inertia": self.inertia,
+            "rotor_inertia": self.rotor_inertia,
+            "mass": None if link is None else link.mass,
+            "centre_of_mass": None if link is None else link.centre_of_mass,
+            "link_inertia": None if link is None else link.inertia,
+        }
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> "Joint":

@@ -17,6 +17,7 @@ from jointid.joint.joint import Joint
 from jointid.joint.link import Limits, Link
 from jointid.joint.model import FIELDS, Model
 from jointid.joint.parameters import Parameter, parameter_table
+from jointid.joint.tolerances import Tolerances
 from jointid.joint.toml_edit import update_table
 
 SCHEMA = 2
@@ -34,6 +35,7 @@ _KEYS: dict[str, tuple[str, ...]] = {
     "link": tuple(field.name for field in fields(Link)),
     "parameters": (),  # the core has the names
     "limits": tuple(field.name for field in fields(Limits)),
+    "tolerances": tuple(field.name for field in fields(Tolerances)),
 }
 # Tables that are not fields of the joint, and are kept: `estimate` is the origin of values, `session` the
 # settings of the joint's bench, `user` is free.
@@ -87,6 +89,8 @@ def joint_document(joint: Joint) -> dict[str, Any]:
             name: _known(parameter, ("value", "min", "max", "vary"))
             for name, parameter in joint.parameters.items()
         }
+    if joint.tolerances.given:
+        document["tolerances"] = joint.tolerances.given
     if joint.limits != Limits():
         document["limits"] = _known(joint.limits, _KEYS["limits"])
     return document
@@ -124,6 +128,10 @@ def joint_from_document(document: Mapping[str, Any], source: str) -> Joint:
         arguments["limits"] = Limits(**tables["limits"])
     except InputError as error:
         _refuse(source, "limits", error)
+    try:
+        arguments["tolerances"] = Tolerances(**tables["tolerances"])
+    except InputError as error:
+        _refuse(source, "tolerances", error)
     try:
         return Joint(**arguments)
     except InputError as error:
@@ -313,7 +321,7 @@ def _edited(before: str, joint: Joint, path: Path) -> str:
         if "sensor" in editable:
             bare = "present" not in editable["sensor"]
             wanted["sensor"] = {} if bare and joint.sensor else {"present": joint.sensor}
-        for table in {"parameters", "limits"} & set(editable):
+        for table in {"parameters", "limits", "tolerances"} & set(editable):
             wanted.setdefault(table, {})
         usual = {} if inline else _defaults(new=not before.strip())
         update_table([editable], wanted, usual, kept=_KEPT, inline=inline)

@@ -15,6 +15,9 @@ from jointid.joint.checks import check_choice, check_flag, finite_number, sugges
 
 Gravity = Literal["none", "known", "free"]
 
+AUTO = "auto"
+"""Name of a model that `identify` chooses from the recordings; as good as no name."""
+
 _GRAVITY_ORDER = 1.0
 _LISTS = ("ripple", "harmonics", "per_recording")
 
@@ -30,11 +33,13 @@ class Model:
     Parameters
     ----------
     name : str, optional
-        Of the friction model: "coulomb_viscous" (default), "stribeck" or "stribeck_general" (with a free
-        exponent).
+        Of the friction model: "coulomb_viscous", "stribeck", "stribeck_general" (with a free exponent), or
+        "auto" (default): `identify` chooses between the first two by the torque that they predict. What
+        needs a model before there are recordings, as a simulation, takes "coulomb_viscous" by default.
     gravity : {"none", "known", "free"}, optional
-        Torque of gravity that loads the drive and not the sensor: none (default), computed from the
-        joint's link, or identified.
+        Torque of gravity that loads the drive and not the sensor: none, computed from the joint's link, or
+        identified. Default: none; where `identify` chooses the name, it also chooses between none and
+        free, if the joint is revolute and has neither sensor nor link nor harmonics of order 1.
     asymmetric : bool, optional
         Whether friction differs between the two directions. Default False.
     ripple : collection of float, optional
@@ -70,7 +75,7 @@ class Model:
 
     def __post_init__(self) -> None:
         if self.name is not None:
-            check_choice("", "name", self.name, _core.model_names())
+            check_choice("", "name", self.name, (*_core.model_names(), AUTO))
         if self.gravity is not None:
             check_choice("", "gravity", self.gravity, get_args(Gravity))
         for flag in ("asymmetric", "load_friction"):
@@ -181,9 +186,15 @@ class Model:
         return Model(**(base.stated() | self.stated()))
 
     @property
+    def named(self) -> bool:
+        """Whether the name is stated, and is not "auto"."""
+        return self.name not in (None, AUTO)
+
+    @property
     def resolved(self) -> ResolvedModel:
-        """All fields, those that are not stated with their defaults."""
-        return ResolvedModel(**self.stated())
+        """All fields, those that are not stated with their defaults; "auto" has the default name."""
+        stated = self.stated()
+        return ResolvedModel(**(stated if self.named else {**stated, "name": ResolvedModel().name}))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return functools.partial(Model, **self.stated()), ()

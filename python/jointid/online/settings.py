@@ -15,6 +15,7 @@ from jointid.identification.prepared import require_joint
 from jointid.identification.search.stated_bounds import parameter_bounds
 from jointid.joint.checks import finite_number, is_number
 from jointid.joint.joint import Joint
+from jointid.joint.model import AUTO
 from jointid.joint.parameters import Parameter
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import output_torque
@@ -120,6 +121,13 @@ class Settings:
         """Refuse settings that are wrong for any samples; only the samples show whether there is a sensor."""
         model = self.request.model
         chosen = (model if self.joint is None else self.joint.model).resolved
+        if (model if self.joint is None else self.joint.model).name == AUTO:
+            raise InputError(
+                "only recorded motion can be held out to choose a model",
+                argument="model",
+                value=AUTO,
+                remedy="name the model, e.g. stribeck",
+            )
         if chosen.name == "stribeck_general":
             raise InputError(
                 "its two shape parameters take too long to search while samples arrive",

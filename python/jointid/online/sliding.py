@@ -189,7 +189,7 @@ class Sliding:
             jacobian[:, free], residual, self._centre(plan, free), threads=1
         )
         parameters = parameters_of(
-            plan.problem, plan.frame, domain, best, freedom, spread, residual.size, (None, None)
+            plan.problem, plan.frame, domain, best, freedom, spread, {}, (None, None)
         )
         self._updates += 1
         return OnlineEstimate(

@@ -113,7 +113,7 @@ def sweep(
     trials : int
         Number for each combination. Default 10.
     model, parameters, residual, windows, torque_hold, mask_standstill
-        As in `identify`, for all cells.
+        As in `identify`, for all cells, except that a model without a name is "coulomb_viscous".
     search : Search or str, optional
         As in `identify`. In every cell, trial t adds t to its seed, for the search and for the noise of a
         simulated recording; `identify` with a row's seed gives the row. Threads of 0 are all threads in

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from jointid import _core
+from jointid.base.errors import InputError
 from jointid.estimate.causes import Cause, Causes
+from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Measured
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.identification.causes.attribution import Attributed, attribute
@@ -67,6 +69,47 @@ def find_causes(
         (found if matters else harmless).append(cause)
     wanted = dict.fromkeys([*(each.name for each in tried), "disturbance"])
     return Causes(found=tuple(found), harmless=tuple(harmless), tried=tuple(wanted))
+
+
+def attributed(
+    problem: Problem,
+    penalty: _core.Penalty,
+    estimate: Estimate,
+    signals: Mapping[str, ArrayLike],
+) -> Causes:
+    """Attribute the misfit of an estimate, with further signals of its recording.
+
+    Raises
+    ------
+    InputError
+        Signals for several recordings, or one with another number of values.
+    """
+    if signals and len(problem.recordings) > 1:
+        raise InputError(
+            "further signals need an estimate of one recording",
+            argument="signals",
+            value=list(signals),
+        )
+    length = len(problem.recordings[0])
+    found = {}
+    for name, values in signals.items():
+        series = np.asarray(values, dtype=np.float64)
+        if series.shape != (length,) or not np.all(np.isfinite(series)):
+            raise InputError(
+                f"one finite value for each of the {length} samples is expected",
+                argument=f"signals.{name}",
+                value=f"shape {series.shape}",
+            )
+        found[name] = series
+    torque = np.asarray(penalty.target) / np.asarray(penalty.usable_duration)
+    return find_causes(
+        problem,
+        penalty,
+        estimate.parameters,
+        torque_level=float(np.sqrt(np.mean(torque**2))),
+        r_squared=estimate.residuals.r_squared,
+        signals=found,
+    )
 
 
 def _cause(

@@ -1,11 +1,13 @@
 """Uncertainty of a least-squares estimate: covariance, correlations and the least determined direction."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.identification.inference.clustered import stretch_of
+from jointid.identification.inference.segments import Segments, even_segments
 from jointid.problem.inner_products import inner
 
 Array = NDArray[np.float64]
@@ -21,6 +23,10 @@ class Covariance:
         Covariance of the parameters, in the product of their units.
     stderr : ndarray, shape (p,)
         Standard errors.
+    freedom : ndarray, shape (p,)
+        Degrees of freedom of Student's t, for the intervals.
+    white : bool
+        Whether nothing in the residuals contradicts their independence.
     correlation : ndarray, shape (p, p)
         Correlations after centring: the offset is referred to the mean of the signal that the gain
         multiplies, because the raw correlation depends on the sensor's arbitrary zero.
@@ -32,6 +38,8 @@ class Covariance:
 
     matrix: Array
     stderr: Array
+    freedom: Array
+    white: bool
     correlation: Array
     condition: float
     weakest: Array
@@ -65,8 +73,9 @@ def parameter_covariance(
     centre: tuple[int, int, float] | None,
     triangle: Array | None = None,
     threads: int = 0,
+    segments: Segments | None = None,
 ) -> Covariance:
-    """Return the covariance of a least-squares estimate, robust to autocorrelated residuals.
+    """Return the covariance of a least-squares estimate, by motion segments where residuals hang together.
 
     Parameters
     ----------
@@ -79,12 +88,14 @@ def parameter_covariance(
     triangle : ndarray, shape (rows, p), optional
         Triangle of the Jacobian. Default: computed here.
 
+    segments : Segments, optional
+        Segments of motion. Default: sixteen of equal numbers of windows.
+
     Notes
     -----
-    The variance of each parameter is the larger of the classical one and the prewhitened sandwich
-    estimate of Newey and West: the residuals of an imperfect model drift slowly, and the classical
-    variance is too small then. tests/identification/test_covariance.py tests the coverage. Directions
-    that the data do not determine get an infinite variance.
+    The residuals of an imperfect model drift slowly, and the classical variance is too small then:
+    `clustered` says by how much. The classical correlations stay. Directions that the data do not determine
+    get an infinite variance.
     """
     rows, count = jacobian.shape
     if count == 0:  # every parameter is fixed or ended on a bound
@@ -92,6 +103,8 @@ def parameter_covariance(
         return Covariance(
             matrix=nothing,
             stderr=np.zeros(0),
+            freedom=np.zeros(0),
+            white=True,
             correlation=nothing,
             condition=1.0,
             weakest=np.zeros(0),
@@ -106,13 +119,11 @@ def parameter_covariance(
     pseudo = (directions.T * inverse**2) @ directions
     freedom = max(1, rows - count)
     classical = pseudo * inner(residual, residual) / freedom
-    # Newey and West's variance of each parameter: of the scores, weighted with a column of `pseudo`.
-    robust = _core.robust_variance(jacobian, residual, 1.0 / scale, pseudo, threads=threads)
-    robust *= rows / freedom
-    chance = np.diag(classical)
-    # A column of zeros has no variance by chance, and nothing to stretch.
-    ratio = np.divide(robust, chance, out=np.ones_like(robust), where=chance > 1e-300)
-    stretch = np.sqrt(np.maximum(ratio, 1.0))
+    whitening = (directions[known].T / singular[known]).T / scale
+    found = stretch_of(
+        jacobian, residual, whitening, even_segments(rows) if segments is None else segments
+    )
+    stretch = np.sqrt(found.ratio)
     matrix = classical * np.outer(stretch, stretch) / np.outer(scale, scale)
     unknown = (norms == 0.0) | (np.abs(directions[~known]).max(axis=0, initial=0.0) > 1e-3)
     if rows <= count:  # no degree of freedom is left to estimate the noise
@@ -135,22 +146,9 @@ def parameter_covariance(
     return Covariance(
         matrix=matrix,
         stderr=np.sqrt(np.diag(matrix)),
+        freedom=found.freedom,
+        white=found.white,
         correlation=correlation,
         condition=float(values[0] / values[-1]) if values[-1] > 0.0 else float("inf"),
         weakest=vectors[-1],
     )
-
-
-def widened(spread: Covariance, systematic: Array) -> Covariance:
-    """Return the covariance with systematic errors added to each parameter's own; correlations stay.
-
-    Parameters
-    ----------
-    systematic : ndarray, shape (p,)
-        Sizes of the systematic errors, as standard errors.
-    """
-    known = np.isfinite(spread.stderr) & (spread.stderr > 0.0)
-    chance = np.where(known, spread.stderr, 1.0)
-    stretch = np.where(known, np.hypot(chance, systematic) / chance, 1.0)
-    matrix = spread.matrix * np.outer(stretch, stretch)
-    return replace(spread, matrix=matrix, stderr=np.sqrt(np.diag(matrix)))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +21,8 @@ from jointid.problem.problem import Problem
 from jointid.problem.window_table import WindowTable, r_squared, relative_residual
 
 Array = NDArray[np.float64]
+
+_NORMAL = 1.959964  # standard errors of a 95 % interval
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,17 +101,25 @@ def parameters_of(
     best: Array,
     freedom: Freedom,
     spread: Covariance,
-    windows: int,
+    parts: Mapping[str, Array],
     shifts: tuple[Array | None, Array | None],
 ) -> dict[str, ParameterEstimate]:
-    """Return every parameter of the penalty by name, with its error, interval and bounds."""
-    factor = quantile(0.975, max(1, windows - len(freedom.indices)))
+    """Return every parameter of the penalty by name, with its error, interval and bounds.
+
+    Parameters
+    ----------
+    parts : mapping of str to ndarray
+        Systematic errors of every parameter, by the name of their cause.
+    """
     errors = dict(zip(freedom.indices, spread.stderr.tolist(), strict=True))
+    factors = {i: quantile(0.975, f) for i, f in zip(freedom.indices, spread.freedom, strict=True)}
     prismatic = problem.recordings[0].kind == "prismatic"
     result = {}
     for name, described in _terms_and_shapes(penalty).items():
         i = domain.names.index(name)
         value, error, vary = float(best[i]), errors.get(i), not domain.fixed(name)
+        systematic = {part: float(sizes[i]) for part, sizes in parts.items()}
+        half = None if error is None else _half_width(factors[i] * error, systematic)
         halved, doubled = (None if s is None or not vary else float(s[i]) for s in shifts)
         result[name] = ParameterEstimate(
             name=name,
@@ -115,15 +127,22 @@ def parameters_of(
             unit=described.unit_prismatic if prismatic else described.unit,
             value=value,
             stderr=error,
-            interval=None if error is None else (value - factor * error, value + factor * error),
+            interval=None if half is None else (value - half, value + half),
             min=float(domain.lower[i]),
             max=float(domain.upper[i]),
             vary=vary,
             at_bound=freedom.at_bound[i],
             shift_halved=halved,
             shift_doubled=doubled,
+            systematic=systematic,
         )
     return result
+
+
+def _half_width(chance: float, systematic: Mapping[str, float]) -> float:
+    """Half of the 95 % interval: chance, already at its quantile, and what the recording shows besides."""
+    shown = math.hypot(*(size for part, size in systematic.items() if part != "given"))
+    return math.hypot(chance, _NORMAL * shown)
 
 
 def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Joint:
@@ -151,6 +170,7 @@ def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Join
     inertia = parameters.get("inertia")
     if inertia is not None and inertia.vary and base.reflected_inertia is not None:
         # The estimate replaces the joint's own value.
-        base = base.replace(inertia=inertia.value, rotor_inertia=None)
+        known = replace(base.tolerances, inertia=None, rotor_inertia=None)
+        base = base.replace(inertia=inertia.value, rotor_inertia=None, tolerances=known)
     model = choice.model.replace(per_recording=base.model.per_recording)
     return base.replace(parameters=table, model=model)

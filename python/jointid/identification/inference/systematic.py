@@ -21,14 +21,14 @@ def systematic_errors(
     jacobian: Array,
     columns: Array,
     shifts: tuple[Array | None, Array | None],
-) -> Array:
-    """Return the size of errors that do not decrease with the recording's length, as standard errors.
+) -> dict[str, Array]:
+    """Return the sizes of errors that do not decrease with the recording's length, by the name of their cause.
 
     Parameters
     ----------
     free : list of int
         Free parameters: the columns of `jacobian`.
-    jacobian : ndarray, shape (windows, p)
+    jacobian : ndarray, shape (windows, free)
         Derivatives of the residuals at `best`.
     columns : ndarray, shape (windows, coefficients)
         The penalty's columns at `best`.
@@ -37,34 +37,45 @@ def systematic_errors(
 
     Returns
     -------
-    ndarray, shape (p,)
-        In the parameters' units.
+    mapping of str to ndarray, shape (p,)
+        In the parameters' units; parts that do not apply are missing.
     """
+    parts: dict[str, Array] = {}
     moved = [shift[free] for shift in shifts if shift is not None]
-    of_windows = np.sqrt(np.mean(np.square(moved), axis=0)) if moved else np.zeros(len(free))
-    return np.asarray(np.hypot(of_windows, _of_sampling(problem, penalty, best, jacobian, columns)))
+    if moved:
+        parts["windows"] = np.sqrt(np.mean(np.square(moved), axis=0))
+    of_sampling = _of_sampling(problem, penalty, best, jacobian, columns)
+    if of_sampling is not None:
+        parts["sampling"] = of_sampling
+    return {name: _everywhere(sizes, free, len(best)) for name, sizes in parts.items()}
+
+
+def _everywhere(sizes: Array, free: list[int], count: int) -> Array:
+    """Sizes of the free parameters, among all."""
+    result = np.zeros(count)
+    result[free] = sizes
+    return result
 
 
 def _of_sampling(
     problem: Problem, penalty: _core.Penalty, best: Array, jacobian: Array, columns: Array
-) -> Array:
+) -> Array | None:
     """Return the effect of the unknown instant of the sensor's sample: before or after a command's step.
 
     A held torque steps at the samples. Its step accelerates the drive and the link together, and the
     link's share of it is a step in the sensor's reading. A reading sampled before the step, not in its
     middle, lacks half of that share at every sample. Smooth signals are not affected.
     """
-    nothing = np.zeros(jacobian.shape[1])
     names = list(penalty.names)
     if not {"sensor_gain", "inertia"} <= set(names) or jacobian.shape[1] == 0:
-        return nothing
+        return None
     bounds = np.asarray(penalty.windows)
     run = np.asarray(penalty.recording_of)
     duration = np.asarray(penalty.usable_duration)
     steps = np.asarray(penalty.torque_steps(problem.in_core, problem.mask_standstill))
     accelerated, angle, stepped = np.zeros((3, run.size))
     for number, recording in enumerate(problem.recordings):
-        if not _held(problem, recording):
+        if not held(problem, recording):
             continue
         mine = slice(*np.searchsorted(run, (number, number + 1)))
         first, last = bounds[mine, 0], bounds[mine, 1]
@@ -72,7 +83,7 @@ def _of_sampling(
         angle[mine] = 0.5 * (recording.position[first] + recording.position[last])
         stepped[mine] = recording.sample_period * steps[mine]
     if not np.any(stepped) or run.size < 50:
-        return nothing
+        return None
     gain = float(best[names.index("sensor_gain")])
     reading = columns[:, names.index("sensor_gain")]
     link = np.column_stack(
@@ -82,7 +93,7 @@ def _of_sampling(
     share = float(Triangle(link, problem.threads).solve([0, 1, 2, 3], 4, rcond=1e-10)[0][0])
     both = float(best[names.index("inertia")]) + share * gain
     if both <= 0.0 or share * gain <= 0.0:
-        return nothing
+        return None
     lacking = 0.5 * share / both * stepped
     if penalty.residual == _core.Residual.torque:
         lacking = lacking * gain
@@ -91,7 +102,8 @@ def _of_sampling(
     return np.abs(both_sides.solve(list(range(count)), count, rcond=1e-10)[0])
 
 
-def _held(problem: Problem, recording: Recording) -> bool:
+def held(problem: Problem, recording: Recording) -> bool:
+    """Return whether the torque is held between samples."""
     hold = problem.torque_hold or recording.torque_hold
     if hold is None and problem.joint is not None:
         hold = problem.joint.torque_hold

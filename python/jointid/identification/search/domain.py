@@ -11,7 +11,7 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.identification.search.computed_bounds import ComputedBounds, shape_bounds, shape_range
 from jointid.identification.search.gain_domain import around
-from jointid.identification.search.stated_bounds import parameter_bounds
+from jointid.identification.search.stated_bounds import known_parameters
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
 
@@ -68,13 +68,10 @@ def domain_for(
         A parameter that the model does not have, or bounds that cannot be used.
     """
     names = tuple(penalty.names)
-    table = parameter_bounds(names, joint, changes)
     lower = np.empty(len(names))
     upper = np.empty(len(names))
     from_data = []
-    known = [
-        table.get(name) or table.get(name.split("[")[0]) or Parameter(name=name) for name in names
-    ]
+    known = known_parameters(names, joint, changes)
     fixed = {
         name: each.value
         for name, each in zip(names, known, strict=True)

@@ -8,6 +8,24 @@ from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter, merge
 
 
+def known_parameters(
+    names: tuple[str, ...],
+    joint: Joint | None,
+    changes: Mapping[str, float | Mapping[str, object] | Parameter] | None,
+) -> list[Parameter]:
+    """Return what joint and call state of each parameter; one recording's own has that of the shared one.
+
+    Raises
+    ------
+    InputError
+        As in `parameter_bounds`.
+    """
+    table = parameter_bounds(names, joint, changes)
+    return [
+        table.get(name) or table.get(name.split("[")[0]) or Parameter(name=name) for name in names
+    ]
+
+
 def parameter_bounds(
     names: tuple[str, ...],
     joint: Joint | None,
@@ -30,7 +48,7 @@ def parameter_bounds(
     """
     if changes is not None:
         check_mapping("", "parameters", changes)
-    table = merge(_known_values(joint), joint.parameters if joint is not None else {})
+    table = merge(known_values(joint), joint.parameters if joint is not None else {})
     table = merge(
         table, {name: _freed(table, name, entry) for name, entry in (changes or {}).items()}
     )
@@ -44,7 +62,7 @@ def parameter_bounds(
     return table
 
 
-def _known_values(joint: Joint | None) -> dict[str, Parameter]:
+def known_values(joint: Joint | None) -> dict[str, Parameter]:
     """Return parameters that the joint's data fix: reflected inertia, and gravity when it is known."""
     values: dict[str, Parameter] = {}
     if joint is None:

@@ -16,6 +16,8 @@ AT_BOUND = FindingType(
     advice="widen the bound, or find out why",
 )
 
+_EXPLAINED = 0.95  # where the model is poor, a wider bound lets it go further astray
+
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
     reported = (*STATIC, *SHAPES) if richness(evidence) is not None else ()
@@ -25,7 +27,8 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         limit = p.min if p.at_bound == "min" else p.max
         side = "lower" if p.at_bound == "min" else "upper"
         advice = [Action("inspect", text="units, signs and gear ratio")]
-        if p.name not in evidence.bounds_from_data and limit != 0.0:
+        explained = evidence.residuals.r_squared >= _EXPLAINED
+        if p.name not in evidence.bounds_from_data and limit != 0.0 and explained:
             # NOTE: None takes the bound away, and a wide one comes from the data.
             wider = {p.name: {p.at_bound: None}}
             advice.insert(0, Action("call", {"parameters": wider}, text="a bound from the data"))

@@ -29,6 +29,8 @@ def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
     spurious = [found for found in kept if found.code == "ripple" and (units or other)]
     left = [found for found in kept if found not in (*units[1:], *spurious)]
     left = [found for place, found in enumerate(left) if not _again(found, left[:place])]
+    if any(found.severity == "blocking" for found in left):
+        left = [_without_other_fits(found) for found in left]
     return tuple(sorted(left, key=lambda found: _ORDER.index(found.severity)))
 
 
@@ -41,3 +43,11 @@ def _another_cause(evidence: Evidence) -> bool:
 def _again(found: Finding, before: list[Finding]) -> bool:
     """Whether a check of its own has already raised what the attribution names, too."""
     return "share" in found.evidence and found.code in {each.code for each in before}
+
+
+def _without_other_fits(found: Finding) -> Finding:
+    """The finding without advice to fit again, which rests on values that cannot be used; a blocking one keeps it."""
+    if found.severity == "blocking":
+        return found
+    kept = [each for each in found.advice if (each.kind, each.function) != ("call", "identify")]
+    return replace(found, advice=tuple(kept))

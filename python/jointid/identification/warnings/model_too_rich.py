@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
+from jointid import _core
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.statistics import ParameterEstimate
@@ -11,18 +13,20 @@ from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.model_advice import simpler_model
+from jointid.problem.inner_products import inner
 
 MODEL_TOO_RICH = FindingType(
     code="model_too_rich",
     meaning="the static term ended at zero or is not significant, or its shape ended on a bound: the data do not "
     "determine the Stribeck model",
-    advice="use the model coulomb_viscous, or record slow motion through zero speed",
+    advice="record slow motion through zero speed; use the model coulomb_viscous where no static excess shows",
     picture="friction-map",
 )
 
 STATIC = ("static", "static_positive", "static_negative")
 SHAPES = ("stribeck", "stribeck_velocity", "stribeck_exponent")
 _LACKED = (*STATIC, *SHAPES)
+_PLAIN = 4.0  # standard errors of a static excess of a given shape
 _COULOMB = ("coulomb", "coulomb_positive", "coulomb_negative")
 
 
@@ -76,15 +80,40 @@ def _stated_by_call(evidence: Evidence, found: ParameterEstimate) -> bool:
     return any(own is not None and own != used for own, used in given)
 
 
+def _plain_excess(evidence: Evidence) -> bool:
+    """Whether friction grows at low speed beyond doubt, although its shape is not determined.
+
+    Without the static terms the others take up what they carry: the simpler model is then worse everywhere.
+    """
+    regressor, found = evidence.at_best, evidence.parameters
+    free = [name for name in regressor.names if name in found and found[name].vary]
+    static = [name for name in free if name.partition("[")[0] in STATIC]
+    others = [regressor.names.index(name) for name in free if name not in static]
+    residual = evidence.residual
+    if evidence.penalty.residual == _core.Residual.sensor and "sensor_gain" in found:
+        residual = residual * found["sensor_gain"].value
+    correlation = min(max(evidence.residuals.autocorrelation, 0.0), 0.99)
+    noise = inner(residual, residual) / max(1, residual.size) * (1.0 + correlation)
+    noise /= 1.0 - correlation
+    for name in static:
+        own = regressor.triangle.solve(others, regressor.names.index(name), rcond=1e-10)[1]
+        if abs(found[name].value) * own > _PLAIN * math.sqrt(noise):
+            return True
+    return False
+
+
 def _find(evidence: Evidence) -> Iterator[Finding]:
     reason = richness(evidence)
     if reason is not None:
         text, measured = reason
         named = (*_COULOMB, *STATIC, *SHAPES)
+        advice = [Action("record", text="slow motion through zero speed")]
+        if not _plain_excess(evidence):
+            simpler = Action("call", {"model": simpler_model(evidence)}, _without(evidence))
+            advice.insert(0, simpler)
         yield MODEL_TOO_RICH.finding(
             f"the data do not determine the model '{evidence.model}': {text}",
-            Action("call", {"model": simpler_model(evidence)}, _without(evidence)),
-            Action("record", text="slow motion through zero speed"),
+            *advice,
             evidence=measured,
             parameters=tuple(name for name in named if name in evidence.parameters),
         )

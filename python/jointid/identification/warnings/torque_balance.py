@@ -18,7 +18,8 @@ WRONG_SCALE = FindingType(
     code="wrong_scale",
     severity="blocking",
     meaning="the recording by itself contradicts the known inertia by more than 5 %",
-    advice="correct gear ratio, torque constant, unit of the torque or inertia; or let the inertia vary",
+    advice="correct gear ratio, torque constant, unit of the torque or inertia; let the inertia vary only if that is "
+    "the wrong one",
 )
 
 _AGAINST = -0.1  # correlation of torque and velocity: friction makes it positive
@@ -113,9 +114,10 @@ def _inertia_contradicts(evidence: Evidence, free: Unbounded) -> Iterator[Findin
         "is wrong, and with it every value",
         Action(
             "inspect",
-            text="gear ratio, torque constant, unit of the torque and inertia, and correct the wrong one",
+            # Not a call that frees the inertia: with a wrong torque it hides this finding, and all stays wrong.
+            text="gear ratio, torque constant, unit of the torque and inertia, and correct the wrong one; only if "
+            "that is the inertia, let it vary",
         ),
-        Action("call", {"parameters": {"inertia": {"vary": True}}}, text="to free the inertia"),
         evidence=measured,
         parameters=("inertia",),
     )

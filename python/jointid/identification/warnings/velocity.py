@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_advice
+from jointid.recording.recording import Recording
 
 REVERSED_SIGN = FindingType(
     code="reversed_sign",
@@ -34,10 +36,36 @@ SIGNAL_LAG = FindingType(
 MISMATCH = 0.03  # of the position's rate
 LAG = 0.4  # sample periods between position and velocity; a backward difference has 0.5
 _SURE = 8.0  # standard errors
+_HARMLESS = 0.5  # of what the lag displaces
 _DEGREE = np.pi / 180.0
 _WITHOUT_VELOCITY = Action(
     "call", {"columns": {"velocity": None}}, text="it is then derived centrally", function="load"
 )
+_FINER = Action(
+    "record", text="the position with a finer resolution, or a velocity without the filter"
+)
+
+
+def _is_better_derived(recording: Recording, lag: float) -> bool:
+    """Whether the position's rate scatters less than the velocity does, or than the lag displaces it.
+
+    Of a coarse encoder, or with time stamps of a busy computer, it scatters more.
+    """
+    plain = Recording(time=recording.time, position=recording.position)
+    span = min(8, len(recording) // 4)
+    rate = (recording.velocity[span:] - recording.velocity[:-span]) / (
+        recording.time[span:] - recording.time[:-span]
+    )
+    displaced = abs(lag) * float(np.sqrt(np.mean(rate**2)))
+    own = _scatter(recording.velocity)
+    return _scatter(plain.velocity) < max(_HARMLESS * displaced, own)
+
+
+def _scatter(velocity: NDArray[np.float64]) -> float:
+    """Standard deviation of noise, from third differences, in which motion hardly shows."""
+    third = np.abs(np.diff(velocity, n=3))
+    third = np.minimum(third, np.quantile(third, 0.99))
+    return float(np.sqrt(np.mean(third**2) / 20.0))
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
@@ -75,7 +103,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             yield SIGNAL_LAG.finding(
                 f"the velocity {side} the position by {1e3 * abs(found.lag):.3g} ms ({abs(late):.1f} sample "
                 "periods), as a filter or a backward difference does, which biases inertia and static friction",
-                _WITHOUT_VELOCITY,
+                _WITHOUT_VELOCITY if _is_better_derived(recording, found.lag) else _FINER,
                 evidence={
                     "lag": Measured(found.lag, "s"),
                     "lag_error": Measured(found.lag_error, "s"),

@@ -1,0 +1,88 @@
+"""The result of a block bootstrap: how the values scatter when stretches of the recording are drawn anew."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.error_text import printable
+from jointid.estimate.wording import number, percent, two_digits
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BootstrapParameter:
+    """One parameter over the draws.
+
+    Attributes
+    ----------
+    name, unit : str
+    value : float
+        The estimate's.
+    stderr : float
+        Standard deviation over the draws.
+    interval : tuple of float
+        95 % interval: value ± t · stderr, or percentiles of the draws where `near_bound`.
+    ratio : float or None
+        `stderr` over the estimate's error of chance; None where that has none.
+    near_bound : bool
+        Whether a bound lies within three standard errors, or a draw in a hundred ends on one.
+    """
+
+    name: str
+    unit: str
+    value: float
+    stderr: float
+    interval: tuple[float, float]
+    ratio: float | None
+    near_bound: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Bootstrap:
+    """A block bootstrap of an estimate.
+
+    Attributes
+    ----------
+    parameters : mapping of str to BootstrapParameter
+        Those that vary, in the order of the torque balance.
+    samples : ndarray, shape (n, p)
+        The refitted values of each draw, a column for each of `parameters`.
+    block : float
+        Length of a block [s].
+    blocks : int
+        Blocks in a draw.
+    seed : int
+    """
+
+    parameters: Mapping[str, BootstrapParameter]
+    samples: Array = field(repr=False)
+    block: float
+    blocks: int
+    seed: int
+
+    def report(self) -> str:
+        """Return the bootstrap as text: errors, intervals and the ratio to the estimate's errors."""
+        table = [("parameter", "value", "± bootstrap", "95 % interval", "unit", "of reported")]
+        for p in self.parameters.values():
+            share = f" ({percent(p.stderr / abs(p.value))})" if p.value else ""
+            remark = "–" if p.ratio is None else f"{p.ratio:.2f}"
+            interval = f"{p.interval[0]:.5g} … {p.interval[1]:.5g}"
+            interval += " (percentiles)" if p.near_bound else ""
+            error = f"{two_digits(p.stderr)}{share}"
+            table.append((p.name, number(p.value), error, interval, p.unit, remark))
+        widths = [max(len(row[column]) for row in table) for column in range(6)]
+        lines = [
+            "  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip()
+            for row in table
+        ]
+        lines.insert(1, "  ".join("-" * w for w in widths))
+        lines += [
+            "",
+            f"{len(self.samples)} draws of {self.blocks} blocks of {self.block:.2g} s, seed {self.seed}",
+        ]
+        return printable("\n".join(lines))

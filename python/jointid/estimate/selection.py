@@ -1,0 +1,111 @@
+"""How a model was chosen that nobody named: what competed, the scores, and the reason."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from jointid.base.schema import ListOf, Number, OrNull, Record, Text
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Candidate:
+    """A model that competed.
+
+    Attributes
+    ----------
+    model : str
+        Its text, e.g. "stribeck:gravity=free".
+    parameters : int
+        Free parameters, shape parameters included.
+    score : float
+        Norm of the held-out windows' residuals over that of their torque: how far the torque that it
+        predicts from motion, and from the sensor's reading if there is one, is from the drive's.
+    excess : float
+        Mean squared residual of the held-out windows, less that of the best candidate, in standard errors
+        of this difference; 0 for the best.
+    refused : str
+        Why it could not win; empty if it could.
+    """
+
+    model: str
+    parameters: int
+    score: float
+    excess: float
+    refused: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Selection:
+    """The choice of a model by held-out prediction.
+
+    Attributes
+    ----------
+    model : str
+        Text of the chosen one.
+    runner_up : str or None
+        Text of the best of the others; None if there was no other.
+    candidates : tuple of Candidate
+        The simplest first.
+    blocks : int
+        Parts of the recordings that were held out in turn.
+    """
+
+    model: str
+    runner_up: str | None
+    candidates: tuple[Candidate, ...]
+    blocks: int
+
+    def __getitem__(self, model: str) -> Candidate:
+        """Return the candidate with this text.
+
+        Raises
+        ------
+        KeyError
+            No such candidate.
+        """
+        for each in self.candidates:
+            if each.model == model:
+                return each
+        raise KeyError(model)
+
+    @property
+    def sentence(self) -> str:
+        """What was chosen and why, in one line, with the runner-up and both scores."""
+        chosen = self[self.model]
+        if self.runner_up is None:
+            return f"{self.model}: no other model could be compared"
+        other = self[self.runner_up]
+        text = (
+            f"{self.model} misses {_percent(chosen.score)} of the held-out torque, "
+            f"{other.model} {_percent(other.score)}"
+        )
+        if other.refused:
+            return f"{text} ({other.refused})"
+        if other.score < chosen.score:
+            return f"{text}, which is not better by more than chance"
+        return text
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.3g} %"
+
+
+SELECTION = Record(
+    {
+        "model": Text(),
+        "runner_up": OrNull(Text()),
+        "candidates": ListOf(
+            Record(
+                {
+                    "model": Text(),
+                    "parameters": Number(low=0, high=2**31, whole=True),
+                    "score": Number(low=0.0, infinite=True),
+                    "excess": Number(infinite=True),
+                    "refused": Text(),
+                }
+            ),
+            shortest=1,
+        ),
+        "blocks": Number(low=0, high=2**31, whole=True),
+    }
+)

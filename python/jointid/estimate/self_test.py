@@ -1,0 +1,199 @@
+"""The result of a self-test: which known parameters come back from the user's own motion and noise."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+
+from jointid.base.error_text import printable
+from jointid.base.html import Html, element, table
+from jointid.estimate.wording import number, percent, two_digits
+
+SCHEMA = 1
+"""Raised when a reader of the old form would misread the new one."""
+
+_HEAD = ("parameter", "truth", "identified", "error", "95 % interval", "unit", "comes back")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SelfTestRow:
+    """One parameter in one trial.
+
+    Attributes
+    ----------
+    trial : int
+        0: the estimate itself was injected; above: parameters drawn from its intervals.
+    parameter : str
+    unit : str
+    truth : float
+        The injected value.
+    value : float
+        The identified value.
+    interval : tuple of float or None
+        95 % confidence interval of the identified value; None if it ended on a bound.
+    covered : bool
+        Whether the interval contains the truth.
+    close : bool
+        Whether the identified value is near enough to be of use: within 5 % of the truth, or off by what
+        changes the torque by less than half a per cent.
+    """
+
+    trial: int
+    parameter: str
+    unit: str
+    truth: float
+    value: float
+    interval: tuple[float, float] | None
+    covered: bool
+    close: bool
+
+    @property
+    def error(self) -> float:
+        """Identified value less truth."""
+        return self.value - self.truth
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SelfTest:
+    """The result of `Estimate.selftest`.
+
+    Attributes
+    ----------
+    rows : tuple of SelfTestRow
+        Trial by trial.
+    trials : int
+    seed : int
+    failed : str
+        Why a trial could not be identified at all; empty if all could.
+    """
+
+    rows: tuple[SelfTestRow, ...]
+    trials: int
+    seed: int
+    failed: str = ""
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """The tested parameters."""
+        return tuple(dict.fromkeys(row.parameter for row in self.rows))
+
+    def recovered(self, parameter: str) -> bool:
+        """Return whether a parameter comes back: close in every trial, and covered in all but one at most.
+
+        A 95 % interval misses now and then by chance; that is no fault of the recording.
+        """
+        mine = [row for row in self.rows if row.parameter == parameter]
+        covered = sum(row.covered for row in mine)
+        return bool(mine) and all(row.close for row in mine) and covered >= len(mine) - 1
+
+    @property
+    def lost(self) -> tuple[str, ...]:
+        """Parameters that do not come back."""
+        return tuple(name for name in self.parameters if not self.recovered(name))
+
+    @property
+    def passed(self) -> bool:
+        """Whether every parameter comes back."""
+        return not self.lost and not self.failed
+
+    @property
+    def verdict(self) -> str:
+        """The result in a sentence."""
+        if self.failed:
+            return f"a trial could not be identified: {self.failed}"
+        if self.passed:
+            return (
+                f"all parameters come back in {self.trials} trials: with this motion and this noise they can be "
+                "identified, if the joint is as modelled"
+            )
+        parts = [f"{name} ({self._worst(name)})" for name in self.lost]
+        return (
+            f"these parameters do not come back: {', '.join(parts)}: this motion and this noise do not "
+            "determine them, even for a joint that is exactly as modelled"
+        )
+
+    def _worst(self, parameter: str) -> str:
+        mine = [row for row in self.rows if row.parameter == parameter]
+        worst = max(mine, key=lambda row: abs(row.error))
+        if worst.truth == 0.0:
+            return f"off by {two_digits(abs(worst.error))} {worst.unit}"
+        return (
+            f"off by up to {percent(max(abs(row.error / row.truth) for row in mine if row.truth))}"
+        )
+
+    def report(self) -> str:
+        """Return the result as text: a table for each trial, then the verdict."""
+        lines = [f"jointid self-test — {self.trials} trials, seed {self.seed}", ""]
+        rows = [_HEAD, *map(_cells, self.rows)]
+        widths = [max(len(row[column]) for row in rows) for column in range(len(_HEAD))]
+        trial = -1
+        for row, cells in zip((None, *self.rows), rows, strict=True):
+            if row is not None and row.trial != trial:
+                trial = row.trial
+                lines.append(_title(trial))
+            shown = [
+                cell.rjust(width) if 0 < column < 4 and row is not None else cell.ljust(width)
+                for column, (cell, width) in enumerate(zip(cells, widths, strict=True))
+            ]
+            lines.append("  ".join(shown).rstrip())
+        return printable("\n".join([*lines, "", self.verdict]))
+
+    def _repr_html_(self) -> str:
+        body: list[list[Html | str]] = [[str(row.trial + 1), *_cells(row)] for row in self.rows]
+        shown = table(body, head=["trial", *_HEAD])
+        return str(
+            element("div", element("b", "jointid self-test"), shown, element("p", self.verdict))
+        )
+
+    def to_json(self) -> str:
+        """Return everything as JSON with a schema version."""
+        return json.dumps(self.document(), indent=1, ensure_ascii=False, allow_nan=False)
+
+    def document(self) -> dict[str, object]:
+        """Return everything in JSON's own types; a number that is not finite is a text."""
+        rows = [
+            {name: _plain(value) for name, value in (asdict(row) | {"error": row.error}).items()}
+            for row in self.rows
+        ]
+        return {
+            "schema": SCHEMA,
+            "kind": "jointid self-test",
+            "passed": self.passed,
+            "lost": list(self.lost),
+            "verdict": self.verdict,
+            "trials": self.trials,
+            "seed": self.seed,
+            "failed": self.failed,
+            "rows": rows,
+        }
+
+
+def _title(trial: int) -> str:
+    if trial == 0:
+        return "trial 1: the estimate itself"
+    return f"trial {trial + 1}: parameters drawn from the intervals of the estimate"
+
+
+def _cells(row: SelfTestRow) -> tuple[str, ...]:
+    error = f"{row.error:+.2g}"
+    if row.truth != 0.0:
+        sign = "-" if row.error < 0.0 else "+"
+        error = f"{sign}{percent(abs(row.error / row.truth))}"
+    interval = "on a bound"
+    if row.interval is not None:
+        interval = f"{row.interval[0]:.5g} … {row.interval[1]:.5g}"
+    answer = "yes" if row.covered and row.close else "no"
+    if row.close and not row.covered:
+        answer = "outside its interval"
+    return (
+        *(row.parameter, number(row.truth), number(row.value), error),
+        *(interval, row.unit, answer),
+    )
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, tuple | list):
+        return [_plain(each) for each in value]
+    if isinstance(value, float) and not -1e308 < value < 1e308:
+        return str(value)
+    return value

@@ -1,0 +1,78 @@
+"""The block bootstrap of an estimate."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.estimate.bootstrap import Bootstrap, BootstrapParameter
+from jointid.estimate.estimate import Estimate
+from jointid.estimate.statistics import ParameterEstimate
+from jointid.estimate.student import quantile
+from jointid.identification.inference.resampling import cells_of, draws
+from jointid.identification.inference.segments import Motion
+from jointid.identification.search.domain import SearchDomain
+from jointid.problem.problem import Problem
+
+Array = NDArray[np.float64]
+
+_NEAR = 3.0  # standard errors to a bound
+_OFTEN = 0.01  # of the draws end on it
+
+
+def block_bootstrap(
+    problem: Problem,
+    penalty: _core.Penalty,
+    domain: SearchDomain,
+    estimate: Estimate,
+    count: int,
+    seed: int,
+) -> Bootstrap:
+    """Return the block bootstrap of an estimate that was made from this problem."""
+    names = [name for name in domain.names if not domain.fixed(name)]
+    places = [domain.names.index(name) for name in names]
+    best = np.array([estimate.parameters[name].value for name in domain.names])
+    _, residual, jacobian = penalty.linearised(best)
+    motion = Motion.of(problem, penalty)
+    cells = cells_of(
+        jacobian[:, places], residual, motion.moved, motion.recording, motion.segment_length
+    )
+    here = best[places]
+    below, above = domain.lower[places] - here, domain.upper[places] - here
+    moved = draws(cells, below, above, count, seed)
+    freedom = max(1, cells.blocks - 1)
+    return Bootstrap(
+        parameters={
+            name: _parameter(estimate.parameters[name], moved[:, i], (below[i], above[i]), freedom)
+            for i, name in enumerate(names)
+        },
+        samples=here + moved,
+        block=motion.segment_length,
+        blocks=cells.blocks,
+        seed=seed,
+    )
+
+
+def _parameter(
+    p: ParameterEstimate, moved: Array, room: tuple[float, float], freedom: int
+) -> BootstrapParameter:
+    stderr = float(np.std(moved, ddof=1))
+    below, above = room
+    on_one = np.mean((moved <= below) | (moved >= above))
+    near = bool(min(-below, above) < _NEAR * stderr or on_one > _OFTEN)
+    if near:
+        low, high = np.quantile(moved, (0.025, 0.975))
+    else:
+        high = quantile(0.975, freedom) * stderr
+        low = -high
+    usable = p.stderr is not None and 0.0 < p.stderr < np.inf
+    return BootstrapParameter(
+        name=p.name,
+        unit=p.unit,
+        value=p.value,
+        stderr=stderr,
+        interval=(p.value + float(low), p.value + float(high)),
+        ratio=stderr / p.stderr if p.stderr is not None and usable else None,
+        near_bound=near,
+    )

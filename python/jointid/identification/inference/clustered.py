@@ -1,0 +1,161 @@
+"""Variances that hold when windows of one segment hang together: the sandwich clustered over segments.
+
+Each segment's scores are corrected for the freedom that the fit took from them (CR2: Bell and McCaffrey 2002;
+Pustejovsky and Tipton 2018), and the quantile is that of Student's t with as many degrees of freedom as the segments
+give a parameter (Satterthwaite), which is few where few segments determine it.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.identification.inference.segments import Cuts, Segments
+
+Array = NDArray[np.float64]
+
+# Residuals that are white are refused as such in one of a hundred cases, by each of two tests.
+_CERTAIN = 0.01
+_CERTAIN_NORMAL = 2.326
+# A parameter that fewer segments determine borrows the missing degrees of freedom from the others.
+_FEWEST = 5.0
+# What is left of a direction's freedom outside a segment that determines it all.
+_LEAST = 0.05
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stretch:
+    """By how much variances are larger than those of white residuals of one size.
+
+    Attributes
+    ----------
+    ratio : ndarray, shape (p,)
+    freedom : ndarray, shape (p,)
+        Degrees of freedom behind each variance.
+    white : bool
+        Whether nothing in the residuals contradicts their independence.
+    """
+
+    ratio: Array
+    freedom: Array
+    white: bool
+
+
+def stretch_of(jacobian: Array, residual: Array, whitening: Array, segments: Segments) -> Stretch:
+    """Return how much larger variances are than the classical ones.
+
+    Parameters
+    ----------
+    jacobian : ndarray, shape (windows, p)
+    residual : ndarray, shape (windows,)
+    whitening : ndarray, shape (r, p)
+        Takes the scores of the r determined directions to unit variance: its own product,
+        ``whitening.T @ whitening``, is the covariance for residuals of unit variance.
+    segments : Segments
+
+    Notes
+    -----
+    Where no test contradicts white residuals, the variance of each parameter is the larger of the classical one and
+    that of clusters of one window (White's, which allows for noise that depends on the motion); else it is the mean
+    of two clusterings over motion segments. tests/identification/test_covariance.py tests the coverage.
+    """
+    rows, directions = len(residual), len(whitening)
+    freedom = max(1, rows - directions)
+    variance = float(np.einsum("i,i->", residual, residual)) / freedom
+    unit = np.einsum("rp,rp->p", whitening, whitening)
+    classical = np.where(unit * variance > 0.0, unit * variance, 1.0)
+    clusterings = [_clustered(jacobian, residual, whitening, cuts) for cuts in segments.cuts]
+    count = min(len(each.scores) for each in clusterings)
+    if variance <= 0.0 or count < 3:
+        return Stretch(
+            ratio=np.ones(unit.size), freedom=np.full(unit.size, float(freedom)), white=True
+        )
+    pooled = np.mean([each.size for each in clusterings]) / (directions * variance)
+    pooled_freedom = float(np.mean([each.pooled_freedom for each in clusterings]))
+    if not _contradicted(residual, pooled, pooled_freedom):
+        alone = _windows_alone(jacobian, residual, whitening) * rows / freedom
+        return Stretch(
+            ratio=np.maximum(alone / classical, 1.0),
+            freedom=np.full(unit.size, float(freedom)),
+            white=True,
+        )
+    ratio = np.mean([each.variance for each in clusterings], axis=0) / classical
+    # One is lost to the mean that the fit took from each direction.
+    own = np.maximum(np.mean([each.freedom for each in clusterings], axis=0) - 1.0, 1.0)
+    borrowed = np.maximum(_FEWEST - own, 0.0)
+    together = own + borrowed
+    return Stretch(
+        ratio=(own * ratio + borrowed * pooled) / together, freedom=together, white=False
+    )
+
+
+def _contradicted(residual: Array, pooled: float, freedom: float) -> bool:
+    """Whether neighbouring windows, or windows of a segment, agree more than independent ones would."""
+    from scipy.special import chdtri
+
+    power = float(np.einsum("i,i->", residual, residual))
+    neighbours = float(np.einsum("i,i->", residual[1:], residual[:-1])) / power
+    freedom = max(freedom - 1.0, 1.0)
+    limit = float(chdtri(freedom, _CERTAIN)) / freedom
+    return neighbours * np.sqrt(len(residual)) > _CERTAIN_NORMAL or pooled > limit
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Clustered:
+    """The sandwich of one clustering, and the freedom behind it."""
+
+    scores: Array
+    variance: Array
+    freedom: Array
+    size: float
+    pooled_freedom: float
+
+
+def _clustered(jacobian: Array, residual: Array, whitening: Array, cuts: Cuts) -> _Clustered:
+    """Sum the scores over each segment, and correct them."""
+    shares, scores = _sums(jacobian, residual, whitening, cuts)
+    values, vectors = np.linalg.eigh(shares)
+    root = 1.0 / np.sqrt(np.maximum(1.0 - values, _LEAST))
+    turned = np.einsum("srk,sr->sk", vectors, scores) * root
+    corrected = np.einsum("srk,sk->sr", vectors, turned)
+    effects = np.einsum("sr,rp->sp", corrected, whitening)
+    # How much of each parameter's variance comes from each segment, were the residuals white.
+    unit = np.einsum("rp,rp->p", whitening, whitening)
+    part = np.einsum("srp,rp->sp", np.einsum("srq,qp->srp", shares, whitening), whitening)
+    part = np.clip(part / np.where(unit > 0.0, unit, 1.0), 0.0, 1.0)
+    even = np.einsum("sp,sp->p", part, part)
+    pooled = float(np.einsum("srq,sqr->", shares, shares))
+    return _Clustered(
+        scores=corrected,
+        variance=np.einsum("sp,sp->p", effects, effects),
+        freedom=1.0 / np.where(even > 0.0, even, 1.0),
+        size=float(np.einsum("sr,sr->", corrected, corrected)),
+        pooled_freedom=len(whitening) ** 2 / max(pooled, 1e-300),
+    )
+
+
+def _sums(jacobian: Array, residual: Array, whitening: Array, cuts: Cuts) -> tuple[Array, Array]:
+    """Products of the determined directions over each segment, with each other and with the residual."""
+    directions = len(whitening)
+    shares = np.empty((len(cuts) - 1, directions, directions))
+    scores = np.empty((len(cuts) - 1, directions))
+    for i, (first, last) in enumerate(itertools.pairwise(cuts)):
+        rows = np.einsum("ip,rp->ir", jacobian[first:last], whitening)
+        shares[i] = np.einsum("ir,iq->rq", rows, rows)
+        scores[i] = np.einsum("ir,i->r", rows, residual[first:last])
+    return shares, scores
+
+
+def _windows_alone(jacobian: Array, residual: Array, whitening: Array, most: int = 4096) -> Array:
+    """White's sandwich: each window a cluster."""
+    covariance = np.einsum("rp,rq->pq", whitening, whitening)
+    total = np.zeros(covariance.shape[0])
+    for first in range(0, len(residual), most):
+        piece = slice(first, first + most)
+        effects = np.einsum("ip,pq->iq", jacobian[piece], covariance)
+        effects *= residual[piece, None]
+        total += np.einsum("iq,iq->q", effects, effects)
+    return total

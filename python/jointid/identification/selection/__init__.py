@@ -1,0 +1,1 @@
+"""The choice of a model that nobody named: candidates, held-out scores, the parsimonious winner."""

@@ -1,0 +1,148 @@
+"""The window columns of a penalty at many shapes at a time: one matrix, and how models are made of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.identification.search.computed_bounds import shape_range
+from jointid.identification.selection.block_sums import BlockSums
+from jointid.joint.parameters import Parameter
+from jointid.problem.terms import TermChoice
+
+Array = NDArray[np.float64]
+
+# Shapes between the bounds, in equal ratios, and then between the neighbours of the best of them.
+_COARSE, _FINE = 10, 8
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShapedColumns:
+    """Columns of one penalty; those that have a shape once for each shape, and the torque last.
+
+    Attributes
+    ----------
+    matrix : ndarray, shape (windows, columns)
+    shapes : ndarray, shape (shapes,)
+        In ascending order; a single one if it is fixed, or if no column has one.
+    free_shape : bool
+        Whether the shape is free.
+    keys : tuple of str
+        Key of the term of each coefficient.
+    first : tuple of int
+        First column of each coefficient; a coefficient with a shape has as many as there are shapes.
+    known : tuple of Parameter
+        What is stated of each coefficient.
+    """
+
+    matrix: Array
+    shapes: Array
+    free_shape: bool
+    keys: tuple[str, ...]
+    first: tuple[int, ...]
+    shaped: tuple[bool, ...]
+    known: tuple[Parameter, ...]
+
+    @classmethod
+    def of(
+        cls,
+        penalty: _core.Penalty,
+        known: Sequence[Parameter],
+        peak_speed: float,
+        threads: int,
+    ) -> ShapedColumns:
+        """Return the columns of a penalty with at most one shape.
+
+        Parameters
+        ----------
+        known : sequence of Parameter
+            What is stated of each parameter of the penalty.
+        """
+        count = penalty.coefficients
+        stated = known[count:]
+        low, high = shape_range(stated[0], peak_speed) if stated else (1.0, 1.0)
+        coarse = np.geomspace(max(low, 1e-300), high, _COARSE) if low < high else np.array([low])
+        blocks = [_at(penalty, shape) for shape in coarse]
+        made = cls._joined(penalty, blocks, coarse, known)
+        if not made.free_shape:
+            return made
+        whole = BlockSums.of(made.matrix, [np.arange(len(made.matrix))], threads)
+        best = int(np.argmin(whole.fitted(made.combined(None)).penalty))
+        near = coarse[max(best - 1, 0)], coarse[min(best + 1, len(coarse) - 1)]
+        fine = np.geomspace(*near, _FINE + 2)[1:-1]
+        blocks += [_at(penalty, shape) for shape in fine]
+        order = np.argsort(np.concatenate([coarse, fine]), kind="stable")
+        shapes = np.concatenate([coarse, fine])[order]
+        return cls._joined(penalty, [blocks[i] for i in order], shapes, known)
+
+    @classmethod
+    def _joined(
+        cls,
+        penalty: _core.Penalty,
+        blocks: Sequence[Array],
+        shapes: Array,
+        known: Sequence[Parameter],
+    ) -> ShapedColumns:
+        count = penalty.coefficients
+        shaped = tuple(bool(term.shapes) for term in penalty.terms[:count])
+        parts: list[Array] = []
+        first: list[int] = []
+        for index in range(count):
+            first.append(len(parts))
+            parts += [block[:, index] for block in (blocks if shaped[index] else blocks[:1])]
+        parts.append(np.asarray(penalty.target))
+        return cls(
+            matrix=np.asfortranarray(np.column_stack(parts)),
+            shapes=shapes,
+            free_shape=len(shapes) > 1,
+            keys=tuple(term.key for term in penalty.terms[:count]),
+            first=tuple(first),
+            shaped=shaped,
+            known=tuple(known[:count]),
+        )
+
+    def free(self, choice: TermChoice | None) -> list[int]:
+        """Return the free coefficients of a model; of all terms if None."""
+        return [
+            index
+            for index, key in enumerate(self.keys)
+            if self.known[index].vary and (choice is None or key in choice.terms)
+        ]
+
+    def shapes_of(self, choice: TermChoice | None) -> bool:
+        """Return whether a model has a term with a shape."""
+        return any(
+            shaped and (choice is None or key in choice.terms)
+            for shaped, key in zip(self.shaped, self.keys, strict=True)
+        )
+
+    def combined(self, choice: TermChoice | None) -> Array:
+        """Return how a model's regressors and its target are made of the columns, at every shape.
+
+        Returns
+        -------
+        ndarray, shape (shapes, columns, p + 1)
+            The target, last, is the torque less the terms of known size.
+        """
+        free = self.free(choice)
+        shapes = len(self.shapes) if self.shapes_of(choice) else 1
+        made = np.zeros((shapes, self.matrix.shape[1], len(free) + 1))
+        every = np.arange(shapes)
+        for place, index in enumerate(free):
+            made[every, self.first[index] + every * self.shaped[index], place] = 1.0
+        made[:, -1, -1] = 1.0
+        for index, key in enumerate(self.keys):
+            parameter = self.known[index]
+            if not parameter.vary and (choice is None or key in choice.terms):
+                assert parameter.value is not None  # Parameter refuses a fixed one without a value
+                made[every, self.first[index] + every * self.shaped[index], -1] -= parameter.value
+        return made
+
+
+def _at(penalty: _core.Penalty, shape: float) -> Array:
+    count = len(penalty.names) - penalty.coefficients
+    return np.asarray(penalty.columns(np.full(count, shape)))

@@ -1,0 +1,1 @@
+"""The self-test: known parameters in the user's own motion, identified again."""
