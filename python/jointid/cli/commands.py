@@ -18,6 +18,7 @@ from jointid.cli.study import sweep
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
+    from jointid.estimate.causes import Causes
     from jointid.estimate.estimate import Estimate
     from jointid.estimate.self_test import SelfTest
     from jointid.joint.joint import Joint
@@ -88,21 +89,28 @@ def identify(arguments: argparse.Namespace) -> int:
             torque_hold=arguments.torque_hold,
         )
     tested = estimate.selftest(seed=arguments.seed) if arguments.selftest else None
+    causes = estimate.causes() if arguments.causes else None
     refused = _write(estimate, arguments)
     if arguments.json:
-        print(_with_self_test(estimate, tested))
+        print(_with_answers(estimate, tested, causes))
     else:
         print(Wording.of(arguments).of_report(estimate))
         if tested is not None:
             print(f"\n{tested.report()}")
+        if causes is not None:
+            print(f"\n{causes.report(Wording.of(arguments).of_action)}")
     return _exit_code(refused, arguments)
 
 
-def _with_self_test(estimate: Estimate, tested: SelfTest | None) -> str:
-    """The estimate as JSON, with the result of its self-test if there was one."""
-    if tested is None:
+def _with_answers(estimate: Estimate, tested: SelfTest | None, causes: Causes | None) -> str:
+    """The estimate as JSON, with the results of its self-test and of its attribution if there were any."""
+    if tested is None and causes is None:
         return estimate.to_json()
-    document = json.loads(estimate.to_json()) | {"selftest": tested.document()}
+    document = json.loads(estimate.to_json())
+    if tested is not None:
+        document["selftest"] = tested.document()
+    if causes is not None:
+        document["causes"] = causes.document()
     return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
 
 

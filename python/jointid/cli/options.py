@@ -36,6 +36,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "ga.population": "--population",
         "ga.generations": "--generations",
         "selftest": "--selftest",
+        "causes": "--causes",
         "checkpoint": "--checkpoint",
         "resume": "--resume",
     },
@@ -99,7 +100,7 @@ FILES: Mapping[str, str] = {
 """Options that take a file, and what stands for one that the user has to choose."""
 
 FLAGS = frozenset(
-    {"--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run", "--selftest"}
+    {"--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run", "--selftest", "--causes"}
 )
 """Options that may stand without a value."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
@@ -104,10 +104,16 @@ class Causes:
         named = {cause.name for cause in (*self.found, *self.harmless)}
         return tuple(name for name in self.tried if name not in named)
 
-    def report(self) -> str:
-        """Return the causes as text, one a line, with their advice."""
+    def report(self, action: Callable[[Action], str] = str) -> str:
+        """Return the causes as text, one a line, with their advice.
+
+        Parameters
+        ----------
+        action : callable
+            Words one action. Default: as at a Python prompt.
+        """
         lines = [
-            f"{cause.name}: {cause}" + "".join(f"\n    {each}" for each in cause.advice)
+            f"{cause.name}: {cause}" + "".join(f"\n    {action(each)}" for each in cause.advice)
             for cause in self.found
         ]
         lines += [f"{cause.name} (moves no parameter): {cause}" for cause in self.harmless]
@@ -119,6 +125,28 @@ class Causes:
 
     def __str__(self) -> str:
         return self.report()
+
+    def document(self) -> dict[str, Any]:
+        """Return the causes as values for JSON."""
+        return {
+            "found": [_document(cause) for cause in self.found],
+            "harmless": [_document(cause) for cause in self.harmless],
+            "tried": list(self.tried),
+        }
+
+
+def _document(cause: Cause) -> dict[str, Any]:
+    return {
+        "name": cause.name,
+        "detail": cause.detail,
+        "share": cause.share,
+        "scale": cause.scale,
+        "size": cause.size,
+        "shifts": dict(cause.shifts),
+        "relative": dict(cause.relative),
+        "alike": list(cause.alike),
+        "advice": [str(each) for each in cause.advice],
+    }
 
 
 def _rebuilt(values: dict[str, Any]) -> Cause:
