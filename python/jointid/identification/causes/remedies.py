@@ -44,9 +44,11 @@ def advice_against(fit: Fitted, cause: Attributed) -> tuple[Action, ...]:
     if name == "gravity":
         return (_model(fit, gravity="free"),)
     if name == "load_friction":
-        return (_model(fit, load_friction=True),)
+        return (_compared(fit, load_friction=True),)
     if name == "asymmetry":
-        return (_model(fit, asymmetric=True),)
+        if "sensor_offset" in fit.names:
+            return (Action("inspect", text="the friction in each direction"),)
+        return (_compared(fit, asymmetric=True),)
     if name == "harmonic":
         return (_model(fit, harmonics=(*model.harmonics, float(detail))),)
     if name == "ripple":
@@ -57,9 +59,16 @@ def advice_against(fit: Fitted, cause: Attributed) -> tuple[Action, ...]:
     richer = {"coulomb_viscous": "stribeck", "stribeck": "stribeck_general"}.get(model.name)
     if richer is None or (richer == "stribeck_general" and model.asymmetric):
         return _SLOW
-    return (_model(fit, name=richer), *_SLOW)
+    return (_compared(fit, name=richer), *_SLOW)
 
 
 def _model(fit: Fitted, **changes: Any) -> Action:
     """Identify with more in the model; the text has every field that is stated."""
     return Action("call", {"model": str(fit.problem.choice.model.replace(**changes))})
+
+
+def _compared(fit: Fitted, **changes: Any) -> Action:
+    """Compare with a richer law of friction, which the recording may not determine."""
+    model = fit.problem.choice.model
+    models = (str(model), str(model.replace(**changes)))
+    return Action("call", {"models": models}, function="compare_models")
