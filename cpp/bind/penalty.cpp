@@ -37,6 +37,7 @@ void bind_penalty(py::module_& m) {
                             "What a window's residual is compared with.")
       .value("sensor", Residual::sensor)
       .value("torque", Residual::torque)
+      .value("instruments", Residual::instruments)
       .finalize();
   py::class_<PenaltyFunction>(m, "PenaltyFunction",
                               "What every form of the penalty offers to a search.")
@@ -85,40 +86,106 @@ void bind_penalty(py::module_& m) {
             return columns;
           },
           py::arg("shapes"), "Columns of all coefficients, shape (rows, coefficients).")
+      .def(
+          "linear_columns",
+          [](const PenaltyFunction& p, const Eigen::VectorXd& theta) {
+            Eigen::MatrixXd columns;
+            const Eigen::Index c = p.coefficients();
+            p.linear_columns(theta.tail(theta.size() - c), theta.head(c), columns);
+            return columns;
+          },
+          py::arg("theta"), "Columns of the balance made linear there, shape (rows, coefficients).")
+      .def_property_readonly("is_linear", &PenaltyFunction::is_linear,
+                             "Whether the balance is linear in the coefficients for given shapes.")
       .def_property_readonly("target", &PenaltyFunction::target,
                              "What the columns add up to [N m s], one a row.")
       .def_property_readonly("names", &PenaltyFunction::names)
       .def_property_readonly("coefficients", &PenaltyFunction::coefficients)
       .def_property_readonly("residual", &PenaltyFunction::residual);
+  using identify::FirstStage;
+  py::class_<FirstStage>(m, "FirstStage",
+                         "The sensor's reading, explained by the motion of a rigid link.")
+      .def_readonly("acceleration", &FirstStage::acceleration,
+                    "Whether the velocity change is among the instruments; it is left out where "
+                    "gravity suffices.")
+      .def_readonly("strength", &FirstStage::strength,
+                    "F statistic of the link's columns beyond those of the balance.")
+      .def_readonly("share", &FirstStage::share,
+                    "Share of the reading's square without its mean that only they explain.")
+      .def_property_readonly("weak", &FirstStage::weak,
+                             "Whether they explain too little for an estimate of the gain.");
   py::class_<Penalty, PenaltyFunction>(
       m, "Penalty",
       "The integral penalty of recordings and terms, by the direct sum; a row is a window.")
       .def(py::init([](const Recordings& recordings, const std::vector<std::string>& terms,
                        const WindowOptions& windows, Residual residual, bool mask_standstill,
                        double gear_ratio, const std::vector<std::string>& per_recording,
-                       int threads) {
+                       int threads, double link_share) {
              const py::gil_scoped_release nogil;
              return with_pool(samples_of(recordings), threads, [&](base::Pool* pool) {
                const auto masked = all_masked(recordings, mask_standstill, pool);
                return std::make_unique<Penalty>(masked, terms, windows, residual, gear_ratio,
-                                                per_recording, pool);
+                                                per_recording, pool, link_share);
              });
            }),
            py::kw_only(), py::arg("recordings"), py::arg("terms"), py::arg("windows"),
            py::arg("residual"), py::arg("mask_standstill") = true, py::arg("gear_ratio") = 1.0,
-           py::arg("per_recording") = std::vector<std::string>{}, py::arg("threads") = 0)
+           py::arg("per_recording") = std::vector<std::string>{}, py::arg("threads") = 0,
+           py::arg("link_share") = 0.0)
       .def(
           "linearised",
           [](const Penalty& p, const Eigen::VectorXd& theta) {
             Eigen::VectorXd residual;
             Eigen::MatrixXd jacobian;
+            double penalty = 0.0;
             {
               const py::gil_scoped_release nogil;
               p.residuals(theta, residual, &jacobian);
+              penalty = residual.squaredNorm();
+              p.observe(theta, residual);
             }
-            return py::make_tuple(residual.squaredNorm(), std::move(residual), std::move(jacobian));
+            return py::make_tuple(penalty, std::move(residual), std::move(jacobian));
           },
-          py::arg("theta"), "Penalty, window residuals and their derivatives, in one pass.")
+          py::arg("theta"),
+          "Penalty, window residuals with the reading itself, and the derivatives of the penalty's "
+          "residuals, in one pass: what the sandwich of an estimate's covariance is made of.")
+      .def(
+          "residuals",
+          [](const Penalty& p, const Eigen::VectorXd& theta) {
+            const py::gil_scoped_release nogil;
+            Eigen::VectorXd residual;
+            p.residuals(theta, residual, nullptr);
+            p.observe(theta, residual);
+            return residual;
+          },
+          py::arg("theta"), "Residuals of the windows, with the reading itself.")
+      .def(
+          "columns",
+          [](const Penalty& p, const Eigen::VectorXd& shapes) {
+            const py::gil_scoped_release nogil;
+            Eigen::MatrixXd columns;
+            p.columns(shapes, columns);
+            if (p.first_stage()) columns.col(p.gain_index()) = p.reading();
+            return columns;
+          },
+          py::arg("shapes"),
+          "Window integrals of all coefficients, shape (windows, coefficients), of the reading "
+          "itself.")
+      .def(
+          "project_reading",
+          [](Penalty& p, const std::vector<Eigen::Index>& free, int threads) {
+            const py::gil_scoped_release nogil;
+            with_pool(p.total_samples(), threads, [&](base::Pool* pool) {
+              p.project_reading(free, pool);
+              return 0;
+            });
+          },
+          py::arg("free"), py::kw_only(), py::arg("threads") = 0,
+          "Replace the gain's column by the part of the reading that the motion explains; `free` "
+          "are the parameters that vary. Only with the residual 'instruments', which is that of "
+          "the torque before.")
+      .def_property_readonly("first_stage", &Penalty::first_stage,
+                             "How the motion explains the reading; None if it is not projected.")
       .def(
           "torque_steps",
           [](const Penalty& p, const Recordings& recordings, bool mask_standstill) {
@@ -169,17 +236,18 @@ void bind_penalty(py::module_& m) {
       .def(py::init([](const Recordings& recordings, const std::vector<std::string>& terms,
                        const WindowOptions& windows, Residual residual, bool mask_standstill,
                        double gear_ratio, const std::vector<std::string>& per_recording,
-                       int threads) {
+                       int threads, double link_share) {
              const py::gil_scoped_release nogil;
              return with_pool(samples_of(recordings), threads, [&](base::Pool* pool) {
                return std::make_unique<PenaltyParts>(all_masked(recordings, mask_standstill, pool),
                                                      terms, windows, residual, gear_ratio,
-                                                     per_recording);
+                                                     per_recording, link_share);
              });
            }),
            py::kw_only(), py::arg("recordings"), py::arg("terms"), py::arg("windows"),
            py::arg("residual"), py::arg("mask_standstill") = true, py::arg("gear_ratio") = 1.0,
-           py::arg("per_recording") = std::vector<std::string>{}, py::arg("threads") = 0)
+           py::arg("per_recording") = std::vector<std::string>{}, py::arg("threads") = 0,
+           py::arg("link_share") = 0.0)
       .def_property_readonly("window_count", &PenaltyParts::window_count)
       .def(
           "refit",

@@ -17,6 +17,7 @@ __all__: list[str] = [
     "CompressedPenalty",
     "Control",
     "ControlRun",
+    "FirstStage",
     "GaOptions",
     "GaResult",
     "GaState",
@@ -291,6 +292,7 @@ class Residual(enum.Enum):
     What a window's residual is compared with.
     """
 
+    instruments = ...
     sensor = ...
     torque = ...
 
@@ -325,6 +327,12 @@ class PenaltyFunction:
         """
         Derivatives of the residuals, shape (rows, parameters).
         """
+    def linear_columns(
+        self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Columns of the balance made linear there, shape (rows, coefficients).
+        """
     def residuals(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
@@ -334,6 +342,11 @@ class PenaltyFunction:
     @property
     def coefficients(self) -> int: ...
     @property
+    def is_linear(self) -> bool:
+        """
+        Whether the balance is linear in the coefficients for given shapes.
+        """
+    @property
     def names(self) -> list[str]: ...
     @property
     def residual(self) -> Residual: ...
@@ -341,6 +354,31 @@ class PenaltyFunction:
     def target(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
         What the columns add up to [N m s], one a row.
+        """
+
+class FirstStage:
+    """
+    The sensor's reading, explained by the motion of a rigid link.
+    """
+    @property
+    def acceleration(self) -> bool:
+        """
+        Whether the velocity change is among the instruments; it is left out where gravity suffices.
+        """
+    @property
+    def share(self) -> float:
+        """
+        Share of the reading's square without its mean that only they explain.
+        """
+    @property
+    def strength(self) -> float:
+        """
+        F statistic of the link's columns beyond those of the balance.
+        """
+    @property
+    def weak(self) -> bool:
+        """
+        Whether they explain too little for an estimate of the gain.
         """
 
 class Penalty(PenaltyFunction):
@@ -358,7 +396,14 @@ class Penalty(PenaltyFunction):
         gear_ratio: typing.SupportsFloat | typing.SupportsIndex = 1.0,
         per_recording: collections.abc.Sequence[str] = [],
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
+        link_share: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> None: ...
+    def columns(
+        self, shapes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Window integrals of all coefficients, shape (windows, coefficients), of the reading itself.
+        """
     def linearised(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> tuple[
@@ -367,7 +412,22 @@ class Penalty(PenaltyFunction):
         typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
     ]:
         """
-        Penalty, window residuals and their derivatives, in one pass.
+        Penalty, window residuals with the reading itself, and the derivatives of the penalty's residuals, in one pass: what the sandwich of an estimate's covariance is made of.
+        """
+    def project_reading(
+        self,
+        free: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+        *,
+        threads: typing.SupportsInt | typing.SupportsIndex = 0,
+    ) -> None:
+        """
+        Replace the gain's column by the part of the reading that the motion explains; `free` are the parameters that vary. Only with the residual 'instruments', which is that of the torque before.
+        """
+    def residuals(
+        self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Residuals of the windows, with the reading itself.
         """
     def torque_steps(
         self, recordings: collections.abc.Sequence[Recording], mask_standstill: bool
@@ -377,6 +437,11 @@ class Penalty(PenaltyFunction):
         """
     @property
     def cumulative(self) -> bool: ...
+    @property
+    def first_stage(self) -> FirstStage | None:
+        """
+        How the motion explains the reading; None if it is not projected.
+        """
     @property
     def noise_limited(self) -> bool: ...
     @property
@@ -460,6 +525,7 @@ class PenaltyParts:
         gear_ratio: typing.SupportsFloat | typing.SupportsIndex = 1.0,
         per_recording: collections.abc.Sequence[str] = [],
         threads: typing.SupportsInt | typing.SupportsIndex = 0,
+        link_share: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> None: ...
     def refit(
         self,

@@ -38,7 +38,7 @@ ALLOWED: list[tuple[str, str, str]] = [
     # Judgements about one friction model.
     ("*", "python/jointid/identification/warnings/", "whether the data support static friction"),
     ("*", "python/jointid/identification/causes/", "causes of a misfit, some named like a term"),
-    ("coulomb*", "python/jointid/identification/search/domain.py", "collinear with an offset"),
+    ("coulomb*", "python/jointid/problem/constant_torque.py", "collinear with an offset"),
     ("*", "python/jointid/joint/thesis.py", "the thesis's joint, with its bounds"),
     ("coulomb", "python/jointid/simulation/scenario.py", "a controller with friction estimates"),
     ("coulomb", "python/jointid/cli/", "a controller with friction estimates; the demo's values"),

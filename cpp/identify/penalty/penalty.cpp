@@ -5,12 +5,19 @@
 #include <stdexcept>
 
 #include "base/input_error.hpp"
+#include "identify/balance/load_friction.hpp"
 
 namespace jointid::identify {
 
 void Penalty::add_term(const std::string& key) {
   const Term term = find_term(key);
   const auto coefficients = static_cast<std::ptrdiff_t>(terms_.size());
+  if (needs_load(term)) {  // it acts on the sum of the other terms
+    load_ = static_cast<Eigen::Index>(names_.size() - terms_.size());
+    link_load_ = term.integral == Integral::link_friction;
+    names_.push_back(term.name);
+    return;
+  }
   const auto begin = names_.begin();
   if (std::find(begin, begin + coefficients, term.name) != begin + coefficients) {
     throw std::invalid_argument("term '" + term.name + "' is listed twice");
@@ -31,6 +38,17 @@ void Penalty::add_term(const std::string& key) {
 }
 
 namespace {
+
+/// Usable intervals in which the joint moves backward on the whole.
+std::vector<std::uint8_t> backward_intervals(const RecordingView& r,
+                                             const std::vector<std::uint8_t>& usable) {
+  std::vector<std::uint8_t> result(usable.size());
+  for (std::size_t k = 0; k < usable.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    result[k] = usable[k] != 0 && r.velocity[i] + r.velocity[i + 1] < 0.0 ? 1 : 0;
+  }
+  return result;
+}
 
 std::vector<std::shared_ptr<const MaskedRecording>> masked(const std::vector<Recording>& recordings,
                                                            bool mask_standstill) {
@@ -60,12 +78,18 @@ Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms
     throw std::invalid_argument("gear_ratio must be finite and not 0");
   }
   for (const auto& key : terms) add_term(key);
-  if (residual == Residual::sensor && gain_index_ < 0) {
-    throw std::invalid_argument("residual 'sensor' needs the term sensor_gain");
+  if (residual != Residual::torque && gain_index_ < 0) {
+    throw std::invalid_argument(std::string("residual '") +
+                                (residual == Residual::sensor ? "sensor" : "instruments") +
+                                "' needs the term sensor_gain");
   }
+  runs_ = static_cast<Eigen::Index>(recordings.size());
   for (const auto& recording : recordings) {
     if (gain_index_ >= 0 && !recording->recording().has_sensor()) {
       throw std::invalid_argument("the term sensor_gain needs a recording with a sensor signal");
+    }
+    if (residual == Residual::instruments && recording->recording().samples() > 0) {
+      fastest_ = std::max(fastest_, recording->recording().velocity.cwiseAbs().maxCoeff());
     }
     standing_ += recording->standing();
     total_ += recording->recording().samples();
@@ -75,17 +99,42 @@ Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms
 
 Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms,
                  const WindowOptions& options, Residual residual, double gear_ratio,
-                 const std::vector<std::string>& per_recording, base::Pool* pool)
+                 const std::vector<std::string>& per_recording, base::Pool* pool, double link_share)
     : Penalty(recordings, terms, residual, gear_ratio) {
   options.validate();
+  link_share_ = link_share;
   cumulative_ = options.cumulative;
   cut(recordings, options);
   integrate_all(recordings, gear_ratio, pool);
   own_columns(per_recording, recordings.size());
-  if (cumulative_) {
-    accumulate(target_);
-    for (Eigen::Index j = 0; j < columns_.cols(); ++j) accumulate(columns_.col(j));
+  weigh_link();
+  accumulate_all();
+}
+
+void Penalty::weigh_link() {
+  link_weights_.setZero(coefficients());
+  for (Eigen::Index j = 0; j < coefficients(); ++j) {
+    const auto& term = terms_[static_cast<std::size_t>(j)];
+    if (term.option == "sensor" || (term.option == "gravity" && gain_index_ < 0)) {
+      link_weights_[j] = 1.0;
+    } else if (term.integral == Integral::velocity_change) {
+      link_weights_[j] = link_share_;
+    }
   }
+  if (link_load_ && load_ >= 0 && !(link_weights_.cwiseAbs().maxCoeff() > 0.0)) {
+    throw base::InputError(
+        "there is no torque behind the gear that friction could depend on: neither a sensor nor "
+        "gravity",
+        "load_friction", "link");
+  }
+}
+
+void Penalty::accumulate_all() {
+  if (!cumulative_) return;
+  accumulate(target_);
+  if (load_ >= 0) return;  // there it is the sum's residuals that are accumulated
+  for (Eigen::Index j = 0; j < columns_.cols(); ++j) accumulate(columns_.col(j));
+  for (Eigen::Index j = 0; j < link_.cols(); ++j) accumulate(link_.col(j));
 }
 
 void Penalty::cut(const Masked& recordings, WindowOptions wanted) {
@@ -137,6 +186,13 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
   columns_.setZero(rows, static_cast<Eigen::Index>(terms_.size()));
   target_.resize(rows);
   usable_duration_.resize(rows);
+  std::vector<std::vector<std::uint8_t>> backward;
+  if (load_ >= 0) {
+    backward_.setZero(rows, columns_.cols());
+    for (const auto& masked : recordings) {
+      backward.push_back(backward_intervals(masked->recording(), masked->usable()));
+    }
+  }
   struct Block {  // windows of one recording
     std::size_t begin;
     std::size_t end;
@@ -151,6 +207,13 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
     w = end;
   }
   const Term duration = find_term("torque_offset");
+  std::vector<Term> link;
+  if (residual_ == Residual::instruments) {
+    for (const auto* key : {"gravity_cos", "gravity_sin", "torque_offset", "inertia"}) {
+      link.push_back(find_term(key));
+    }
+  }
+  link_.resize(rows, static_cast<Eigen::Index>(link.size()));
   const base::Cancel* cancel = pool != nullptr ? &pool->cancel() : nullptr;
   const auto linear = [&](const Block& block) {
     if (cancel != nullptr) cancel->check();
@@ -167,15 +230,28 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
       integrate(terms_[j], gear_ratio, r, masked.usable(), windows,
                 columns_.col(static_cast<Eigen::Index>(j)).segment(first, count));
     }
+    for (std::size_t j = 0; j < link.size(); ++j) {
+      integrate(link[j], gear_ratio, r, masked.usable(), windows,
+                link_.col(static_cast<Eigen::Index>(j)).segment(first, count));
+    }
+    if (load_ < 0) return;
+    const auto& usable = backward[static_cast<std::size_t>(recording_of_[block.begin])];
+    for (std::size_t j = 0; j < terms_.size(); ++j) {
+      if (!terms_[j].shapes.empty()) continue;
+      integrate(terms_[j], gear_ratio, r, usable, windows,
+                backward_.col(static_cast<Eigen::Index>(j)).segment(first, count));
+    }
   };
   if (pool == nullptr) {
     for (const auto& block : blocks) linear(block);
-    collect_nodes(recordings, cancel);
+    collect_nodes(recordings, cancel, false);
+    if (load_ >= 0) collect_nodes(recordings, cancel, true);
   } else {  // the nodes are one task, the longest: it goes first
     pool->for_each(blocks.size() + 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         if (i == 0) {
-          collect_nodes(recordings, cancel);
+          collect_nodes(recordings, cancel, false);
+          if (load_ >= 0) collect_nodes(recordings, cancel, true);
         } else {
           linear(blocks[i - 1]);
         }
@@ -208,9 +284,10 @@ Eigen::VectorXd Penalty::torque_steps(const Masked& recordings) const {
   return steps;
 }
 
-void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel) {
+void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel, bool backward) {
   if (shaped_.empty()) return;
-  auto& all = nodes_[0];
+  auto& store = backward ? backward_nodes_ : nodes_;
+  auto& all = store[0];
   std::size_t samples = windows_.size();
   for (const auto& window : windows_)
     samples += static_cast<std::size_t>(window.end - window.begin);
@@ -224,16 +301,18 @@ void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel
     while (end < windows_.size() && end - w < kWindows && recording_of_[end] == recording_of_[w])
       ++end;
     const auto& masked = *recordings[static_cast<std::size_t>(recording_of_[w])];
-    append_nodes(masked.recording(), masked.usable(), std::span(windows_).subspan(w, end - w), all);
+    const auto& r = masked.recording();
+    append_nodes(r, backward ? backward_intervals(r, masked.usable()) : masked.usable(),
+                 std::span(windows_).subspan(w, end - w), all);
     w = end;
   }
   bool both = false;
   for (const auto& shaped : shaped_) {
-    auto& nodes = nodes_[static_cast<std::size_t>(shaped.term.direction)];
-    if (nodes.first.size() == 1) nodes = nodes_of(shaped.term.direction, nodes_[0]);
+    auto& nodes = store[static_cast<std::size_t>(shaped.term.direction)];
+    if (nodes.first.size() == 1) nodes = nodes_of(shaped.term.direction, store[0]);
     both = both || shaped.term.direction == model::Direction::both;
   }
-  if (!both) nodes_[0] = {};
+  if (!both) store[0] = {};
 }
 
 void Penalty::own_columns(const std::vector<std::string>& per_recording, std::size_t recordings) {
@@ -249,14 +328,18 @@ void Penalty::own_columns(const std::vector<std::string>& per_recording, std::si
     }
     const auto at = static_cast<Eigen::Index>(found - terms_.begin());
     const auto extra = static_cast<Eigen::Index>(recordings) - 1;
-    const Eigen::Index old = columns_.cols();
-    Eigen::MatrixXd wider = Eigen::MatrixXd::Zero(columns_.rows(), old + extra);
-    wider.leftCols(at) = columns_.leftCols(at);
-    wider.rightCols(old - at - 1) = columns_.rightCols(old - at - 1);
-    for (Eigen::Index row = 0; row < columns_.rows(); ++row) {
-      wider(row, at + recording_of_[static_cast<std::size_t>(row)]) = columns_(row, at);
-    }
-    columns_ = std::move(wider);
+    const auto widen = [&](Eigen::MatrixXd& columns) {
+      const Eigen::Index old = columns.cols();
+      Eigen::MatrixXd wider = Eigen::MatrixXd::Zero(columns.rows(), old + extra);
+      wider.leftCols(at) = columns.leftCols(at);
+      wider.rightCols(old - at - 1) = columns.rightCols(old - at - 1);
+      for (Eigen::Index row = 0; row < columns.rows(); ++row) {
+        wider(row, at + recording_of_[static_cast<std::size_t>(row)]) = columns(row, at);
+      }
+      columns = std::move(wider);
+    };
+    widen(columns_);
+    if (load_ >= 0) widen(backward_);
     const Term term = *found;
     terms_.insert(terms_.begin() + at, static_cast<std::size_t>(extra), term);
     names_.insert(names_.begin() + at, static_cast<std::size_t>(extra), name);
@@ -281,6 +364,7 @@ Penalty Penalty::fragment(const Masked& recordings, const std::vector<std::strin
   }
   result.choice_.duration = window_duration;
   result.integrate_all(recordings, gear_ratio, nullptr);
+  result.weigh_link();
   return result;
 }
 
@@ -318,6 +402,104 @@ void Penalty::columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
   for (const auto& s : shaped_) {
     shaped_column(s, shapes.data(), kValue, cancel, result.col(s.coefficient));
   }
+  if (cumulative_ && load_ >= 0) {
+    for (Eigen::Index j = 0; j < result.cols(); ++j) {
+      if (!is_shaped(j)) accumulate(result.col(j));
+    }
+  }
+}
+
+void Penalty::plain_columns(const double* shapes, bool backward, const base::Cancel* cancel,
+                            Eigen::MatrixXd& result) const {
+  result = backward ? backward_ : columns_;
+  for (const auto& s : shaped_) {
+    const auto& nodes =
+        (backward ? backward_nodes_ : nodes_)[static_cast<std::size_t>(s.term.direction)];
+    std::array<double, 4> own{};
+    for (std::size_t i = 0; i < s.shapes.size(); ++i) own[i] = shapes[s.shapes[i]];
+    integrate_friction(s.term, nodes, own.data(), kValue, cancel, result.col(s.coefficient));
+  }
+}
+
+Eigen::VectorXd Penalty::Loaded::slope(const Eigen::VectorXd& every, const Eigen::VectorXd& part,
+                                       double weight) const {
+  const auto forward = (gain.col(0) + weight * gain.col(1)).cwiseProduct(every - part);
+  return forward + (gain.col(2) + weight * gain.col(3)).cwiseProduct(part);
+}
+
+Penalty::Loaded Penalty::loaded(const double* shapes, const Eigen::VectorXd& coefficients,
+                                const base::Cancel* cancel) const {
+  Loaded result;
+  plain_columns(shapes, false, cancel, result.all);
+  plain_columns(shapes, true, cancel, result.back);
+  const double load = shapes[load_];
+  const Eigen::VectorXd whole = result.all * coefficients;
+  const Eigen::VectorXd behind = result.back * coefficients;
+  const Eigen::VectorXd linked = coefficients.cwiseProduct(link_weights_);
+  const Eigen::VectorXd link = result.all * linked;
+  const Eigen::VectorXd link_behind = result.back * linked;
+  const auto of = [&](double torque, double link_torque, double direction) {
+    return link_load_ ? loaded_by_link(torque, link_torque, direction, load)
+                      : loaded_by_drive(torque, direction, load);
+  };
+  result.torque.resize(whole.size());
+  result.by_load.resize(whole.size());
+  result.gain.resize(whole.size(), 4);
+  for (Eigen::Index row = 0; row < whole.size(); ++row) {
+    const auto forward = of(whole[row] - behind[row], link[row] - link_behind[row], 1.0);
+    const auto backward = of(behind[row], link_behind[row], -1.0);
+    result.torque[row] = forward.value + backward.value;
+    result.by_load[row] = forward.by_coefficient + backward.by_coefficient;
+    result.gain.row(row) << forward.by_torque, forward.by_link, backward.by_torque,
+        backward.by_link;
+  }
+  return result;
+}
+
+void Penalty::linear_columns(const Eigen::VectorXd& shapes, const Eigen::VectorXd& about,
+                             Eigen::MatrixXd& result, const base::Cancel* cancel) const {
+  if (load_ < 0) {
+    columns(shapes, result, cancel);
+    return;
+  }
+  // Homogeneous of degree 1 in the coefficients, so the slopes are the columns.
+  const Loaded balance = loaded(shapes.data(), about.head(coefficients()), cancel);
+  result.resize(window_count(), coefficients());
+  for (Eigen::Index j = 0; j < result.cols(); ++j) {
+    result.col(j) = balance.slope(balance.all.col(j), balance.back.col(j), link_weights_[j]);
+    if (cumulative_) accumulate(result.col(j));
+  }
+}
+
+void Penalty::loaded_residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                               Eigen::MatrixXd* jacobian, const base::Cancel* cancel) const {
+  const Eigen::Index p = coefficients();
+  const double* shapes = theta.data() + p;
+  Loaded balance = loaded(shapes, theta.head(p), cancel);
+  if (cumulative_) accumulate(balance.torque);
+  residual = target_ - balance.torque;
+  if (jacobian == nullptr) return;
+  jacobian->setZero(window_count(), parameters());
+  for (Eigen::Index j = 0; j < p; ++j) {
+    jacobian->col(j) = -balance.slope(balance.all.col(j), balance.back.col(j), link_weights_[j]);
+  }
+  jacobian->col(p + load_) = -balance.by_load;
+  Eigen::VectorXd every(window_count());
+  Eigen::VectorXd part(window_count());
+  for (const auto& s : shaped_) {
+    std::array<double, 4> own{};
+    for (std::size_t i = 0; i < s.shapes.size(); ++i) own[i] = shapes[s.shapes[i]];
+    const auto direction = static_cast<std::size_t>(s.term.direction);
+    for (std::size_t i = 0; i < s.shapes.size(); ++i) {
+      const int which = static_cast<int>(i);
+      integrate_friction(s.term, nodes_[direction], own.data(), which, cancel, every);
+      integrate_friction(s.term, backward_nodes_[direction], own.data(), which, cancel, part);
+      jacobian->col(p + s.shapes[i]) -= theta[s.coefficient] * balance.slope(every, part, 0.0);
+    }
+  }
+  if (cumulative_) {
+    for (Eigen::Index j = 0; j < jacobian->cols(); ++j) accumulate(jacobian->col(j));
+  }
 }
 
 double Penalty::operator()(const Eigen::VectorXd& theta, const base::Cancel* cancel) const {
@@ -330,6 +512,11 @@ void Penalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
                         Eigen::MatrixXd* jacobian, const base::Cancel* cancel) const {
   check(theta);
   const Eigen::Index p = coefficients();
+  if (load_ >= 0) {
+    loaded_residuals(theta, residual, jacobian, cancel);
+    divide_by_gain(theta, residual, jacobian);
+    return;
+  }
   if (jacobian != nullptr) {
     jacobian->setZero(window_count(), parameters());
     jacobian->leftCols(p) = -columns_;
@@ -349,7 +536,12 @@ void Penalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
       jacobian->col(p + s.shapes[i]) -= coefficient * column;
     }
   }
-  if (residual_ == Residual::torque) return;
+  divide_by_gain(theta, residual, jacobian);
+}
+
+void Penalty::divide_by_gain(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                             Eigen::MatrixXd* jacobian) const {
+  if (residual_ != Residual::sensor) return;
   const double scale = 1.0 / theta[gain_index_];
   residual *= scale;
   if (jacobian != nullptr) {

@@ -12,9 +12,10 @@
 namespace jointid::identify {
 
 enum class Residual {
-  sensor,  ///< integral of the sensor reading: the torque residual over the sensor's gain (the
-           ///< thesis)
-  torque,  ///< integral of the commanded torque
+  sensor,       ///< integral of the sensor reading: the torque residual over the sensor's gain (the
+                ///< thesis)
+  torque,       ///< integral of the commanded torque
+  instruments,  ///< the same, with the part of the reading that the motion explains
 };
 
 /// P(theta) = |r|^2;  torque: r = target - sum_j c_j column_j(shapes);  sensor: that over
@@ -39,6 +40,13 @@ class PenaltyFunction {
   virtual void columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
                        const base::Cancel* cancel = nullptr) const = 0;
   [[nodiscard]] virtual const Eigen::VectorXd& target() const = 0;
+  /// Whether, for given shapes, the residuals of the torque are linear in the coefficients.
+  [[nodiscard]] virtual bool is_linear() const { return true; }
+  /// Columns of the balance made linear about these coefficients; else the same as `columns`.
+  virtual void linear_columns(const Eigen::VectorXd& shapes, const Eigen::VectorXd& /*about*/,
+                              Eigen::MatrixXd& result, const base::Cancel* cancel = nullptr) const {
+    columns(shapes, result, cancel);
+  }
 
   /// Throws std::invalid_argument when theta has the wrong length or the gain is zero.
   virtual double operator()(const Eigen::VectorXd& theta,

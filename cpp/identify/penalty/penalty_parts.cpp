@@ -10,13 +10,14 @@ constexpr std::int64_t kSamples = 8192;  // a part: its columns and nodes stay i
 
 PenaltyParts::PenaltyParts(const Penalty::Masked& recordings, const std::vector<std::string>& terms,
                            const WindowOptions& windows, Residual residual, double gear_ratio,
-                           const std::vector<std::string>& per_recording)
+                           const std::vector<std::string>& per_recording, double link_share)
     : recordings_(recordings),
       gear_ratio_(gear_ratio),
       per_recording_(per_recording),
       frame_(recordings, terms, residual, gear_ratio) {
   windows.validate();
   frame_.cumulative_ = windows.cumulative;
+  frame_.link_share_ = link_share;
   frame_.cut(recordings, windows);
   windows_.swap(frame_.windows_);
   recording_of_.swap(frame_.recording_of_);
@@ -32,6 +33,7 @@ PenaltyParts::PenaltyParts(const Penalty::Masked& recordings, const std::vector<
   first_.push_back(windows_.size());
   Penalty whole = frame_;
   whole.columns_.setZero(0, static_cast<Eigen::Index>(whole.terms_.size()));
+  whole.backward_.setZero(0, whole.columns_.cols());
   whole.own_columns(per_recording, recordings.size());
   names_ = whole.parameters();
   coefficients_ = whole.coefficients();
@@ -46,12 +48,20 @@ Penalty PenaltyParts::part(std::size_t index) const {
   result.recording_of_.assign(recording_of_.begin() + from, recording_of_.begin() + to);
   result.integrate_all(recordings_, gear_ratio_, nullptr);
   result.own_columns(per_recording_, recordings_.size());
-  if (result.cumulative_) {
-    result.accumulate(result.target_);
-    for (Eigen::Index j = 0; j < result.columns_.cols(); ++j)
-      result.accumulate(result.columns_.col(j));
-  }
+  result.weigh_link();
+  result.accumulate_all();
   return result;
+}
+
+std::optional<FirstStage> PenaltyParts::first_stage(const std::vector<Eigen::Index>& free,
+                                                    base::Pool* pool) const {
+  if (frame_.residual() != Residual::instruments) return std::nullopt;
+  const Instruments instruments = part(0).instruments(free, windows_.size());
+  std::vector<Eigen::MatrixXd> triangles(count());
+  for_each(count(), pool, [&](std::size_t i) {
+    triangles[i] = part(i).instrument_triangle(instruments, nullptr);
+  });
+  return solve_first_stage(instruments, fold(triangles), window_count());
 }
 
 void for_each(std::size_t count, base::Pool* pool, const std::function<void(std::size_t)>& work) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 
 namespace jointid::identify {
 
@@ -25,7 +26,8 @@ struct Sums {
 
 class Windows {
  public:
-  Windows(const PenaltyParts& parts, base::Pool* pool) : parts_(parts), pool_(pool) {
+  Windows(const PenaltyParts& parts, const search::Domain& domain, base::Pool* pool)
+      : parts_(parts), pool_(pool), stage_(parts.first_stage(domain.free(), pool)) {
     if (parts.samples() <= kKept) kept_.resize(parts.count());
   }
 
@@ -35,9 +37,9 @@ class Windows {
       Eigen::VectorXd residual;
       Eigen::MatrixXd jacobian;
       if (kept_.empty()) {
-        parts_.part(i).residuals(theta, residual, &jacobian);
+        part(i).residuals(theta, residual, &jacobian);
       } else {
-        if (kept_[i] == nullptr) kept_[i] = std::make_unique<Penalty>(parts_.part(i));
+        if (kept_[i] == nullptr) kept_[i] = std::make_unique<Penalty>(part(i));
         kept_[i]->residuals(theta, residual, &jacobian);
       }
       each[i].square.setZero(jacobian.cols(), jacobian.cols());
@@ -56,8 +58,15 @@ class Windows {
   }
 
  private:
+  [[nodiscard]] Penalty part(std::size_t index) const {
+    Penalty result = parts_.part(index);
+    if (stage_) result.project_reading(*stage_);
+    return result;
+  }
+
   const PenaltyParts& parts_;
   base::Pool* pool_;
+  std::optional<FirstStage> stage_;
   std::vector<std::unique_ptr<Penalty>> kept_;
 };
 
@@ -110,7 +119,7 @@ double nonlinearity(const PenaltyParts& parts, const Eigen::VectorXd& at,
 Eigen::VectorXd refit(const PenaltyParts& parts, const search::Domain& domain,
                       const Eigen::VectorXd& start, base::Pool* pool) {
   domain.validate();
-  Windows windows(parts, pool);
+  Windows windows(parts, domain, pool);
   const double freedom = static_cast<double>(
       std::max<Eigen::Index>(1, parts.window_count() - static_cast<Eigen::Index>(domain.size())));
   Eigen::VectorXd best = start.cwiseMax(domain.lower).cwiseMin(domain.upper);

@@ -164,6 +164,16 @@ void search_near(const Eliminated& reduced, const Scale& scale, base::Pool& pool
   }
 }
 
+/// What elimination comes near to only.
+void polish_best(const PenaltyFunction& penalty, const search::Domain& domain, base::Pool& pool,
+                 const Eliminated& reduced, SeparableResult& result) {
+  const auto residuals = [&](const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                             Eigen::MatrixXd* jacobian) {
+    penalty.residuals(theta, residual, jacobian, &pool.cancel());
+  };
+  reduced.offer(search::polish(residuals, domain, result.best, pool).best, result);
+}
+
 void search_grid(const Eliminated& reduced, const std::vector<Scale>& scales,
                  const PenaltyFunction& penalty, const search::Domain& domain, base::Pool& pool,
                  SeparableResult& result) {
@@ -234,6 +244,7 @@ SeparableResult minimise_separable(const PenaltyFunction& penalty, const search:
   } else {
     search_grid(reduced, scales, penalty, domain, pool, result);
   }
+  if (!penalty.is_linear() && scales.size() < 2) polish_best(penalty, domain, pool, reduced, result);
   return result;
 }
 

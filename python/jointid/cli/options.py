@@ -100,7 +100,15 @@ FILES: Mapping[str, str] = {
 """Options that take a file, and what stands for one that the user has to choose."""
 
 FLAGS = frozenset(
-    {"--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run", "--selftest", "--causes"}
+    {
+        "--resume",
+        "--tracking",
+        "--standard-errors",
+        "--emulate",
+        "--dry-run",
+        "--selftest",
+        "--causes",
+    }
 )
 """Options that may stand without a value."""
 

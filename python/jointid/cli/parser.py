@@ -207,7 +207,7 @@ def _identification_arguments(command: argparse.ArgumentParser, *, method: str) 
     others = " or ".join(name for name in METHODS if name != method)
     command.add_argument("--joint", type=Path, help="joint file (.toml)")
     command.add_argument("--method", default=method, help=f"{method} (default), {others}")
-    command.add_argument("--residual", help="sensor or torque")
+    command.add_argument("--residual", help="instruments, sensor or torque")
     command.add_argument(
         "--torque-hold", help="torque between samples: zoh (held command) or linear (measured)"
     )

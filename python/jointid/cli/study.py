@@ -70,7 +70,7 @@ def add_sweep(commands: Any) -> None:
         ("--ga", "default, thesis or thesis_code"),
         ("--method", "ga (default), separable or random"),
         ("--model", "friction model, such as stribeck:ripple=2"),
-        ("--residual", "sensor or torque"),
+        ("--residual", "instruments, sensor or torque"),
     ):
         sweep.add_argument(name, help=explanation)
     sweep.add_argument(

@@ -11,7 +11,7 @@ import numpy as np
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.comparison.held_out import Fold, folds_by_block, folds_by_recording
-from jointid.comparison.parsimony import judge, refusal
+from jointid.comparison.parsimony import counted, judge, refusal
 from jointid.comparison.result import ComparedModel, Comparison
 from jointid.estimate.estimate import Estimate
 from jointid.identification.identification import identify
@@ -97,8 +97,7 @@ def compare_models(
     ----------
     recordings : Recording or sequence of Recording
     joint : Joint, optional
-        As in `identify`, except that its model's name and `asymmetric` are not used, and that an
-        asymmetric model has no offset, because asymmetric Coulomb friction contains it.
+        As in `identify`, except that its model's name and `asymmetric` are not used.
     models : sequence of Model, str or mapping, optional
         Models or their texts, such as "coulomb_viscous:asymmetric". Default: `default_models()`, without
         those that cannot be used with these data; they are listed in `settings["left_out"]`.
@@ -209,11 +208,8 @@ class _Fitter:
     def fit(
         self, spec: Model, training: Sequence[Recording], windows: Windows, where: str = ""
     ) -> Estimate:
-        joint = self._joint
-        if joint is not None and joint.torque_offset and spec.asymmetric:
-            joint = joint.replace(torque_offset=False)
         try:
-            estimate = identify(training, joint, model=spec, windows=windows, **self._common)
+            estimate = identify(training, self._joint, model=spec, windows=windows, **self._common)
         except InputError as error:
             raise error.at(f"model '{_text(spec)}'{where}") from error
         self._done += 1
@@ -255,7 +251,7 @@ def _row(spec: Model, estimate: Estimate, scores: Sequence[float]) -> ComparedMo
     return ComparedModel(
         model=_text(spec),
         spec=spec,
-        parameters=sum(parameter.vary for parameter in estimate.parameters.values()),
+        parameters=counted(estimate),
         score=float(np.mean(scores)),
         stderr=float(np.std(scores, ddof=1) / np.sqrt(len(scores))),
         fold_scores=tuple(scores),

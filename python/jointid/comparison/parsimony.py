@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from jointid.comparison.result import ComparedModel
 from jointid.estimate.estimate import Estimate
+from jointid.problem.constant_torque import undivided
 
 
 def judge(rows: Sequence[ComparedModel]) -> tuple[tuple[ComparedModel, ...], int, str]:
@@ -58,6 +59,12 @@ def judge(rows: Sequence[ComparedModel]) -> tuple[tuple[ComparedModel, ...], int
     elif refused:
         sentence += f"; the data do not support {', '.join(refused)}"
     return tuple(judged), list(rows).index(winner), sentence
+
+
+def counted(estimate: Estimate) -> int:
+    """Return the number of parameters that the data determine; an offset that nothing divides is none."""
+    free = [parameter.name for parameter in estimate.parameters.values() if parameter.vary]
+    return len(free) - len(undivided(free))
 
 
 def refusal(estimate: Estimate) -> str | None:

@@ -55,7 +55,8 @@ class Estimate:
     weakest : tuple of str
         Parameters with a large share in the least determined direction.
     covariance : ndarray, shape (p, p)
-        Of the free parameters.
+        Of the free parameters. Where nothing divides an offset from the difference of two directions' Coulomb
+        friction, the offset has an infinite variance and the others have theirs at a given offset.
     residuals : ResidualStatistics
     windows : WindowTable
     convergence : Convergence or None
@@ -63,8 +64,9 @@ class Estimate:
     findings : tuple of Finding
         What the data and the fit show, the most severe first; `docs/findings.md` lists the codes.
     derived : mapping of str to DerivedValue
-        Quantities that follow from the parameters: "breakaway" (coulomb + static) and
-        "stribeck_velocity" (1/√stribeck), with standard errors.
+        Quantities that follow from the parameters, with standard errors: "breakaway" (coulomb + static),
+        "stribeck_velocity" (1/√stribeck); of asymmetric friction "coulomb_sum" and, with an offset,
+        "constant_positive" and "constant_negative", which are known even where the offset is not.
     warnings : tuple of Finding
         The findings of severity "warning" or "blocking".
     joint : Joint

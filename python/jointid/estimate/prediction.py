@@ -27,7 +27,8 @@ def predict(estimate: Estimate, recording: Recording) -> Prediction:
     choice = TermChoice(
         terms=tuple(settings["terms"]),
         model=model_of(settings),
-        residual=settings["residual"],
+        # In terms of the reading, too: few windows do not show again how the motion explains it.
+        residual="torque" if settings["residual"] == "torque" else "sensor",
         sensor="sensor_gain" in settings["terms"],
         gear_ratio=estimate.joint.gear_ratio,
     )

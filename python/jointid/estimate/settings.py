@@ -7,6 +7,7 @@ from typing import Any
 
 from jointid.base.schema import Flag, ListOf, Number, OrNull, Plain, Record, TableOf, Text
 from jointid.joint.model import FIELDS, Model
+from jointid.problem.terms import RESIDUALS
 
 # Only what is read again is declared. All else is there for people, and to repeat the run.
 SETTINGS = Record(
@@ -16,7 +17,7 @@ SETTINGS = Record(
         "method": Text(),
         "model": Text(),
         "terms": ListOf(Text(), shortest=1, longest=1000),
-        "residual": Text(known=("sensor", "torque")),
+        "residual": Text(known=RESIDUALS),
         "windows": Number(low=1e-9, high=1e9),
         "torque_hold": OrNull(Text(known=("zoh", "linear"))),
         "mask_standstill": Flag(),
@@ -29,6 +30,7 @@ SETTINGS = Record(
     optional={
         "dropped": Text(),
         "bounds_from_data": ListOf(Text()),
+        "residual_reason": Text(),
     },
     other=Plain(),
 )
@@ -48,7 +50,12 @@ def model_of(settings: Mapping[str, Any]) -> Model:
 
 def model_description(settings: Mapping[str, Any]) -> str:
     """The model and the residual, for people, e.g. "stribeck:ripple=2, residual of the sensor"."""
-    text = f"{model_of(settings).resolved}, residual of the {settings['residual']}"
+    if settings["residual"] == "instruments":
+        text = f"{model_of(settings).resolved}, gain by instruments"
+    else:
+        text = f"{model_of(settings).resolved}, residual of the {settings['residual']}"
+    if settings.get("residual_reason"):
+        text = f"{text} ({settings['residual_reason']})"
     return f"{text} (without {settings['dropped']})" if settings.get("dropped") else text
 
 
@@ -59,4 +66,4 @@ def torque_unit(settings: Mapping[str, Any]) -> str:
 
 def residual_unit(settings: Mapping[str, Any]) -> str:
     """Unit of the signal that the residual compares."""
-    return "sensor units" if settings["residual"] == "sensor" else torque_unit(settings)
+    return torque_unit(settings) if settings["residual"] == "torque" else "sensor units"

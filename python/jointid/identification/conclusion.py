@@ -21,11 +21,13 @@ from jointid.identification.inference.inference import (
 )
 from jointid.identification.inference.segments import Motion, motion_segments
 from jointid.identification.inference.systematic import systematic_errors
+from jointid.identification.inference.undivided import divided, with_undivided
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.warnings.diagnosis import diagnose
 from jointid.identification.warnings.evidence import Evidence, regressor
 from jointid.identification.warnings.inspection import inspect
 from jointid.identification.warnings.poor_fit import POORLY_EXPLAINED
+from jointid.problem.constant_torque import undivided
 from jointid.problem.inner_products import columns_with, size
 from jointid.problem.problem import Problem
 
@@ -72,17 +74,23 @@ def infer(
     freedom = freedom_of(domain, best, columns_with(jacobian, residual), alone)
     free = list(freedom.indices)
     table = problem.table(penalty, best, (residual, columns))
-    free_jacobian = jacobian[:, free]
+    names = list(domain.names)
+    groups = undivided([names[index] for index in free])
+    kept = divided(free, names, groups)
+    free_jacobian = jacobian[:, kept]
     del jacobian
-    centre = _centre(penalty, columns, free)
+    centre = _centre(penalty, columns, kept)
     segments = motion_segments(Motion.of(problem, penalty))
     spread = parameter_covariance(
         free_jacobian, residual, centre, threads=threads, segments=segments
     )
-    parts = systematic_errors(problem, penalty, best, free, free_jacobian, columns, shifts)
+    spread = with_undivided(spread, kept, free, names, groups)
+    parts = systematic_errors(problem, penalty, best, kept, free_jacobian, columns, shifts)
     if given is not None:
         parts["given"] = given
     del free_jacobian
+    if not penalty.is_linear:
+        columns = penalty.linear_columns(best)
     at_best = regressor(penalty, columns, threads)
     del columns
     parameters = parameters_of(problem, penalty, domain, best, freedom, spread, parts, shifts)

@@ -52,7 +52,11 @@ def identify(
     search : Search or str, optional
         Settings of the search, or a method: "ga" (default), "separable" or "random".
     residual : str, optional
-        "sensor" (default with a sensor) or "torque".
+        "instruments" (default with a sensor): the gain from the part of the reading that gravity and
+        inertia of a rigid link explain, which neither the reading's noise nor friction that the model
+        lacks biases. "sensor" (the thesis) compares the reading with what the torque leaves for it,
+        "torque" (default without a sensor) the torque with the reading. Where instruments are weak the
+        default is "sensor", and `settings` says why.
     windows : int, float, "cumulative" or WindowOptions, optional
         An int is the approximate number of windows (gaps and several recordings change it), a float
         their duration [s]; "cumulative" compares the running integral at each sample, as the thesis's

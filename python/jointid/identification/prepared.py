@@ -19,6 +19,7 @@ from jointid.estimate.estimate import Estimate
 from jointid.estimate.selection import Selection
 from jointid.identification.conclusion import infer
 from jointid.identification.follow_up import EstimateSource
+from jointid.identification.gain import with_instruments
 from jointid.identification.inference.given import of_given_facts
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Outcome
@@ -28,9 +29,10 @@ from jointid.identification.selection.selecting import select_model
 from jointid.joint.joint import Joint
 from jointid.joint.model import AUTO, Model
 from jointid.joint.parameters import Parameter
+from jointid.problem.constant_torque import balanced, with_fixed_offset
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import listed
-from jointid.problem.terms import Request, choose_terms
+from jointid.problem.terms import Request, TermChoice, choose_terms
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
 
@@ -69,13 +71,15 @@ class Prepared:
         started : float
             Reading of `time.perf_counter` at the start of the identification.
         """
+        domain = self.domain
+        best = balanced(domain.names, domain.lower, domain.upper, outcome.best)
         estimate = infer(
             problem=self.problem,
             penalty=self.penalty,
-            domain=self.domain,
-            best=outcome.best,
-            shifts=self._window_shifts(outcome.best),
-            given=of_given_facts(self.problem, self.windows, self.domain, outcome.best),
+            domain=domain,
+            best=best,
+            shifts=self._window_shifts(best),
+            given=of_given_facts(self.problem, self.windows, domain, best),
             convergence=outcome.convergence,
             status=outcome.status,
             message=outcome.message,
@@ -110,6 +114,7 @@ class Prepared:
             "terms": list(choice.terms),
             "dropped": choice.dropped,
             "residual": choice.residual,
+            **_of_gain(choice, penalty),
             "windows": penalty.window_duration,
             "cumulative": penalty.cumulative,
             "torque_hold": problem.torque_hold,
@@ -124,6 +129,7 @@ class Prepared:
         """Return the change of the parameters when windows are halved and doubled; None where that is impossible."""
         problem, domain = self.problem, self.domain
         options = problem.window_options(self.windows)
+        lower, upper = with_fixed_offset(domain.names, domain.lower, domain.upper, best)
         shifts: list[Array | None] = []
         for factor in (0.5, 2.0):
             try:
@@ -134,9 +140,19 @@ class Prepared:
             if other.window_count == self.penalty.window_count:
                 shifts.append(None)
                 continue
-            found = other.refit(domain.lower, domain.upper, best, threads=problem.threads)
+            found = other.refit(lower, upper, best, threads=problem.threads)
             shifts.append(found - best)
         return shifts[0], shifts[1]
+
+
+def _of_gain(choice: TermChoice, penalty: _core.Penalty) -> dict[str, Any]:
+    """Return how the sensor's gain is found, as settings."""
+    if choice.residual_reason:
+        return {"residual_reason": choice.residual_reason}
+    stage = penalty.first_stage
+    if stage is None:
+        return {}
+    return {"instruments": {"acceleration": stage.acceleration, "strength": stage.strength}}
 
 
 def prepare(
@@ -197,6 +213,7 @@ def prepare(
         problem, selection = select_model(problem, request, parameters, windows)
     penalty = problem.penalty(windows)
     domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
+    problem, penalty = with_instruments(problem, penalty, domain, windows, residual is not None)
     return Prepared(
         problem=problem, penalty=penalty, domain=domain, windows=windows, selection=selection
     )

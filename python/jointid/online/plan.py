@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from jointid import _core
 from jointid.base.errors import InputError
@@ -88,6 +88,8 @@ def make_plan(settings: Settings, recording: Recording, fastest: float) -> Plan 
         The signals contradict the settings, or a whole window does not suffice.
     """
     choice = choose_terms((recording,), settings.joint, settings.request)
+    if choice.residual == "instruments":
+        choice = replace(choice, residual="sensor")
     problem = settings.problem(recording, choice)
     core = problem.in_core[0]
     scale = _core.MotionScale(core)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def _measured(estimate: Estimate) -> tuple[str, str]:
     """Return the quantity that the model is fitted to, and its unit."""
-    if estimate.settings["residual"] == "sensor":
+    if estimate.settings["residual"] != "torque":
         return "sensor reading", "sensor units"
     kind = estimate.settings["kind"]
     return "force" if kind == "prismatic" else "torque", torque_unit(kind)

@@ -133,6 +133,12 @@ class Problem:
             measured = columns[:, names.index("sensor_gain")].copy()
             fitted = measured + residual
             torque_residual = residual * theta[names.index("sensor_gain")]
+        elif (
+            self.choice.residual == "instruments"
+        ):  # the gain is known: in terms of the reading, too
+            measured = columns[:, names.index("sensor_gain")].copy()
+            fitted = measured + residual / theta[names.index("sensor_gain")]
+            torque_residual = residual
         else:
             measured = penalty.target.copy()
             fitted = measured - residual

@@ -8,11 +8,15 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.joint.checks import check_choice
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model
+from jointid.joint.model import Model, ResolvedModel
 from jointid.recording.recording import Recording
 
 _GRAVITY = ("gravity_cos", "gravity_sin")
 _SENSOR = ("sensor_gain", "sensor_offset")
+
+# What the residual compares: the torque with the part of the reading that the motion explains, the reading
+# with what the torque leaves for it (the thesis), the torque with the reading.
+RESIDUALS = ("instruments", "sensor", "torque")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,7 +28,7 @@ class Request:
     model : Model
         Its fields override those of the joint's model.
     residual : str or None
-        "sensor" or "torque"; None: the sensor if there is one.
+        "instruments", "sensor" or "torque"; None: instruments if there is a sensor, else the torque.
     """
 
     model: Model = field(default_factory=Model)
@@ -42,12 +46,14 @@ class TermChoice:
     model : Model
         The call's fields, then the joint's; its name is never None.
     residual : str
-        "sensor" or "torque".
+        "instruments", "sensor" or "torque".
     sensor : bool
         Whether the terms contain the sensor's gain and offset.
     gear_ratio : float
     dropped : str
         A term that another one makes redundant, and why; empty if none.
+    residual_reason : str
+        Why the residual is not the default; empty if it is, or if the call states it.
     """
 
     terms: tuple[str, ...]
@@ -56,6 +62,7 @@ class TermChoice:
     sensor: bool
     gear_ratio: float = 1.0
     dropped: str = ""
+    residual_reason: str = ""
 
     @property
     def per_recording(self) -> tuple[str, ...]:
@@ -79,9 +86,9 @@ def choose_terms(
     model = stated.resolved
     _check_kind(recordings, joint)
     sensor = _has_sensor(recordings, joint)
-    residual = request.residual or ("sensor" if sensor else "torque")
-    check_choice("", "residual", residual, ("sensor", "torque"))
-    if residual == "sensor" and not sensor:
+    residual = request.residual or ("instruments" if sensor else "torque")
+    check_choice("", "residual", residual, RESIDUALS)
+    if residual != "torque" and not sensor:
         raise InputError(
             "the recording has no torque sensor",
             argument="residual",
@@ -102,7 +109,7 @@ def choose_terms(
             value=model.gravity,
             remedy="give a joint with a link, or set gravity to free",
         )
-    offset, dropped = _offset(base, model.asymmetric, sensor)
+    offset, dropped = _offset(base, model, sensor)
     friction = next(entry for entry in _core.models() if entry.name == model.name)
     wanted = {"inertia", *_friction(friction.terms, model.asymmetric)}
     wanted.update(_GRAVITY if model.gravity != "none" else ())
@@ -161,7 +168,7 @@ def _friction(terms: Sequence[str], asymmetric: bool) -> list[str]:
     return [f"{term}_{side}" for term in terms for side in ("positive", "negative")]
 
 
-def _offset(joint: Joint, asymmetric: bool, sensor: bool) -> tuple[bool, str]:
+def _offset(joint: Joint, model: ResolvedModel, sensor: bool) -> tuple[bool, str]:
     """Return whether the torque has a separate offset, and the message if another term replaces it."""
     if sensor:
         if joint.torque_offset:
@@ -172,18 +179,9 @@ def _offset(joint: Joint, asymmetric: bool, sensor: bool) -> tuple[bool, str]:
                 remedy=Action("call", {"torque_offset": False}, function="Joint"),
             )
         return False, ""
-    if asymmetric:
-        if joint.torque_offset:
-            raise InputError(
-                "torque_offset and asymmetric Coulomb friction are indistinguishable while the joint moves",
-                argument="torque_offset",
-                value=True,
-                remedy=(
-                    Action("call", {"torque_offset": False}, function="Joint"),
-                    "leave out asymmetric",
-                ),
-            )
-        return False, "torque_offset: asymmetric Coulomb friction contains it"
+    if joint.torque_offset is None and model.asymmetric and model.gravity != "none":
+        # No motion tells a constant from a difference of Coulomb frictions; gravity it does tell.
+        return False, "torque_offset: all torque that does not reverse is taken for gravity"
     return joint.torque_offset is not False, ""
 
 

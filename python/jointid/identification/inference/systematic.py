@@ -95,7 +95,7 @@ def _of_sampling(
     if both <= 0.0 or share * gain <= 0.0:
         return None
     lacking = 0.5 * share / both * stepped
-    if penalty.residual == _core.Residual.torque:
+    if penalty.residual != _core.Residual.sensor:
         lacking = lacking * gain
     count = jacobian.shape[1]
     both_sides = Triangle(np.column_stack([jacobian, lacking]), problem.threads)

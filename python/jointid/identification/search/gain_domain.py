@@ -143,7 +143,7 @@ def _fitted(
         else:
             (signed if term.non_negative else free).append(index)
     reading = columns[:, of_gain]
-    reversed_roles = penalty.residual == _core.Residual.sensor
+    reversed_roles = penalty.residual != _core.Residual.torque
     if reversed_roles:
         # reading = (torque - the other terms) / gain: linear in 1 / gain, and in the rest over it.
         sides, target = [sign * torque, *(-sign * columns[:, i] for i in signed)], reading

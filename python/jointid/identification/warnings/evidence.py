@@ -14,6 +14,7 @@ from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.identification.inference.covariance import Triangle
 from jointid.identification.warnings.inspection import Inspected
 from jointid.joint.joint import Joint
+from jointid.problem.constant_torque import Undivided, undivided
 from jointid.problem.problem import Problem
 from jointid.problem.window_table import WindowTable
 from jointid.recording.recording import Recording
@@ -109,6 +110,13 @@ class Evidence:
         return self.problem.choice.model.resolved.name
 
     @property
+    def undivided(self) -> tuple[Undivided, ...]:
+        """Directions along which nothing tells an offset from the difference of Coulomb frictions."""
+        return undivided(
+            [p.name for p in self.parameters.values() if p.vary and p.at_bound is None]
+        )
+
+    @property
     def sensor_parameters(self) -> tuple[str, ...]:
         """Parameters of the torque sensor."""
         names = ("sensor_gain", "sensor_offset")
@@ -118,8 +126,7 @@ class Evidence:
         """Window integrals of every term and of the target, at the estimated shape parameters or others [unit · s]."""
         if best is None:
             return self.at_best
-        count = self.penalty.coefficients
-        columns = self.penalty.columns(best[count:])
+        columns = self.penalty.linear_columns(best)
         return regressor(self.penalty, columns, self.problem.threads)
 
 

@@ -22,6 +22,7 @@ FILES = (
     "model_too_rich",
     "at_bound",
     "undetermined",
+    "undivided_offset",
     "ripple",
     "causes",
     "poor_fit",

@@ -1,0 +1,133 @@
+// The first stage of the residual of instruments: the columns that explain the reading, and what
+// they make of it.
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "identify/penalty/penalty.hpp"
+#include "identify/penalty/penalty_parts.hpp"
+
+namespace jointid::identify {
+
+namespace {
+
+// Decays at these shares of the largest speed span those of any shape well enough: their columns
+// must hold no more of the reading's noise than the balance's own do.
+constexpr std::array<double, 8> kShares{0.6, 0.33, 0.18, 0.1, 0.055, 0.03, 0.017, 0.009};
+constexpr std::size_t kRows = 4096;  // of a block
+// Each recording's link has columns of its own while windows outnumber all columns by this.
+constexpr std::size_t kPerColumn = 50;
+// Fewer windows a column than this: no decays, whose columns would follow the noise.
+constexpr std::size_t kFewest = 10;
+
+}  // namespace
+
+Instruments Penalty::instruments(const std::vector<Eigen::Index>& free, std::size_t windows) const {
+  Instruments result;
+  for (const auto i : free) {
+    if (i >= coefficients() || i == gain_index_) continue;
+    const auto shaped = std::find_if(shaped_.begin(), shaped_.end(),
+                                     [&](const Shaped& s) { return s.coefficient == i; });
+    if (shaped == shaped_.end()) {
+      result.own.push_back(i);
+    } else {
+      result.shaped.push_back(static_cast<std::size_t>(shaped - shaped_.begin()));
+    }
+  }
+  if (fastest_ > 0.0) {
+    for (const double share : kShares) {
+      result.rates.push_back(1.0 / (share * share * fastest_ * fastest_));
+    }
+  }
+  result.runs = runs_;
+  if (windows < kPerColumn * static_cast<std::size_t>(result.size())) result.runs = 1;
+  if (windows < kFewest * static_cast<std::size_t>(result.size())) result.rates.clear();
+  return result;
+}
+
+std::vector<Stretch> Penalty::blocks() const {
+  const std::size_t count = windows_.size();
+  if (cumulative_ || count == 0) return {{0, count}};
+  std::vector<Stretch> result;
+  for (std::size_t begin = 0; begin < count; begin += kRows) {
+    result.push_back({begin, std::min(count, begin + kRows)});
+  }
+  return result;
+}
+
+Eigen::MatrixXd Penalty::instrument_rows(const Instruments& instruments,
+                                         const Stretch& windows) const {
+  const auto first = static_cast<Eigen::Index>(windows.begin);
+  const auto rows = static_cast<Eigen::Index>(windows.end - windows.begin);
+  Eigen::MatrixXd result(rows, instruments.size());
+  Eigen::Index to = 0;
+  for (const auto j : instruments.own) result.col(to++) = columns_.col(j).segment(first, rows);
+  const DecayRates decays{2.0, instruments.rates};
+  const auto rates = static_cast<Eigen::Index>(instruments.rates.size());
+  for (const auto number : instruments.shaped) {
+    if (rates == 0) break;
+    auto columns = result.middleCols(to, rates);
+    integrate_decays(nodes(shaped_[number].term.direction), windows, decays, nullptr, columns);
+    if (cumulative_) {
+      for (Eigen::Index j = 0; j < rates; ++j) accumulate(columns.col(j));
+    }
+    to += rates;
+  }
+  auto link = result.rightCols(Instruments::kLink * instruments.runs);
+  link.setZero();
+  constexpr Eigen::Index kPosture = Instruments::kPosture;
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const Eigen::Index run =
+        instruments.runs > 1 ? recording_of_[static_cast<std::size_t>(first + row)] : 0;
+    link.row(row).segment(kPosture * run, kPosture) = link_.row(first + row).head(kPosture);
+    link(row, kPosture * instruments.runs + run) = link_(first + row, kPosture);
+  }
+  return result;
+}
+
+Eigen::MatrixXd Penalty::instrument_triangle(const Instruments& instruments,
+                                             base::Pool* pool) const {
+  const auto parts = blocks();
+  const Eigen::VectorXd observed = reading();
+  std::vector<Eigen::MatrixXd> triangles(parts.size());
+  for_each(parts.size(), pool, [&](std::size_t i) {
+    const auto rows = static_cast<Eigen::Index>(parts[i].end - parts[i].begin);
+    Eigen::MatrixXd both(rows, instruments.size() + 1);
+    both.leftCols(instruments.size()) = instrument_rows(instruments, parts[i]);
+    both.rightCols(1) = observed.segment(static_cast<Eigen::Index>(parts[i].begin), rows);
+    triangles[i] = square_triangle(both);
+  });
+  return fold(triangles);
+}
+
+void Penalty::project_reading(const std::vector<Eigen::Index>& free, base::Pool* pool) {
+  if (residual_ != Residual::instruments) {
+    throw std::invalid_argument("only the residual 'instruments' projects the reading");
+  }
+  const Instruments chosen = instruments(free, windows_.size());
+  project_reading(solve_first_stage(chosen, instrument_triangle(chosen, pool), window_count()),
+                  pool);
+}
+
+void Penalty::project_reading(const FirstStage& stage, base::Pool* pool) {
+  if (!first_stage_) reading_ = columns_.col(gain_index_);
+  const auto parts = blocks();
+  for_each(parts.size(), pool, [&](std::size_t i) {
+    const auto rows = static_cast<Eigen::Index>(parts[i].end - parts[i].begin);
+    columns_.col(gain_index_).segment(static_cast<Eigen::Index>(parts[i].begin), rows).noalias() =
+        instrument_rows(stage.instruments, parts[i]) * stage.weights;
+  });
+  first_stage_ = stage;
+}
+
+Eigen::VectorXd Penalty::reading() const {
+  if (gain_index_ < 0) throw std::invalid_argument("a penalty without sensor_gain has no reading");
+  return first_stage_ ? reading_ : Eigen::VectorXd(columns_.col(gain_index_));
+}
+
+void Penalty::observe(const Eigen::VectorXd& theta, Eigen::VectorXd& residual) const {
+  if (!first_stage_) return;
+  residual.noalias() -= theta[gain_index_] * (reading_ - columns_.col(gain_index_));
+}
+
+}  // namespace jointid::identify
