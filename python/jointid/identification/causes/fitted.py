@@ -140,7 +140,7 @@ class Fitted:
             start=start,
             signals=signals,
         )
-        if gain not in free:
+        if gain not in free or "load_friction" in names:
             return fit
         place = free.index(gain)
         # With the noise in the reading, the least squares of the torque would blame the motion for it.
