@@ -120,18 +120,17 @@ void bind_penalty(py::module_& m) {
       .def(py::init([](const Recordings& recordings, const std::vector<std::string>& terms,
                        const WindowOptions& windows, Residual residual, bool mask_standstill,
                        double gear_ratio, const std::vector<std::string>& per_recording,
-                       int threads, double link_share) {
+                       int threads) {
              const py::gil_scoped_release nogil;
              return with_pool(samples_of(recordings), threads, [&](base::Pool* pool) {
                const auto masked = all_masked(recordings, mask_standstill, pool);
                return std::make_unique<Penalty>(masked, terms, windows, residual, gear_ratio,
-                                                per_recording, pool, link_share);
+                                                per_recording, pool);
              });
            }),
            py::kw_only(), py::arg("recordings"), py::arg("terms"), py::arg("windows"),
            py::arg("residual"), py::arg("mask_standstill") = true, py::arg("gear_ratio") = 1.0,
-           py::arg("per_recording") = std::vector<std::string>{}, py::arg("threads") = 0,
-           py::arg("link_share") = 0.0)
+           py::arg("per_recording") = std::vector<std::string>{}, py::arg("threads") = 0)
       .def(
           "linearised",
           [](const Penalty& p, const Eigen::VectorXd& theta) {
@@ -236,18 +235,17 @@ void bind_penalty(py::module_& m) {
       .def(py::init([](const Recordings& recordings, const std::vector<std::string>& terms,
                        const WindowOptions& windows, Residual residual, bool mask_standstill,
                        double gear_ratio, const std::vector<std::string>& per_recording,
-                       int threads, double link_share) {
+                       int threads) {
              const py::gil_scoped_release nogil;
              return with_pool(samples_of(recordings), threads, [&](base::Pool* pool) {
                return std::make_unique<PenaltyParts>(all_masked(recordings, mask_standstill, pool),
                                                      terms, windows, residual, gear_ratio,
-                                                     per_recording, link_share);
+                                                     per_recording);
              });
            }),
            py::kw_only(), py::arg("recordings"), py::arg("terms"), py::arg("windows"),
            py::arg("residual"), py::arg("mask_standstill") = true, py::arg("gear_ratio") = 1.0,
-           py::arg("per_recording") = std::vector<std::string>{}, py::arg("threads") = 0,
-           py::arg("link_share") = 0.0)
+           py::arg("per_recording") = std::vector<std::string>{}, py::arg("threads") = 0)
       .def_property_readonly("window_count", &PenaltyParts::window_count)
       .def(
           "refit",

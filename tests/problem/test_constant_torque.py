@@ -47,14 +47,18 @@ def test_the_intervals_say_what_no_motion_tells(offset: float, search: str) -> N
     assert set(told.parameters) == set(THREE)
     assert not any(set(found.parameters) & set(THREE) for found in estimate.warnings)
     assert np.isinf(estimate.friction([1.0]).upper[0])
-    known = jid.identify(run, model="coulomb_viscous:asymmetric", parameters={"torque_offset": offset})
+    known = jid.identify(
+        run, model="coulomb_viscous:asymmetric", parameters={"torque_offset": offset}
+    )
     assert known.parameters["coulomb_positive"].value == pytest.approx(12.0, rel=0.01)
     assert known.parameters["coulomb_negative"].value == pytest.approx(8.0, rel=0.01)
 
 
 def test_gravity_tells() -> None:
     gravity = -50.0 * np.cos(POSITION) + 3.0 * np.sin(POSITION)
-    estimate = jid.identify(recording(DRIVE + gravity), model="coulomb_viscous:asymmetric:gravity=free")
+    estimate = jid.identify(
+        recording(DRIVE + gravity), model="coulomb_viscous:asymmetric:gravity=free"
+    )
     assert "torque_offset" not in estimate.parameters
     assert "torque_offset" in estimate.report()
     for name, true in {

@@ -217,6 +217,13 @@ const std::vector<Shape>& shape_table() {
        .advice = kLoads,
        .lower = 0.0,
        .upper = 0.95},
+      {.name = "link_share",
+       .unit = "1",
+       .unit_prismatic = "1",
+       .meaning = "share of the inertia behind the gear",
+       .advice = "hard acceleration against different loads",
+       .lower = 0.0,
+       .upper = 1.0},
   };
   return table;
 }

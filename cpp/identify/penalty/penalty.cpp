@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "base/input_error.hpp"
-#include "identify/balance/load_friction.hpp"
 
 namespace jointid::identify {
 
@@ -78,6 +77,10 @@ Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms
     throw std::invalid_argument("gear_ratio must be finite and not 0");
   }
   for (const auto& key : terms) add_term(key);
+  if (link_load_ && gain_index_ < 0) {  // nothing parts the link's inertia from the drive's
+    share_ = static_cast<Eigen::Index>(names_.size() - terms_.size());
+    names_.emplace_back("link_share");
+  }
   if (residual != Residual::torque && gain_index_ < 0) {
     throw std::invalid_argument(std::string("residual '") +
                                 (residual == Residual::sensor ? "sensor" : "instruments") +
@@ -99,34 +102,15 @@ Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms
 
 Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms,
                  const WindowOptions& options, Residual residual, double gear_ratio,
-                 const std::vector<std::string>& per_recording, base::Pool* pool, double link_share)
+                 const std::vector<std::string>& per_recording, base::Pool* pool)
     : Penalty(recordings, terms, residual, gear_ratio) {
   options.validate();
-  link_share_ = link_share;
   cumulative_ = options.cumulative;
   cut(recordings, options);
   integrate_all(recordings, gear_ratio, pool);
   own_columns(per_recording, recordings.size());
   weigh_link();
   accumulate_all();
-}
-
-void Penalty::weigh_link() {
-  link_weights_.setZero(coefficients());
-  for (Eigen::Index j = 0; j < coefficients(); ++j) {
-    const auto& term = terms_[static_cast<std::size_t>(j)];
-    if (term.option == "sensor" || (term.option == "gravity" && gain_index_ < 0)) {
-      link_weights_[j] = 1.0;
-    } else if (term.integral == Integral::velocity_change) {
-      link_weights_[j] = link_share_;
-    }
-  }
-  if (link_load_ && load_ >= 0 && !(link_weights_.cwiseAbs().maxCoeff() > 0.0)) {
-    throw base::InputError(
-        "there is no torque behind the gear that friction could depend on: neither a sensor nor "
-        "gravity",
-        "load_friction", "link");
-  }
 }
 
 void Penalty::accumulate_all() {
@@ -207,13 +191,7 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
     w = end;
   }
   const Term duration = find_term("torque_offset");
-  std::vector<Term> link;
-  if (residual_ == Residual::instruments) {
-    for (const auto* key : {"gravity_cos", "gravity_sin", "torque_offset", "inertia"}) {
-      link.push_back(find_term(key));
-    }
-  }
-  link_.resize(rows, static_cast<Eigen::Index>(link.size()));
+  link_.resize(residual_ == Residual::instruments ? rows : 0, Instruments::kLink);
   const base::Cancel* cancel = pool != nullptr ? &pool->cancel() : nullptr;
   const auto linear = [&](const Block& block) {
     if (cancel != nullptr) cancel->check();
@@ -230,10 +208,7 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
       integrate(terms_[j], gear_ratio, r, masked.usable(), windows,
                 columns_.col(static_cast<Eigen::Index>(j)).segment(first, count));
     }
-    for (std::size_t j = 0; j < link.size(); ++j) {
-      integrate(link[j], gear_ratio, r, masked.usable(), windows,
-                link_.col(static_cast<Eigen::Index>(j)).segment(first, count));
-    }
+    if (residual_ == Residual::instruments) integrate_link(r, first, count);
     if (load_ < 0) return;
     const auto& usable = backward[static_cast<std::size_t>(recording_of_[block.begin])];
     for (std::size_t j = 0; j < terms_.size(); ++j) {
@@ -258,30 +233,6 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
       }
     });
   }
-}
-
-Eigen::Matrix<std::int64_t, Eigen::Dynamic, 2> Penalty::window_bounds() const {
-  Eigen::Matrix<std::int64_t, Eigen::Dynamic, 2> bounds(window_count(), 2);
-  for (std::size_t w = 0; w < windows_.size(); ++w) {
-    const auto row = static_cast<Eigen::Index>(w);
-    bounds(row, 0) = windows_[w].begin;
-    bounds(row, 1) = windows_[w].end;
-  }
-  return bounds;
-}
-
-Eigen::VectorXd Penalty::torque_steps(const Masked& recordings) const {
-  Eigen::VectorXd steps(window_count());
-  for (std::size_t from = 0; from < windows_.size();) {
-    std::size_t to = from;
-    while (to < windows_.size() && recording_of_[to] == recording_of_[from]) ++to;
-    const auto& masked = *recordings.at(static_cast<std::size_t>(recording_of_[from]));
-    sum_torque_steps(
-        masked.recording(), masked.usable(), std::span(windows_).subspan(from, to - from),
-        steps.segment(static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(to - from)));
-    from = to;
-  }
-  return steps;
 }
 
 void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel, bool backward) {
@@ -313,44 +264,6 @@ void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel
     both = both || shaped.term.direction == model::Direction::both;
   }
   if (!both) store[0] = {};
-}
-
-void Penalty::own_columns(const std::vector<std::string>& per_recording, std::size_t recordings) {
-  if (recordings < 2) return;
-  for (const auto& name : per_recording) {
-    const auto found = std::find_if(terms_.begin(), terms_.end(),
-                                    [&](const Term& term) { return term.name == name; });
-    if (found == terms_.end()) {
-      throw base::InputError("'" + name + "' is not a coefficient of the model", "per_recording");
-    }
-    if (!found->shapes.empty() || found->integral == Integral::sensor) {
-      throw base::InputError("'" + name + "' must be the same in all recordings", "per_recording");
-    }
-    const auto at = static_cast<Eigen::Index>(found - terms_.begin());
-    const auto extra = static_cast<Eigen::Index>(recordings) - 1;
-    const auto widen = [&](Eigen::MatrixXd& columns) {
-      const Eigen::Index old = columns.cols();
-      Eigen::MatrixXd wider = Eigen::MatrixXd::Zero(columns.rows(), old + extra);
-      wider.leftCols(at) = columns.leftCols(at);
-      wider.rightCols(old - at - 1) = columns.rightCols(old - at - 1);
-      for (Eigen::Index row = 0; row < columns.rows(); ++row) {
-        wider(row, at + recording_of_[static_cast<std::size_t>(row)]) = columns(row, at);
-      }
-      columns = std::move(wider);
-    };
-    widen(columns_);
-    if (load_ >= 0) widen(backward_);
-    const Term term = *found;
-    terms_.insert(terms_.begin() + at, static_cast<std::size_t>(extra), term);
-    names_.insert(names_.begin() + at, static_cast<std::size_t>(extra), name);
-    for (std::size_t i = 0; i < recordings; ++i) {
-      names_[static_cast<std::size_t>(at) + i] = name + "[" + std::to_string(i) + "]";
-    }
-    if (gain_index_ > at) gain_index_ += extra;
-    for (auto& shaped : shaped_) {
-      if (shaped.coefficient > at) shaped.coefficient += extra;
-    }
-  }
 }
 
 Penalty Penalty::fragment(const Masked& recordings, const std::vector<std::string>& terms,
@@ -406,99 +319,6 @@ void Penalty::columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
     for (Eigen::Index j = 0; j < result.cols(); ++j) {
       if (!is_shaped(j)) accumulate(result.col(j));
     }
-  }
-}
-
-void Penalty::plain_columns(const double* shapes, bool backward, const base::Cancel* cancel,
-                            Eigen::MatrixXd& result) const {
-  result = backward ? backward_ : columns_;
-  for (const auto& s : shaped_) {
-    const auto& nodes =
-        (backward ? backward_nodes_ : nodes_)[static_cast<std::size_t>(s.term.direction)];
-    std::array<double, 4> own{};
-    for (std::size_t i = 0; i < s.shapes.size(); ++i) own[i] = shapes[s.shapes[i]];
-    integrate_friction(s.term, nodes, own.data(), kValue, cancel, result.col(s.coefficient));
-  }
-}
-
-Eigen::VectorXd Penalty::Loaded::slope(const Eigen::VectorXd& every, const Eigen::VectorXd& part,
-                                       double weight) const {
-  const auto forward = (gain.col(0) + weight * gain.col(1)).cwiseProduct(every - part);
-  return forward + (gain.col(2) + weight * gain.col(3)).cwiseProduct(part);
-}
-
-Penalty::Loaded Penalty::loaded(const double* shapes, const Eigen::VectorXd& coefficients,
-                                const base::Cancel* cancel) const {
-  Loaded result;
-  plain_columns(shapes, false, cancel, result.all);
-  plain_columns(shapes, true, cancel, result.back);
-  const double load = shapes[load_];
-  const Eigen::VectorXd whole = result.all * coefficients;
-  const Eigen::VectorXd behind = result.back * coefficients;
-  const Eigen::VectorXd linked = coefficients.cwiseProduct(link_weights_);
-  const Eigen::VectorXd link = result.all * linked;
-  const Eigen::VectorXd link_behind = result.back * linked;
-  const auto of = [&](double torque, double link_torque, double direction) {
-    return link_load_ ? loaded_by_link(torque, link_torque, direction, load)
-                      : loaded_by_drive(torque, direction, load);
-  };
-  result.torque.resize(whole.size());
-  result.by_load.resize(whole.size());
-  result.gain.resize(whole.size(), 4);
-  for (Eigen::Index row = 0; row < whole.size(); ++row) {
-    const auto forward = of(whole[row] - behind[row], link[row] - link_behind[row], 1.0);
-    const auto backward = of(behind[row], link_behind[row], -1.0);
-    result.torque[row] = forward.value + backward.value;
-    result.by_load[row] = forward.by_coefficient + backward.by_coefficient;
-    result.gain.row(row) << forward.by_torque, forward.by_link, backward.by_torque,
-        backward.by_link;
-  }
-  return result;
-}
-
-void Penalty::linear_columns(const Eigen::VectorXd& shapes, const Eigen::VectorXd& about,
-                             Eigen::MatrixXd& result, const base::Cancel* cancel) const {
-  if (load_ < 0) {
-    columns(shapes, result, cancel);
-    return;
-  }
-  // Homogeneous of degree 1 in the coefficients, so the slopes are the columns.
-  const Loaded balance = loaded(shapes.data(), about.head(coefficients()), cancel);
-  result.resize(window_count(), coefficients());
-  for (Eigen::Index j = 0; j < result.cols(); ++j) {
-    result.col(j) = balance.slope(balance.all.col(j), balance.back.col(j), link_weights_[j]);
-    if (cumulative_) accumulate(result.col(j));
-  }
-}
-
-void Penalty::loaded_residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
-                               Eigen::MatrixXd* jacobian, const base::Cancel* cancel) const {
-  const Eigen::Index p = coefficients();
-  const double* shapes = theta.data() + p;
-  Loaded balance = loaded(shapes, theta.head(p), cancel);
-  if (cumulative_) accumulate(balance.torque);
-  residual = target_ - balance.torque;
-  if (jacobian == nullptr) return;
-  jacobian->setZero(window_count(), parameters());
-  for (Eigen::Index j = 0; j < p; ++j) {
-    jacobian->col(j) = -balance.slope(balance.all.col(j), balance.back.col(j), link_weights_[j]);
-  }
-  jacobian->col(p + load_) = -balance.by_load;
-  Eigen::VectorXd every(window_count());
-  Eigen::VectorXd part(window_count());
-  for (const auto& s : shaped_) {
-    std::array<double, 4> own{};
-    for (std::size_t i = 0; i < s.shapes.size(); ++i) own[i] = shapes[s.shapes[i]];
-    const auto direction = static_cast<std::size_t>(s.term.direction);
-    for (std::size_t i = 0; i < s.shapes.size(); ++i) {
-      const int which = static_cast<int>(i);
-      integrate_friction(s.term, nodes_[direction], own.data(), which, cancel, every);
-      integrate_friction(s.term, backward_nodes_[direction], own.data(), which, cancel, part);
-      jacobian->col(p + s.shapes[i]) -= theta[s.coefficient] * balance.slope(every, part, 0.0);
-    }
-  }
-  if (cumulative_) {
-    for (Eigen::Index j = 0; j < jacobian->cols(); ++j) accumulate(jacobian->col(j));
   }
 }
 

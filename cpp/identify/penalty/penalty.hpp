@@ -30,11 +30,10 @@ class Penalty final : public PenaltyFunction {
           const WindowOptions& windows, Residual residual, bool mask_standstill,
           double gear_ratio = 1.0, const std::vector<std::string>& per_recording = {});
   /// The same from recordings whose mask is known; they are not kept. With a pool its workers
-  /// integrate. `link_share`: of the inertia, that which is behind the gear.
+  /// integrate.
   Penalty(const Masked& recordings, const std::vector<std::string>& terms,
           const WindowOptions& windows, Residual residual, double gear_ratio = 1.0,
-          const std::vector<std::string>& per_recording = {}, base::Pool* pool = nullptr,
-          double link_share = 0.0);
+          const std::vector<std::string>& per_recording = {}, base::Pool* pool = nullptr);
 
   /// A term whose column depends on shapes.
   struct Shaped {
@@ -127,6 +126,7 @@ class Penalty final : public PenaltyFunction {
                      Eigen::MatrixXd& result) const;
   void accumulate(Eigen::Ref<Eigen::VectorXd> values) const;
   void accumulate_all();
+  void integrate_link(const RecordingView& recording, Eigen::Index first, Eigen::Index count);
   [[nodiscard]] Instruments instruments(const std::vector<Eigen::Index>& free,
                                         std::size_t windows) const;
   /// The instruments over some windows; of running sums, over all.
@@ -134,7 +134,7 @@ class Penalty final : public PenaltyFunction {
                                                 const Stretch& windows) const;
   /// Of (instruments, reading).
   [[nodiscard]] Eigen::MatrixXd instrument_triangle(const Instruments& instruments,
-                                                    base::Pool* pool) const;
+                                                    base::Pool* pool);
   [[nodiscard]] std::vector<Stretch> blocks() const;
   void divide_by_gain(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
                       Eigen::MatrixXd* jacobian) const;
@@ -144,6 +144,8 @@ class Penalty final : public PenaltyFunction {
     Eigen::MatrixXd back;  ///< the part of them with negative velocity
     Eigen::VectorXd torque;
     Eigen::VectorXd by_load;
+    Eigen::VectorXd by_share;
+    Eigen::VectorXd weights;  ///< of the coefficients, in the torque behind the gear
     Eigen::MatrixXd gain;  ///< of the columns' forward and backward part, and of the link's in them
     /// A column's derivative from its parts; `weight` is its share in the link's torque.
     [[nodiscard]] Eigen::VectorXd slope(const Eigen::VectorXd& every, const Eigen::VectorXd& part,
@@ -163,15 +165,16 @@ class Penalty final : public PenaltyFunction {
   Eigen::MatrixXd columns_;  ///< windows x coefficients; shaped ones stay zero here
   Eigen::VectorXd target_;
   Eigen::MatrixXd link_;  ///< windows x (cosine, sine, duration, velocity change), for instruments
-  Eigen::VectorXd reading_;  ///< the gain's column before its projection
+  std::vector<Eigen::MatrixXd> kept_rows_;  ///< instruments between the two stages, if few
+  Eigen::VectorXd reading_;                 ///< the gain's column before its projection
   std::optional<FirstStage> first_stage_;
   double fastest_ = 0.0;  ///< in the whole recordings
   Eigen::Index runs_ = 0;
   std::array<FrictionNodes, 3> nodes_;  ///< by model::Direction, as far as needed
   Eigen::Index load_ = -1;              ///< load friction, among the shapes; -1 without it
-  Eigen::MatrixXd backward_;  ///< of columns_, the part of intervals with negative velocity
+  Eigen::MatrixXd backward_;      ///< of columns_, the part of intervals with negative velocity
   bool link_load_ = false;        ///< the load is the torque behind the gear, not the drive's
-  double link_share_ = 0.0;       ///< of the inertia, that which is behind the gear
+  Eigen::Index share_ = -1;       ///< the share of the inertia behind it, among the shapes
   Eigen::VectorXd link_weights_;  ///< of the coefficients, in the torque behind the gear
   std::array<FrictionNodes, 3> backward_nodes_;
   std::vector<Window> windows_;

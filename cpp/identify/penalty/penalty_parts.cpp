@@ -10,14 +10,13 @@ constexpr std::int64_t kSamples = 8192;  // a part: its columns and nodes stay i
 
 PenaltyParts::PenaltyParts(const Penalty::Masked& recordings, const std::vector<std::string>& terms,
                            const WindowOptions& windows, Residual residual, double gear_ratio,
-                           const std::vector<std::string>& per_recording, double link_share)
+                           const std::vector<std::string>& per_recording)
     : recordings_(recordings),
       gear_ratio_(gear_ratio),
       per_recording_(per_recording),
       frame_(recordings, terms, residual, gear_ratio) {
   windows.validate();
   frame_.cumulative_ = windows.cumulative;
-  frame_.link_share_ = link_share;
   frame_.cut(recordings, windows);
   windows_.swap(frame_.windows_);
   recording_of_.swap(frame_.recording_of_);
@@ -53,13 +52,16 @@ Penalty PenaltyParts::part(std::size_t index) const {
   return result;
 }
 
-std::optional<FirstStage> PenaltyParts::first_stage(const std::vector<Eigen::Index>& free,
-                                                    base::Pool* pool) const {
+std::optional<FirstStage> PenaltyParts::first_stage(
+    const std::vector<Eigen::Index>& free, const std::vector<std::unique_ptr<Penalty>>& made,
+    base::Pool* pool) const {
   if (frame_.residual() != Residual::instruments) return std::nullopt;
-  const Instruments instruments = part(0).instruments(free, windows_.size());
+  const Instruments instruments =
+      (made.empty() ? part(0) : *made[0]).instruments(free, windows_.size());
   std::vector<Eigen::MatrixXd> triangles(count());
   for_each(count(), pool, [&](std::size_t i) {
-    triangles[i] = part(i).instrument_triangle(instruments, nullptr);
+    triangles[i] = made.empty() ? part(i).instrument_triangle(instruments, nullptr)
+                                : made[i]->instrument_triangle(instruments, nullptr);
   });
   return solve_first_stage(instruments, fold(triangles), window_count());
 }

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-_READING = {"columns": "--column", "units": "--unit", "scale": "--scale", "where": "--where"}
+_READING = {
+    "columns": "--column",
+    "units": "--unit",
+    "scale": "--scale",
+    "where": "--where",
+    "drop_copies": "--drop-copies",
+}
 _IDENTIFICATION = {
     **_READING,
     "joint": "--joint",
@@ -13,6 +19,8 @@ _IDENTIFICATION = {
     "residual": "--residual",
     "torque_hold": "--torque-hold",
     "windows": "--windows",
+    "shift": "--shift",
+    "min_speed": "--min-speed",
     "parameters": "--set",
     "seed": "--seed",
     "threads": "--threads",
@@ -39,6 +47,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "causes": "--causes",
         "checkpoint": "--checkpoint",
         "resume": "--resume",
+        "n": "--bootstrap",
     },
     "compare": {**_IDENTIFICATION, **_ESTIMATE, "models": "--model", "folds": "--folds"},
     "simulate": {**_SCENARIO, "seed": "--seed", "output": "--output"},
@@ -85,6 +94,7 @@ PLACEHOLDERS: Mapping[str, str] = {
     "--scale": "FACTOR",
     "--where": "VALUE",
     "--set": "VALUE",
+    "--shift": "SECONDS",
     "--gain": "VALUE",
     "--sensor": "VALUE",
     "--grid": "VALUE",
@@ -101,13 +111,8 @@ FILES: Mapping[str, str] = {
 
 FLAGS = frozenset(
     {
-        "--resume",
-        "--tracking",
-        "--standard-errors",
-        "--emulate",
-        "--dry-run",
-        "--selftest",
-        "--causes",
+        *("--drop-copies", "--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run"),
+        *("--selftest", "--causes"),
     }
 )
 """Options that may stand without a value."""

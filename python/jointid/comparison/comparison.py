@@ -14,6 +14,7 @@ from jointid.comparison.held_out import Fold, folds_by_block, folds_by_recording
 from jointid.comparison.parsimony import counted, judge, refusal
 from jointid.comparison.result import ComparedModel, Comparison
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.settings import model_of
 from jointid.identification.identification import identify
 from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
@@ -83,6 +84,8 @@ def compare_models(
     windows: Windows = None,
     torque_hold: str | None = None,
     mask_standstill: bool = True,
+    shift: Mapping[str, float] | None = None,
+    min_speed: float = 0.0,
     callback: Callable[[ComparisonStep], object] | None = None,
 ) -> Comparison:
     """Compare friction models by how well they predict what they were not fitted to.
@@ -109,6 +112,10 @@ def compare_models(
         As in `identify`; default "separable".
     residual, torque_hold, mask_standstill
         As in `identify`.
+    shift : mapping of str to float, optional
+        As in `identify`; what is chosen, is chosen from all data, and the same for all models.
+    min_speed : float
+        As in `identify`, the same for all models. Default 0: all motion is judged.
     windows : int, float, str or WindowOptions, optional
         As in `identify`; the same for all models. Default: the shortest of the models' defaults.
     callback : callable, optional
@@ -139,6 +146,8 @@ def compare_models(
             "residual": residual,
             "torque_hold": torque_hold,
             "mask_standstill": mask_standstill,
+            "shift": shift,
+            "min_speed": min_speed,
         },
         total=len(specs) * (1 + parts),
         callback=callback,
@@ -156,6 +165,8 @@ def compare_models(
                 cause if isinstance(cause, InputError) else error
             )
             fitter.total -= 1 + parts
+    # Delays come from the data, whatever the model: those of all data hold for their parts.
+    fitter.shift(next(iter(whole.values())).settings["shift"])
     # Residuals over windows of different duration cannot be compared: all models get the shortest.
     duration = min(estimate.settings["windows"] for estimate in whole.values())
     cut = _core.WindowOptions(duration=duration, cumulative=_cumulative(windows))
@@ -170,7 +181,8 @@ def compare_models(
         else folds_by_recording(runs, parts)
     )
     rows = [
-        _row(spec, estimate, fitter.scores(spec, splits, cut)) for spec, estimate in whole.items()
+        _row(spec, estimate, fitter.scores(_as_found(spec, estimate), splits, cut))
+        for spec, estimate in whole.items()
     ]
     judged, winner, reason = judge(rows)
     kind = "block" if len(runs) == 1 else "recording" if parts == len(runs) else "recordings"
@@ -205,6 +217,9 @@ class _Fitter:
         self.total = total
         self._done = 0
 
+    def shift(self, delays: Mapping[str, float]) -> None:
+        self._common = {**self._common, "shift": delays}
+
     def fit(
         self, spec: Model, training: Sequence[Recording], windows: Windows, where: str = ""
     ) -> Estimate:
@@ -232,6 +247,13 @@ class _Fitter:
 def _text(spec: Model) -> str:
     """Return a compared model's text; a symmetric one's does not say so."""
     return str(spec if spec.asymmetric else spec.replace(asymmetric=None))
+
+
+def _as_found(spec: Model, estimate: Estimate) -> Model:
+    """Return a model with the load that all data chose, so that every fold has the same terms."""
+    if not spec.load_friction:
+        return spec
+    return spec.replace(load_friction=model_of(estimate.settings).load_friction)
 
 
 def _without_remedy(error: InputError) -> str:

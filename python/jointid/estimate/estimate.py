@@ -12,8 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from jointid.base.argument_checks import require_kind, require_path, whole_number
 from jointid.base.errors import InputError
+from jointid.estimate.delays import Delay
 from jointid.estimate.findings import Finding
 from jointid.estimate.selection import Selection
+from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import (
     Convergence,
     FrictionCurve,
@@ -75,6 +77,11 @@ class Estimate:
         Everything needed to repeat the run: method, residual, terms, options, seed, versions, fingerprints.
     seconds : float
         Wall time.
+    delays : mapping of str to Delay
+        The constant delay of each signal against the position, as far as the data show it; a certain one
+        is taken away before the identification.
+    slow_motion : SlowMotion or None
+        How the slowest windows disagree with the faster ones; None where that was not asked.
     selection : Selection or None
         How the model was chosen; None if it was named.
     follow_up : FollowUp or None
@@ -97,6 +104,8 @@ class Estimate:
     joint: Joint
     settings: Mapping[str, Any]
     seconds: float = field(repr=False)
+    delays: Mapping[str, Delay] = field(default_factory=dict)
+    slow_motion: SlowMotion | None = None
     selection: Selection | None = field(default=None, repr=False)
     follow_up: FollowUp | None = field(default=None, repr=False)
 

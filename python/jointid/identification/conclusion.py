@@ -22,6 +22,8 @@ from jointid.identification.inference.inference import (
 from jointid.identification.inference.segments import Motion, motion_segments
 from jointid.identification.inference.systematic import systematic_errors
 from jointid.identification.inference.undivided import divided, with_undivided
+from jointid.identification.inference.velocity_noise import velocity_systematic
+from jointid.identification.refinements.refinements import Refinements
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.warnings.diagnosis import diagnose
 from jointid.identification.warnings.evidence import Evidence, regressor
@@ -50,6 +52,7 @@ def infer(
     message: str,
     settings: dict[str, Any],
     seconds: float,
+    refinements: Refinements,
 ) -> Estimate:
     """Return the estimate at a minimum.
 
@@ -57,6 +60,8 @@ def infer(
     ----------
     shifts : tuple of ndarray or None
         Change of each parameter when the windows are halved and doubled.
+    refinements : Refinements
+        What was done to the data before the search.
     given : ndarray or None
         Change of each parameter when the given facts are at the limits of their tolerances.
     """
@@ -86,6 +91,9 @@ def infer(
     )
     spread = with_undivided(spread, kept, free, names, groups)
     parts = systematic_errors(problem, penalty, best, kept, free_jacobian, columns, shifts)
+    effect = velocity_systematic(problem, penalty, best, domain.lower, domain.upper)
+    if effect is not None:
+        parts["velocity"] = np.where(np.isin(np.arange(len(best)), free), effect.systematic, 0.0)
     if given is not None:
         parts["given"] = given
     del free_jacobian
@@ -129,11 +137,14 @@ def infer(
             inspections=inspections,
             at_best=at_best,
             causes=causes,
+            velocity_effect=effect,
             correlations={
                 (domain.names[free[i]], domain.names[free[j]]): float(spread.correlation[i, j])
                 for i in range(len(free))
                 for j in range(i)
             },
+            delays=refinements.delays,
+            slow_motion=refinements.slow_motion,
         )
     )
     return Estimate(
@@ -153,6 +164,8 @@ def infer(
         joint=joint_of(problem, parameters),
         settings=settings,
         seconds=seconds,
+        delays=refinements.delays,
+        slow_motion=refinements.slow_motion,
     )
 
 

@@ -8,10 +8,11 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.joint.checks import check_choice
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model, ResolvedModel
+from jointid.joint.model import Load, Model, ResolvedModel
 from jointid.recording.recording import Recording
 
 _GRAVITY = ("gravity_cos", "gravity_sin")
+_LOADS = {"link": "load_friction_link"}
 _SENSOR = ("sensor_gain", "sensor_offset")
 
 # What the residual compares: the torque with the part of the reading that the motion explains, the reading
@@ -86,11 +87,20 @@ def choose_terms(
     model = stated.resolved
     _check_kind(recordings, joint)
     sensor = _has_sensor(recordings, joint)
-    residual = request.residual or ("instruments" if sensor else "torque")
+    # The instruments project the reading, which load friction needs apart for each direction of motion.
+    usual = "instruments" if sensor and not model.load_friction else "torque"
+    residual = request.residual or usual
     check_choice("", "residual", residual, RESIDUALS)
     if residual != "torque" and not sensor:
         raise InputError(
             "the recording has no torque sensor",
+            argument="residual",
+            value=residual,
+            remedy=Action("call", {"residual": "torque"}),
+        )
+    if residual == "instruments" and model.load_friction:
+        raise InputError(
+            "load friction depends on the reading itself, which instruments replace",
             argument="residual",
             value=residual,
             remedy=Action("call", {"residual": "torque"}),
@@ -114,7 +124,9 @@ def choose_terms(
     wanted = {"inertia", *_friction(friction.terms, model.asymmetric)}
     wanted.update(_GRAVITY if model.gravity != "none" else ())
     wanted.update(_SENSOR if sensor else ())
-    wanted.update(("load_friction",) if model.load_friction else ())
+    wanted.update(
+        (_LOADS.get(str(model.load_friction), "load_friction"),) if model.load_friction else ()
+    )
     wanted.update(("torque_offset",) if offset else ())
     terms = _ordered(wanted, model.ripple, model.harmonics)
     apart = stated.per_recording
@@ -131,6 +143,12 @@ def choose_terms(
         gear_ratio=base.gear_ratio,
         dropped=dropped,
     )
+
+
+def loads(model: Model, recordings: Sequence[Recording], joint: Joint | None) -> tuple[Load, ...]:
+    """Return what friction may depend on in these recordings: the torque behind the gear must be known somehow."""
+    sensor = _has_sensor(recordings, joint)
+    return ("drive", "link") if sensor or model.resolved.gravity != "none" else ("drive",)
 
 
 def _check_kind(recordings: Sequence[Recording], joint: Joint | None) -> None:

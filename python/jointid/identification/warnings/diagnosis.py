@@ -3,32 +3,32 @@
 from dataclasses import replace
 
 from jointid.estimate.findings import Finding, Severity
-from jointid.identification.warnings import registry, sensor_lag
+from jointid.identification.warnings import registry
 from jointid.identification.warnings.evidence import Evidence
 
+_OF_THE_FILE = ("hardly_moves", "implausible_units", "gaps", "assumed_units", "stopped")
 _ORDER: tuple[Severity, ...] = ("blocking", "warning", "info")
 
 
 def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
     """All findings, the most severe first; those of one severity in the order of the checks."""
-    raised = []
+    kept = []
     for check in registry.CHECKS:
-        found_here = list(check.find(evidence))
-        raised += [(check, found) for found in found_here]
-        if any(found.severity == "blocking" for found in found_here):
+        raised = list(check.find(evidence))
+        kept += raised
+        if any(found.severity == "blocking" for found in raised):
             # A signal that cannot be right explains the misfit; what else does is no cause.
             evidence = replace(evidence, causes=None)
-    codes = {found.code for _, found in raised}
-    # A controller feeds the ripple of a sensor back; the resulting motion looks like a lag of the sensor.
-    modelled = any(name.startswith("ripple_") for name in evidence.parameters)
-    ripples = modelled or "ripple" in codes
-    kept = [found for check, found in raised if not (ripples and check is sensor_lag.CHECK)]
     units = [found for found in kept if found.code == "implausible_units"]
     # With degrees the motor's angle is wrong, too: a residual that oscillates with it is not ripple.
     other = _another_cause(evidence)
     spurious = [found for found in kept if found.code == "ripple" and (units or other)]
     left = [found for found in kept if found not in (*units[1:], *spurious)]
     left = [found for place, found in enumerate(left) if not _again(found, left[:place])]
+    if any(
+        found.code == "hardly_moves" for found in left
+    ):  # no motion, no answer: what concerns the values follows from it
+        left = [found for found in left if found.code in _OF_THE_FILE]
     if any(found.severity == "blocking" for found in left):
         left = [_without_other_fits(found) for found in left]
     return tuple(sorted(left, key=lambda found: _ORDER.index(found.severity)))

@@ -10,8 +10,11 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.estimate.causes import Causes
+from jointid.estimate.delays import Delay
+from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.identification.inference.covariance import Triangle
+from jointid.identification.inference.velocity_noise import VelocityEffect
 from jointid.identification.warnings.inspection import Inspected
 from jointid.joint.joint import Joint
 from jointid.problem.constant_torque import Undivided, undivided
@@ -70,8 +73,14 @@ class Evidence:
         Properties of the signals of each recording.
     at_best : Regressor
         At the estimated shape parameters.
+    velocity_effect : VelocityEffect or None
+        What the velocity's noise does to the parameters; None where it is harmless.
     correlations : mapping
         Of each pair of free parameters, offsets centred.
+    delays : mapping of str to Delay
+        Of the signals against the position.
+    slow_motion : SlowMotion or None
+        How slow windows disagree with faster ones.
     causes : Causes or None
         Why the model does not fit; None where the residuals are noise.
     """
@@ -92,6 +101,9 @@ class Evidence:
     inspections: tuple[Inspected, ...]
     at_best: Regressor
     correlations: Mapping[tuple[str, str], float]
+    delays: Mapping[str, Delay]
+    slow_motion: SlowMotion | None
+    velocity_effect: VelocityEffect | None = None
     causes: Causes | None = None
 
     @property

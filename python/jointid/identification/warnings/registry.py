@@ -10,6 +10,7 @@ from jointid.identification.warnings.check import Check, FindingType
 FILES = (
     "stopped",
     "velocity",
+    "delays",
     "speed",
     "torque_balance",
     "constant",
@@ -17,7 +18,6 @@ FILES = (
     "spikes",
     "repeated",
     "time_jitter",
-    "sensor_lag",
     "noisy_velocity",
     "model_too_rich",
     "at_bound",
