@@ -77,7 +77,8 @@ def complaints(call: Call, truth: Truth) -> list[str]:
             continue
         old, new = errors(before, truth), errors(after, truth)
         for name, error in new.items():
-            chance = max(by_chance(each, truth, name) for each in (before, after) if name in old)
+            both = (before, after) if name in old else (after,)
+            chance = max(by_chance(each, truth, name) for each in both)
             if error > old.get(name, np.inf) + SMALL + CHANCE * chance:
                 wrong.append(f"{told}: {name} off by {old[name]:.2%}, then by {error:.2%}")
         lost = [

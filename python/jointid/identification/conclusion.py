@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence
+from jointid.identification.causes.causes import find_causes
+from jointid.identification.causes.suspicion import suspicious
 from jointid.identification.inference.covariance import parameter_covariance
 from jointid.identification.inference.inference import (
     freedom_of,
@@ -26,6 +28,7 @@ from jointid.identification.search.domain import SearchDomain
 from jointid.identification.warnings.diagnosis import diagnose
 from jointid.identification.warnings.evidence import Evidence, regressor
 from jointid.identification.warnings.inspection import inspect
+from jointid.identification.warnings.poor_fit import POORLY_EXPLAINED
 from jointid.problem.constant_torque import undivided
 from jointid.problem.inner_products import columns_with, size
 from jointid.problem.problem import Problem
@@ -103,6 +106,19 @@ def infer(
     named = sorted(zip(free, np.abs(spread.weakest), strict=True), key=lambda pair: -pair[1])
     weakest = tuple(domain.names[i] for i, share in named if share > _NAMED)
     torque_level = float(np.sqrt(np.mean((penalty.target / penalty.usable_duration) ** 2)))
+    causes = None
+    run = table.recording
+    if (
+        statistics.r_squared < POORLY_EXPLAINED
+        or suspicious(table.residual, run, table.duration, table.velocity)
+    ) and not (penalty.cumulative or not free):
+        causes = find_causes(
+            problem,
+            penalty,
+            parameters,
+            torque_level=torque_level,
+            r_squared=statistics.r_squared,
+        )
     findings = diagnose(
         Evidence(
             problem=problem,
@@ -120,6 +136,7 @@ def infer(
             guessed_sign=domain.guessed_sign,
             inspections=inspections,
             at_best=at_best,
+            causes=causes,
             velocity_effect=effect,
             correlations={
                 (domain.names[free[i]], domain.names[free[j]]): float(spread.correlation[i, j])
