@@ -31,7 +31,11 @@ ROOMS: dict[str, set[str]] = {
         *("base", "model", "search"),
         *("identify/recording", "identify/balance", "identify/penalty"),
     },
-    "diagnose": {"base", "identify/recording", "identify/balance", "identify/penalty"},
+    "signals": {"base"},
+    "diagnose": {
+        *("base", "signals"),
+        *("identify/recording", "identify/balance", "identify/penalty"),
+    },
 }
 ROOMS["bind"] = ROOMS["tests"] = set(ROOMS)
 PRINTING = {"iostream", "cstdio", "stdio.h", "print"}
@@ -62,10 +66,11 @@ FOLDERS: dict[str, Folder] = {
         may_use={
             *_SOUGHT,
             *("identification/selection", "identification/inference", "identification/warnings"),
-            "identification/self_test",
+            *("identification/self_test", "identification/refinements"),
         },
         packages={"numpy"},
     ),
+    "identification/refinements": Folder(may_use=_FOUND - {"joint"}, packages={"numpy"}),
     "identification/search": Folder(may_use=_FOUND - {"recording"}, packages={"numpy", "scipy"}),
     "identification/selection": Folder(
         may_use={*_FOUND, "identification/search"}, packages={"numpy"}

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "identify/penalty/penalty_parts.hpp"
 
@@ -17,19 +16,13 @@ Inspection inspect(const Subject& s, base::Pool* pool) {
   result.peak_speed = std::max(std::fabs(speeds.lowest), std::fabs(speeds.highest));
   result.facts.resize(s.channels.size());
   result.spikes.resize(s.channels.size());
-  result.sensor.error = std::numeric_limits<double>::infinity();
-  // The longest first.
-  if (s.sensor) {
-    tasks.emplace_back([&] {
-      result.sensor = sensor_lag(s.time, s.position, s.velocity, *s.sensor, s.period, cancel);
-    });
-  }
   if (!s.velocity_derived) {
     tasks.emplace_back([&] {
       result.agreement = velocity_agreement(s.time, s.position, s.velocity, s.period, cancel);
     });
   }
-  tasks.emplace_back([&] { result.timing = timing_errors(s.time, s.position, s.period, cancel); });
+  tasks.emplace_back(
+      [&] { result.timing = signals::timing_errors(s.time, s.position, s.period, cancel); });
   tasks.emplace_back([&] {
     result.position = extremes(s.position);
     result.jump = largest_jump(s.time, s.position, cancel);
@@ -41,7 +34,8 @@ Inspection inspect(const Subject& s, base::Pool* pool) {
     });
     if (!s.channels[c].look_for_spikes) continue;
     tasks.emplace_back([&, c] {
-      result.spikes[c] = largest_spike(s.channels[c].values, s.channels[c].rule, cancel);
+      result.spikes[c] = largest_spike(s.channels[c].values, s.channels[c].rule, s.velocity,
+                                       result.peak_speed, cancel);
     });
   }
   identify::for_each(tasks.size(), pool, [&](std::size_t i) { tasks[i](); });

@@ -7,6 +7,7 @@
 #include "base/pool.hpp"
 #include "diagnose/consistency.hpp"
 #include "diagnose/spikes.hpp"
+#include "signals/timing.hpp"
 
 namespace jointid::diagnose {
 
@@ -22,8 +23,7 @@ struct Subject {
   Signal position;
   Signal velocity;
   bool velocity_derived;
-  std::optional<Signal> sensor;  ///< of a revolute joint
-  double period;                 ///< [s]
+  double period;  ///< [s]
   std::vector<Channel> channels;
 };
 
@@ -34,8 +34,7 @@ struct Inspection {
   std::vector<Spike> spikes;       ///< a channel
   std::int64_t jump = -1;
   std::optional<Agreement> agreement;  ///< none also for a derived velocity
-  SensorLag sensor;
-  TimingErrors timing;
+  signals::TimingErrors timing;
 };
 
 Inspection inspect(const Subject& subject, base::Pool* pool);

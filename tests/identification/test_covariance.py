@@ -3,8 +3,12 @@
 import numpy as np
 import pytest
 
+import jointid as jid
+from jointid.cli.demo import data_folder
 from jointid.estimate.student import quantile
 from jointid.identification.inference.covariance import parameter_covariance
+from jointid.identification.inference.segments import Segments
+from jointid.identification.prepared import prepare
 
 ROWS = 400
 
@@ -51,6 +55,54 @@ def test_classical_errors_would_flatter_where_ours_do_not() -> None:
     ours = parameter_covariance(design, residual, None).stderr
     assert ours[0] > 2.2 * classical[0]
     assert np.all(ours >= classical * (1 - 1e-9))
+
+
+@pytest.mark.parametrize("kind", ["white", "slow motion", "drifting"])
+def test_few_segments_still_cover(kind: str) -> None:
+    """Eight segments of 25 windows: the quantile has their degrees of freedom, not those of 200 windows."""
+    rng = np.random.default_rng(9)
+    rows, trials = 200, 400
+    cuts = np.arange(0, rows + 1, 25)
+    segments = Segments(length=1.0, cuts=(cuts, cuts))
+    speed = np.sin(np.linspace(0.0, 8.0 * np.pi, rows))
+    design = np.column_stack([np.sign(speed), speed, np.ones(rows), np.gradient(speed)])
+    solve = np.linalg.pinv(design)
+    inside, widths = np.zeros(4), np.zeros(4)
+    for _ in range(trials):
+        noise = rng.normal(size=rows)
+        if kind == "slow motion":
+            noise *= np.where(np.abs(speed) < 0.3, 4.0, 1.0)
+        elif kind == "drifting":
+            noise = 0.3 * noise + np.repeat(rng.normal(size=8), 25)
+        error = solve @ noise
+        spread = parameter_covariance(design, noise - design @ error, None, segments=segments)
+        half = np.array([quantile(0.975, f) for f in spread.freedom]) * spread.stderr
+        inside += np.abs(error) < half
+        widths += spread.freedom
+    assert np.all(inside / trials >= 0.92)
+    assert np.all(inside / trials <= 0.99)
+    assert np.all((widths / trials < 20.0) == (kind == "drifting"))
+
+
+def test_errors_are_those_of_resampled_motion() -> None:
+    """On a real log: against a block bootstrap that shares nothing with ours but the Jacobian."""
+    run = jid.load(data_folder() / "kr300_joint1.csv.gz")
+    joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
+    prepared = prepare(run, joint)
+    estimate = jid.identify(run, joint, search="separable")
+    best = np.array([p.value for p in estimate.parameters.values()])
+    _, residual, jacobian = prepared.penalty.linearised(best)
+    rng = np.random.default_rng(0)
+    for length in (8, 16, 24):  # windows of 64 ms: half a second to one and a half
+        moved = []
+        for _ in range(400):
+            first = rng.integers(0, len(residual) - length + 1, -(-len(residual) // length))
+            index = (first[:, None] + np.arange(length)).ravel()
+            moved.append(np.linalg.lstsq(jacobian[index], -residual[index], rcond=None)[0])
+        # Draws that hold one direction of motion only scatter without limit: the middle 68 %.
+        low, high = np.quantile(moved, (0.1587, 0.8413), axis=0)
+        for p, scatter in zip(estimate.parameters.values(), 0.5 * (high - low), strict=True):
+            assert 0.6 < (p.stderr or 0.0) / scatter < 1.6, (p.name, length)
 
 
 def test_what_nothing_determines_has_an_infinite_error() -> None:

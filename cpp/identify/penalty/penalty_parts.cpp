@@ -32,6 +32,7 @@ PenaltyParts::PenaltyParts(const Penalty::Masked& recordings, const std::vector<
   first_.push_back(windows_.size());
   Penalty whole = frame_;
   whole.columns_.setZero(0, static_cast<Eigen::Index>(whole.terms_.size()));
+  whole.backward_.setZero(0, whole.columns_.cols());
   whole.own_columns(per_recording, recordings.size());
   names_ = whole.parameters();
   coefficients_ = whole.coefficients();
@@ -46,17 +47,21 @@ Penalty PenaltyParts::part(std::size_t index) const {
   result.recording_of_.assign(recording_of_.begin() + from, recording_of_.begin() + to);
   result.integrate_all(recordings_, gear_ratio_, nullptr);
   result.own_columns(per_recording_, recordings_.size());
-  if (result.cumulative_) result.accumulate_all();
+  result.weigh_link();
+  result.accumulate_all();
   return result;
 }
 
-std::optional<FirstStage> PenaltyParts::first_stage(const std::vector<Eigen::Index>& free,
-                                                    base::Pool* pool) const {
+std::optional<FirstStage> PenaltyParts::first_stage(
+    const std::vector<Eigen::Index>& free, const std::vector<std::unique_ptr<Penalty>>& made,
+    base::Pool* pool) const {
   if (frame_.residual() != Residual::instruments) return std::nullopt;
-  const Instruments instruments = part(0).instruments(free, windows_.size());
+  const Instruments instruments =
+      (made.empty() ? part(0) : *made[0]).instruments(free, windows_.size());
   std::vector<Eigen::MatrixXd> triangles(count());
   for_each(count(), pool, [&](std::size_t i) {
-    triangles[i] = part(i).instrument_triangle(instruments, nullptr);
+    triangles[i] = made.empty() ? part(i).instrument_triangle(instruments, nullptr)
+                                : made[i]->instrument_triangle(instruments, nullptr);
   });
   return solve_first_stage(instruments, fold(triangles), window_count());
 }

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointid.cli.arguments import fixed_values, load_all
+from jointid.cli.arguments import fixed_values, load_all, refinements
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
 from jointid.cli.parser import BAD_USAGE
 from jointid.cli.session import emulate, run
@@ -18,6 +18,7 @@ from jointid.cli.study import sweep
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
+    from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.estimate import Estimate
     from jointid.estimate.self_test import SelfTest
     from jointid.joint.joint import Joint
@@ -86,23 +87,29 @@ def identify(arguments: argparse.Namespace) -> int:
             residual=arguments.residual,
             windows=arguments.windows,
             torque_hold=arguments.torque_hold,
+            **refinements(arguments),
         )
     tested = estimate.selftest(seed=arguments.seed) if arguments.selftest else None
+    draws = arguments.bootstrap
+    drawn = estimate.bootstrap(draws, arguments.seed) if draws is not None else None
     refused = _write(estimate, arguments)
     if arguments.json:
-        print(_with_self_test(estimate, tested))
+        print(_with_checks(estimate, tested, drawn))
     else:
         print(Wording.of(arguments).of_report(estimate))
-        if tested is not None:
-            print(f"\n{tested.report()}")
+        for check in (tested, drawn):
+            if check is not None:
+                print(f"\n{check.report()}")
     return _exit_code(refused, arguments)
 
 
-def _with_self_test(estimate: Estimate, tested: SelfTest | None) -> str:
-    """The estimate as JSON, with the result of its self-test if there was one."""
-    if tested is None:
+def _with_checks(estimate: Estimate, tested: SelfTest | None, drawn: Bootstrap | None) -> str:
+    """The estimate as JSON, with the results of its self-test and its bootstrap if there were any."""
+    checks = {"selftest": tested, "bootstrap": drawn}
+    done = {name: check.document() for name, check in checks.items() if check is not None}
+    if not done:
         return estimate.to_json()
-    document = json.loads(estimate.to_json()) | {"selftest": tested.document()}
+    document = json.loads(estimate.to_json()) | done
     return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
 
 
@@ -127,6 +134,7 @@ def compare(arguments: argparse.Namespace) -> int:
             residual=arguments.residual,
             windows=arguments.windows,
             torque_hold=arguments.torque_hold,
+            **{name: given for name, given in refinements(arguments).items() if given is not None},
             callback=progress,
         )
     refused = _write(comparison.estimate, arguments)

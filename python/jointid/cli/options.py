@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-_READING = {"columns": "--column", "units": "--unit", "scale": "--scale", "where": "--where"}
+_READING = {
+    "columns": "--column",
+    "units": "--unit",
+    "scale": "--scale",
+    "where": "--where",
+    "drop_copies": "--drop-copies",
+}
 _IDENTIFICATION = {
     **_READING,
     "joint": "--joint",
@@ -13,6 +19,8 @@ _IDENTIFICATION = {
     "residual": "--residual",
     "torque_hold": "--torque-hold",
     "windows": "--windows",
+    "shift": "--shift",
+    "min_speed": "--min-speed",
     "parameters": "--set",
     "seed": "--seed",
     "threads": "--threads",
@@ -38,6 +46,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "selftest": "--selftest",
         "checkpoint": "--checkpoint",
         "resume": "--resume",
+        "n": "--bootstrap",
     },
     "compare": {**_IDENTIFICATION, **_ESTIMATE, "models": "--model", "folds": "--folds"},
     "simulate": {**_SCENARIO, "seed": "--seed", "output": "--output"},
@@ -84,6 +93,7 @@ PLACEHOLDERS: Mapping[str, str] = {
     "--scale": "FACTOR",
     "--where": "VALUE",
     "--set": "VALUE",
+    "--shift": "SECONDS",
     "--gain": "VALUE",
     "--sensor": "VALUE",
     "--grid": "VALUE",
@@ -99,7 +109,10 @@ FILES: Mapping[str, str] = {
 """Options that take a file, and what stands for one that the user has to choose."""
 
 FLAGS = frozenset(
-    {"--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run", "--selftest"}
+    {
+        *("--drop-copies", "--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run"),
+        "--selftest",
+    }
 )
 """Options that may stand without a value."""
 

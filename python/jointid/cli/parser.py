@@ -12,6 +12,7 @@ from jointid.cli.arguments import (
     file_kinds,
     pair,
     reading_arguments,
+    refinement_arguments,
     several_recordings,
     whole,
     whole_seed,
@@ -134,6 +135,14 @@ def _add_identify(commands: Any) -> None:
         "--checkpoint", type=Path, help="write the state of a long search to this file"
     )
     identify.add_argument("--resume", type=Path, help="continue from a checkpoint")
+    identify.add_argument(
+        "--bootstrap",
+        type=whole,
+        nargs="?",
+        const=1000,
+        metavar="DRAWS",
+        help="check the standard errors by drawing stretches of the recording anew (default 1000 draws)",
+    )
     _output_arguments(identify)
 
 
@@ -211,6 +220,7 @@ def _identification_arguments(command: argparse.ArgumentParser, *, method: str) 
         type=windows,
         help="number of windows (default 400), duration (0.05s) or cumulative",
     )
+    refinement_arguments(command)
     command.add_argument(
         "--set",
         action="append",

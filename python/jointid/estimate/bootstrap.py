@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,8 @@ class BootstrapParameter:
     value : float
         The estimate's.
     stderr : float
-        Standard deviation over the draws.
+        Half of the range that holds the middle 68.3 % of the draws: their standard error, whatever the few do that
+        lack a direction of motion.
     interval : tuple of float
         95 % interval: value ± t · stderr, or percentiles of the draws where `near_bound`.
     ratio : float or None
@@ -64,6 +66,19 @@ class Bootstrap:
     block: float
     blocks: int
     seed: int
+
+    def document(self) -> dict[str, Any]:
+        """Return what `report` shows, in JSON's types; without the samples."""
+        return {
+            "parameters": {
+                name: asdict(p) | {"interval": list(p.interval)}
+                for name, p in self.parameters.items()
+            },
+            "draws": len(self.samples),
+            "blocks": self.blocks,
+            "block": self.block,
+            "seed": self.seed,
+        }
 
     def report(self) -> str:
         """Return the bootstrap as text: errors, intervals and the ratio to the estimate's errors."""

@@ -12,7 +12,8 @@ from jointid.estimate.settings import model_description, residual_unit
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import number, percent, two_digits
 
-HEAD = ("parameter", "value", "± std. error", "95 % interval", "unit", "remark")
+HEAD = ("parameter", "value", "± std. error", "± systematic", "95 % interval", "unit", "remark")
+Row = tuple[str, str, str, str, str, str, str]
 
 
 def remark(p: ParameterEstimate) -> str:
@@ -35,27 +36,38 @@ def shown_name(name: str) -> str:
     return name
 
 
-def rows(estimate: Estimate) -> list[tuple[str, str, str, str, str, str]]:
+def rows(estimate: Estimate) -> list[Row]:
     """The parameter table: one row a parameter, then one a derived quantity."""
     table = [_row(p, remark(p)) for p in estimate.parameters.values()]
     return table + [_row(each, f"= {each.formula}") for each in estimate.derived.values()]
 
 
-def _row(p: ParameterEstimate | DerivedValue, text: str) -> tuple[str, str, str, str, str, str]:
+def _row(p: ParameterEstimate | DerivedValue, text: str) -> Row:
     error = interval = ""
     if p.stderr is not None and p.interval is not None:
         share = f" ({percent(p.stderr / abs(p.value))})" if p.value else ""
         error = f"{two_digits(p.stderr)}{share}"
         interval = f"{p.interval[0]:.5g} … {p.interval[1]:.5g}"
-    return shown_name(p.name), number(p.value), error, interval, p.unit, text
+    beside = systematic(p) if isinstance(p, ParameterEstimate) else ""
+    return shown_name(p.name), number(p.value), error, beside, interval, p.unit, text
+
+
+def systematic(p: ParameterEstimate) -> str:
+    """All systematic parts together, and the name of the largest, e.g. "1.3 (given)"."""
+    if p.largest_part is None:
+        return ""
+    return f"{two_digits(p.systematic_total)} ({p.largest_part.replace('_', ' ')})"
 
 
 def quality(estimate: Estimate) -> list[tuple[str, str]]:
     """Quality of the fit and what it is based on, as label and text."""
     r = estimate.residuals
     unit = residual_unit(estimate.settings)
+    tolerances = estimate.joint.tolerances.given.items()
+    stated = ", ".join(f"{name} ± {value}" for name, value in tolerances)
     return [
         ("model", model_description(estimate.settings)),
+        *([("given", f"{stated}; the intervals hold if these facts are right")] * bool(stated)),
         *([("chosen", estimate.selection.sentence)] if estimate.selection else []),
         (
             "fit",
@@ -66,6 +78,7 @@ def quality(estimate: Estimate) -> list[tuple[str, str]]:
             "left out",
             f"{100.0 * r.left_out:.1f} % of the intervals; standing still in {100.0 * r.standing:.1f} % of the samples",
         ),
+        *_refinements(estimate),
         ("residuals", f"autocorrelation of neighbouring windows {r.autocorrelation:.2f}"),
         (
             "condition",
@@ -74,6 +87,27 @@ def quality(estimate: Estimate) -> list[tuple[str, str]]:
         ("correlation", strongest_correlation(estimate)),
         ("search", f"{estimate.message}; {estimate.status} in {estimate.seconds:.2f} s"),
     ]
+
+
+def _refinements(estimate: Estimate) -> list[tuple[str, str]]:
+    """What was found about the data before the search, and done about it."""
+    lines = []
+    if estimate.delays:
+        each = [
+            f"{delay.shown}{' (taken away)' if delay.applied else ''}"
+            for delay in estimate.delays.values()
+        ]
+        lines.append(("delays", f"against the position: {', '.join(each)}"))
+    slow = estimate.slow_motion
+    if slow is not None and slow.applied:
+        lines.append(
+            (
+                "slow motion",
+                f"{percent(slow.share)} of the motion, below {number(slow.speed)}, is left out: its friction "
+                f"differs by {number(slow.excess)} ± {two_digits(slow.stderr)} from what faster motion shows",
+            )
+        )
+    return lines
 
 
 def strongest_correlation(estimate: Estimate) -> str:
@@ -100,7 +134,7 @@ def text_report(estimate: Estimate, action: Callable[[Action], str] = str) -> st
     lines = [f"jointid estimate — {estimate.joint.name or 'joint'}", ""]
     for index, row in enumerate(table):
         cells = [
-            cell.rjust(w) if 0 < c < 3 and index else cell.ljust(w)
+            cell.rjust(w) if 0 < c < 4 and index else cell.ljust(w)
             for c, (cell, w) in enumerate(zip(row, widths, strict=True))
         ]
         lines.append("  ".join(cells).rstrip())

@@ -19,10 +19,14 @@ from jointid.identification.inference.inference import (
 )
 from jointid.identification.inference.segments import Motion, motion_segments
 from jointid.identification.inference.systematic import systematic_errors
+from jointid.identification.inference.undivided import divided, with_undivided
+from jointid.identification.inference.velocity_noise import velocity_systematic
+from jointid.identification.refinements.refinements import Refinements
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.warnings.diagnosis import diagnose
 from jointid.identification.warnings.evidence import Evidence, regressor
 from jointid.identification.warnings.inspection import inspect
+from jointid.problem.constant_torque import undivided
 from jointid.problem.inner_products import columns_with, size
 from jointid.problem.problem import Problem
 
@@ -45,6 +49,7 @@ def infer(
     message: str,
     settings: dict[str, Any],
     seconds: float,
+    refinements: Refinements,
 ) -> Estimate:
     """Return the estimate at a minimum.
 
@@ -52,6 +57,8 @@ def infer(
     ----------
     shifts : tuple of ndarray or None
         Change of each parameter when the windows are halved and doubled.
+    refinements : Refinements
+        What was done to the data before the search.
     given : ndarray or None
         Change of each parameter when the given facts are at the limits of their tolerances.
     """
@@ -69,17 +76,26 @@ def infer(
     freedom = freedom_of(domain, best, columns_with(jacobian, residual), alone)
     free = list(freedom.indices)
     table = problem.table(penalty, best, (residual, columns))
-    free_jacobian = jacobian[:, free]
+    names = list(domain.names)
+    groups = undivided([names[index] for index in free])
+    kept = divided(free, names, groups)
+    free_jacobian = jacobian[:, kept]
     del jacobian
-    centre = _centre(penalty, columns, free)
+    centre = _centre(penalty, columns, kept)
     segments = motion_segments(Motion.of(problem, penalty))
     spread = parameter_covariance(
         free_jacobian, residual, centre, threads=threads, segments=segments
     )
-    parts = systematic_errors(problem, penalty, best, free, free_jacobian, columns, shifts)
+    spread = with_undivided(spread, kept, free, names, groups)
+    parts = systematic_errors(problem, penalty, best, kept, free_jacobian, columns, shifts)
+    effect = velocity_systematic(problem, penalty, best, domain.lower, domain.upper)
+    if effect is not None:
+        parts["velocity"] = np.where(np.isin(np.arange(len(best)), free), effect.systematic, 0.0)
     if given is not None:
         parts["given"] = given
     del free_jacobian
+    if not penalty.is_linear:
+        columns = penalty.linear_columns(best)
     at_best = regressor(penalty, columns, threads)
     del columns
     parameters = parameters_of(problem, penalty, domain, best, freedom, spread, parts, shifts)
@@ -104,11 +120,14 @@ def infer(
             guessed_sign=domain.guessed_sign,
             inspections=inspections,
             at_best=at_best,
+            velocity_effect=effect,
             correlations={
                 (domain.names[free[i]], domain.names[free[j]]): float(spread.correlation[i, j])
                 for i in range(len(free))
                 for j in range(i)
             },
+            delays=refinements.delays,
+            slow_motion=refinements.slow_motion,
         )
     )
     return Estimate(
@@ -128,6 +147,8 @@ def infer(
         joint=joint_of(problem, parameters),
         settings=settings,
         seconds=seconds,
+        delays=refinements.delays,
+        slow_motion=refinements.slow_motion,
     )
 
 

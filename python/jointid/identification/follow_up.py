@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from jointid.identification.gain import with_instruments
 from jointid.identification.inference.bootstrap import block_bootstrap
 from jointid.identification.self_test.testing import self_test
 
@@ -50,7 +51,10 @@ class EstimateSource:
     def bootstrap(self, estimate: Estimate, n: int, seed: int) -> Bootstrap:
         """Draw stretches of the recordings anew, and refit the parameters to each draw."""
         penalty = self.problem.penalty(self.windows)
-        return block_bootstrap(self.problem, penalty, self.domain, estimate, n, seed)
+        problem, penalty = with_instruments(
+            self.problem, penalty, self.domain, self.windows, stated=True
+        )
+        return block_bootstrap(problem, penalty, self.domain, estimate, n, seed)
 
     def __reduce__(self) -> tuple[Callable[[], None], tuple[()]]:
         """Leave the recordings out of a pickled estimate."""

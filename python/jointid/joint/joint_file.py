@@ -137,6 +137,8 @@ def joint_from_document(document: Mapping[str, Any], source: str) -> Joint:
     except InputError as error:
         tables_of = {key: table for table in ("drive", "model") for key in _KEYS[table]}
         own = error.argument in _TOP  # a model has a name, too
+        if error.place is not None and error.place.endswith(": tolerances"):  # named as the facts
+            tables_of[error.argument] = "tolerances"
         _refuse(source, "" if own else tables_of.get(error.argument, ""), error)
 
 

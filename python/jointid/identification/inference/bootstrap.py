@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 _NEAR = 3.0  # standard errors to a bound
 _OFTEN = 0.01  # of the draws end on it
+_MIDDLE = (0.158655, 0.841345)  # one standard error to both sides of a normal distribution
 
 
 def block_bootstrap(
@@ -57,7 +58,9 @@ def block_bootstrap(
 def _parameter(
     p: ParameterEstimate, moved: Array, room: tuple[float, float], freedom: int
 ) -> BootstrapParameter:
-    stderr = float(np.std(moved, ddof=1))
+    # Not their standard deviation: a draw that lacks a direction of motion may end anywhere.
+    left, right = np.quantile(moved, _MIDDLE)
+    stderr = 0.5 * float(right - left)
     below, above = room
     on_one = np.mean((moved <= below) | (moved >= above))
     near = bool(min(-below, above) < _NEAR * stderr or on_one > _OFTEN)
@@ -66,6 +69,8 @@ def _parameter(
     else:
         high = quantile(0.975, freedom) * stderr
         low = -high
+    if p.stderr == np.inf:  # nothing determines it, whatever the draws' convention
+        stderr, low, high = np.inf, -np.inf, np.inf
     usable = p.stderr is not None and 0.0 < p.stderr < np.inf
     return BootstrapParameter(
         name=p.name,

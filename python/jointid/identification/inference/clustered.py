@@ -73,7 +73,7 @@ def stretch_of(jacobian: Array, residual: Array, whitening: Array, segments: Seg
         return Stretch(
             ratio=np.ones(unit.size), freedom=np.full(unit.size, float(freedom)), white=True
         )
-    pooled = np.mean([each.size for each in clusterings]) / (directions * variance)
+    pooled = float(np.mean([each.size for each in clusterings])) / (directions * variance)
     pooled_freedom = float(np.mean([each.pooled_freedom for each in clusterings]))
     if not _contradicted(residual, pooled, pooled_freedom):
         alone = _windows_alone(jacobian, residual, whitening) * rows / freedom

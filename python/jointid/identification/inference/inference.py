@@ -91,6 +91,8 @@ def _terms_and_shapes(penalty: _core.Penalty) -> dict[str, _core.Term | _core.Sh
     for name, term in zip(penalty.names, penalty.terms, strict=False):
         known[name] = term
         known.update({shape: shapes[shape] for shape in term.shapes if shape not in known})
+    # What acts on the sum of all terms belongs to none of them.
+    known.update({name: shapes[name] for name in penalty.names if name not in known})
     return known
 
 
@@ -154,9 +156,7 @@ def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Join
             name=recording.name,
             kind=recording.kind,
             sensor=choice.sensor,
-            torque_offset=None
-            if choice.model.resolved.asymmetric
-            else "torque_offset" in choice.terms,
+            torque_offset="torque_offset" in choice.terms,
         )
     table = dict(base.parameters)
     for name, found in parameters.items():
@@ -169,8 +169,10 @@ def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Join
         table[name] = Parameter(name=name, value=found.value, min=low, max=high, vary=vary)
     inertia = parameters.get("inertia")
     if inertia is not None and inertia.vary and base.reflected_inertia is not None:
-        # The estimate replaces the joint's own value.
-        known = replace(base.tolerances, inertia=None, rotor_inertia=None)
-        base = base.replace(inertia=inertia.value, rotor_inertia=None, tolerances=known)
+        # The estimate replaces the joint's own value, which is the drive's alone.
+        drive = inertia.value - (0.0 if base.sensor else base.link_inertia)
+        if drive > 0.0:
+            others = replace(base.tolerances, inertia=None, rotor_inertia=None)
+            base = base.replace(inertia=drive, rotor_inertia=None, tolerances=others)
     model = choice.model.replace(per_recording=base.model.per_recording)
     return base.replace(parameters=table, model=model)

@@ -181,7 +181,8 @@ def bounded_minima(square: Array, gradient: Array, lower: Array, upper: Array) -
         open_ = open_[change.any(axis=1)]
         if open_.size == 0:
             break
-    return np.clip(found / size, lower, upper)
+    inside = np.clip(found / size, lower, upper)
+    return np.where(side < 0.0, lower, np.where(side > 0.0, upper, inside))
 
 
 def _with_held(square: Array, slope: Array, held: NDArray[np.bool_], at: Array) -> Array:

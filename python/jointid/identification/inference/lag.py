@@ -1,0 +1,92 @@
+"""What the delays between signals leave in the parameters.
+
+A window's integral of a signal that is late by d misses d times the signal's change over the window: to first order
+that is all a delay does to the balance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.identification.inference.covariance import Triangle
+from jointid.problem.problem import Problem
+from jointid.problem.recordings import output_torque
+from jointid.recording.recording import Recording
+
+Array = NDArray[np.float64]
+
+
+def of_lags(
+    problem: Problem,
+    penalty: _core.Penalty,
+    best: Array,
+    jacobian: Array,
+    lags: Mapping[str, float],
+) -> Array:
+    """Return how far the free parameters move when signals are late by so much.
+
+    Parameters
+    ----------
+    jacobian : ndarray, shape (windows, free)
+        Derivatives of the residuals by the free parameters.
+    lags : mapping of str to float
+        What is not known of each signal's delay [s]: "torque", "sensor", "velocity".
+
+    Returns
+    -------
+    ndarray, shape (free,)
+        The root of the sum of the signals' squares.
+    """
+    names = list(penalty.names)
+    gain = float(best[names.index("sensor_gain")]) if "sensor_gain" in names else 1.0
+    # In the unit of the residual.
+    scale = 1.0 / gain if penalty.residual == _core.Residual.sensor else 1.0
+
+    def torque(run: Recording) -> Array:
+        return output_torque(run, problem.joint)
+
+    def sensor(run: Recording) -> Array:
+        return np.zeros(len(run)) if run.sensor is None else -gain * run.sensor
+
+    def velocity(run: Recording) -> Array:
+        moved = np.zeros(len(run))
+        for index, term in enumerate(penalty.terms):
+            if term.friction and not term.needs_load:
+                shapes = np.array([best[names.index(shape)] for shape in term.shapes])
+                moved -= best[index] * _core.friction_basis(term.name, run.velocity, shapes, 0.0)
+        if "inertia" in names:
+            rate = np.gradient(run.velocity, run.sample_period)
+            moved -= best[names.index("inertia")] * rate
+        return moved
+
+    signals: Mapping[str, Callable[[Recording], Array]] = {
+        "torque": torque,
+        "sensor": sensor,
+        "velocity": velocity,
+    }
+    square = np.zeros(jacobian.shape[1])
+    columns = list(range(jacobian.shape[1]))
+    for signal, lag in lags.items():
+        if lag == 0.0 or not columns:
+            continue
+        change = lag * scale * _changes(problem, penalty, signals[signal])
+        both = Triangle(np.column_stack([jacobian, change]), problem.threads)
+        square += both.solve(columns, len(columns), rcond=1e-10)[0] ** 2
+    return np.sqrt(square)
+
+
+def _changes(
+    problem: Problem, penalty: _core.Penalty, signal: Callable[[Recording], Array]
+) -> Array:
+    """A signal's change over each window."""
+    bounds, run = np.asarray(penalty.windows), np.asarray(penalty.recording_of)
+    result = np.empty(run.size)
+    for number, recording in enumerate(problem.recordings):
+        mine = slice(*np.searchsorted(run, (number, number + 1)))
+        values = signal(recording)
+        result[mine] = values[bounds[mine, 1]] - values[bounds[mine, 0]]
+    return result
