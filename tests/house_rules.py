@@ -62,10 +62,11 @@ FOLDERS: dict[str, Folder] = {
         may_use={
             *_SOUGHT,
             *("identification/selection", "identification/inference", "identification/warnings"),
-            "identification/self_test",
+            *("identification/self_test", "identification/refinements"),
         },
         packages={"numpy"},
     ),
+    "identification/refinements": Folder(may_use=_FOUND - {"joint"}, packages={"numpy"}),
     "identification/search": Folder(may_use=_FOUND - {"recording"}, packages={"numpy", "scipy"}),
     "identification/selection": Folder(
         may_use={*_FOUND, "identification/search"}, packages={"numpy"}

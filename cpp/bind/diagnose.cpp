@@ -59,10 +59,6 @@ void bind_diagnose(py::module_& m) {
       .def_property_readonly(
           "swing", [](const Inspection& i) { return i.position.highest - i.position.lowest; })
       .def_property_readonly(
-          "sensor_lag",
-          [](const Inspection& i) { return std::make_pair(i.sensor.lag, i.sensor.error); },
-          "How late the sensor is, and the error of that [s].")
-      .def_property_readonly(
           "timing_errors",
           [](const Inspection& i) {
             return std::make_pair(i.timing.as_stamped, i.timing.as_uniform);
@@ -71,16 +67,10 @@ void bind_diagnose(py::module_& m) {
   m.def(
       "inspect",
       [](const Array& time, const Array& position, const Array& velocity, bool velocity_derived,
-         const std::optional<Array>& sensor, double period,
-         const std::vector<std::tuple<Array, SpikeRule, bool>>& channels, int threads) {
-        diagnose::Subject subject{signal(time),
-                                  signal(position),
-                                  signal(velocity),
-                                  velocity_derived,
-                                  std::nullopt,
-                                  period,
-                                  {}};
-        if (sensor) subject.sensor.emplace(signal(*sensor));
+         double period, const std::vector<std::tuple<Array, SpikeRule, bool>>& channels,
+         int threads) {
+        diagnose::Subject subject{signal(time),     signal(position), signal(velocity),
+                                  velocity_derived, period,           {}};
         for (const auto& [values, rule, spikes] : channels) {
           subject.channels.push_back({signal(values), rule, spikes});
         }
@@ -89,8 +79,7 @@ void bind_diagnose(py::module_& m) {
                          [&](base::Pool* pool) { return diagnose::inspect(subject, pool); });
       },
       py::kw_only(), py::arg("time"), py::arg("position"), py::arg("velocity"),
-      py::arg("velocity_derived"), py::arg("sensor"), py::arg("period"), py::arg("channels"),
-      py::arg("threads") = 0,
+      py::arg("velocity_derived"), py::arg("period"), py::arg("channels"), py::arg("threads") = 0,
       "Look at a recording's signals; a channel is a signal, its rule, and whether to look for "
       "spikes.");
 }

@@ -86,6 +86,17 @@ void bind_penalty(py::module_& m) {
             return columns;
           },
           py::arg("shapes"), "Columns of all coefficients, shape (rows, coefficients).")
+      .def(
+          "linear_columns",
+          [](const PenaltyFunction& p, const Eigen::VectorXd& theta) {
+            Eigen::MatrixXd columns;
+            const Eigen::Index c = p.coefficients();
+            p.linear_columns(theta.tail(theta.size() - c), theta.head(c), columns);
+            return columns;
+          },
+          py::arg("theta"), "Columns of the balance made linear there, shape (rows, coefficients).")
+      .def_property_readonly("is_linear", &PenaltyFunction::is_linear,
+                             "Whether the balance is linear in the coefficients for given shapes.")
       .def_property_readonly("target", &PenaltyFunction::target,
                              "What the columns add up to [N m s], one a row.")
       .def_property_readonly("names", &PenaltyFunction::names)

@@ -30,7 +30,8 @@ class SharedRecording {
  public:
   using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-  SharedRecording(std::vector<Array> signals, identify::Hold hold, std::vector<std::int64_t> gaps);
+  SharedRecording(std::vector<Array> signals, identify::Hold hold, std::vector<std::int64_t> gaps,
+                  double min_speed = 0.0);
   [[nodiscard]] const identify::RecordingView& view() const { return view_; }
   [[nodiscard]] std::int64_t samples() const { return view_.samples(); }
   /// Found once for each choice; called without the GIL.

@@ -1,5 +1,5 @@
 #pragma once
-// Whether position, velocity, time stamps and sensor are consistent with one motion.
+// Whether position, velocity and time stamps are consistent with one motion.
 
 #include <optional>
 
@@ -17,16 +17,6 @@ struct Agreement {
 std::optional<Agreement> velocity_agreement(const Signal& time, const Signal& position,
                                             const Signal& velocity, double period,
                                             const base::Cancel* cancel);
-
-/// Delay of the sensor behind the torque of a free link, which follows from the motion alone
-/// (inertia and gravity, wherever friction is), and its error [s]; infinite where the link is not
-/// free.
-struct SensorLag {
-  double lag = 0.0;
-  double error;
-};
-SensorLag sensor_lag(const Signal& time, const Signal& position, const Signal& velocity,
-                     const Signal& sensor, double period, const base::Cancel* cancel);
 
 /// Scatter of the samples' true times about the stamps, and about an even grid [s]; 0 where it
 /// cannot be seen.

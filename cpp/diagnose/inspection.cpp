@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "identify/penalty/penalty_parts.hpp"
 
@@ -17,13 +16,6 @@ Inspection inspect(const Subject& s, base::Pool* pool) {
   result.peak_speed = std::max(std::fabs(speeds.lowest), std::fabs(speeds.highest));
   result.facts.resize(s.channels.size());
   result.spikes.resize(s.channels.size());
-  result.sensor.error = std::numeric_limits<double>::infinity();
-  // The longest first.
-  if (s.sensor) {
-    tasks.emplace_back([&] {
-      result.sensor = sensor_lag(s.time, s.position, s.velocity, *s.sensor, s.period, cancel);
-    });
-  }
   if (!s.velocity_derived) {
     tasks.emplace_back([&] {
       result.agreement = velocity_agreement(s.time, s.position, s.velocity, s.period, cancel);

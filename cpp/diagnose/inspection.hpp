@@ -22,8 +22,7 @@ struct Subject {
   Signal position;
   Signal velocity;
   bool velocity_derived;
-  std::optional<Signal> sensor;  ///< of a revolute joint
-  double period;                 ///< [s]
+  double period;  ///< [s]
   std::vector<Channel> channels;
 };
 
@@ -34,7 +33,6 @@ struct Inspection {
   std::vector<Spike> spikes;       ///< a channel
   std::int64_t jump = -1;
   std::optional<Agreement> agreement;  ///< none also for a derived velocity
-  SensorLag sensor;
   TimingErrors timing;
 };
 

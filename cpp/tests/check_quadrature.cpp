@@ -265,13 +265,5 @@ CHECK_CASE("quadrature: harmonics count turns of the joint or of the motor") {
               std::sin(5.0 * 1.4) / (0.7 * 5.0), 1e-7);
 }
 
-CHECK_CASE("quadrature: load friction follows the torque's magnitude and the velocity's sign") {
-  auto r = ramp(1001, 2.0, -1.0, 1.0);
-  r.torque = Eigen::VectorXd::Constant(1001, -3.0);
-  CHECK_CLOSE(integral_of(identify::find_term("load_friction"), r), 0.0, 1e-12);
-  r.torque.tail(500).setConstant(5.0);  // after the reversal at 1 s
-  CHECK_CLOSE(integral_of(identify::find_term("load_friction"), r), 2.0, 1e-2);
-}
-
 }  // namespace
 }  // namespace jointid::tests

@@ -39,6 +39,8 @@ from jointid.comparison.comparison import compare_models
 from jointid.comparison.result import Comparison
 from jointid.estimate.bootstrap import Bootstrap
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.selection import Selection
+from jointid.estimate.self_test import SelfTest
 from jointid.identification.identification import identify
 from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
@@ -90,6 +92,8 @@ __all__ = [
     "Recording",
     "Scenario",
     "Search",
+    "Selection",
+    "SelfTest",
     "Sensors",
     "SimulatedBatch",
     "SimulatedRecording",

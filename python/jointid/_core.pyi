@@ -219,6 +219,7 @@ class Recording:
         sensor: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None,
         torque_hold: Hold,
         gap_after: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+        min_speed: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> None: ...
     @property
     def samples(self) -> int: ...
@@ -327,6 +328,12 @@ class PenaltyFunction:
         """
         Derivatives of the residuals, shape (rows, parameters).
         """
+    def linear_columns(
+        self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Columns of the balance made linear there, shape (rows, coefficients).
+        """
     def residuals(
         self, theta: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
@@ -335,6 +342,11 @@ class PenaltyFunction:
         """
     @property
     def coefficients(self) -> int: ...
+    @property
+    def is_linear(self) -> bool:
+        """
+        Whether the balance is linear in the coefficients for given shapes.
+        """
     @property
     def names(self) -> list[str]: ...
     @property
@@ -1230,11 +1242,6 @@ class Inspection:
         """
     @property
     def peak_speed(self) -> float: ...
-    @property
-    def sensor_lag(self) -> tuple[float, float]:
-        """
-        How late the sensor is, and the error of that [s].
-        """
     @property
     def spikes(self) -> list[Spike]:
         """
@@ -2731,7 +2738,6 @@ def inspect(
     position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     velocity_derived: bool,
-    sensor: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None,
     period: typing.SupportsFloat | typing.SupportsIndex,
     channels: collections.abc.Sequence[
         tuple[typing.Annotated[numpy.typing.ArrayLike, numpy.float64], SpikeRule, bool]

@@ -236,27 +236,14 @@ def test_cumulative_windows_are_scored_on_disjoint_ones() -> None:
     assert found.settings["windows"] == pytest.approx(recording.sample_period)
 
 
-def test_a_default_model_that_is_one_with_the_sensors_offset_is_left_out(
+def test_asymmetric_friction_beside_a_sensors_offset_is_compared(
     well_excited: jid.Recording,
 ) -> None:
     found = jid.compare_models(well_excited, jid.thesis_joint())
-    assert [entry.model for entry in found.rows] == ["coulomb_viscous", "stribeck"]
-    assert set(found.settings["left_out"]) == {
-        "coulomb_viscous:asymmetric",
-        "stribeck:asymmetric",
-    }
-    assert "asymmetric Coulomb friction and" in found.report()
-    for model, reason in found.settings["left_out"].items():
-        with pytest.raises(InputError) as refused:
-            jid.compare_models(well_excited, jid.thesis_joint(), models=model)
-        error = refused.value.__cause__
-        assert isinstance(error, InputError)
-        assert reason.startswith(f"{error.argument}"), "the argument is named"
-        assert error.argument
-        assert error.remedy[0]
-        assert str(error.remedy[0]) not in reason
-    with pytest.raises(InputError, match="sensor_offset are indistinguishable"):
-        jid.compare_models(well_excited, jid.thesis_joint(), models="stribeck:asymmetric")
+    assert found.settings["left_out"] == {}
+    assert found.winner == "stribeck"
+    # The offset and the difference of the Coulomb frictions are one parameter.
+    assert [row.parameters for row in found.rows] == [4, 6, 5, 8]
 
 
 def test_a_rows_model_repeats_its_fit_with_an_asymmetric_joint() -> None:

@@ -92,7 +92,8 @@ def test_each_direction_has_its_own() -> None:
     joint = jid.Joint(torque_offset=False)
     estimate = jid.identify(run, joint, model="stribeck:asymmetric", search="separable")
     found, value = estimate.derived, values(estimate)
-    assert list(found) == ["breakaway_positive", "breakaway_negative", "stribeck_velocity"]
+    breakaway = ["breakaway_positive", "breakaway_negative"]
+    assert list(found) == [*breakaway, "coulomb_sum", "stribeck_velocity"]
     for side in ("positive", "negative"):
         expected = value[f"coulomb_{side}"] + value[f"static_{side}"]
         assert found[f"breakaway_{side}"].value == expected

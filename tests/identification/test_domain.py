@@ -105,15 +105,6 @@ def test_a_gain_of_zero(repo: Path) -> None:
     )
 
 
-def test_asymmetric_friction_and_a_free_offset(repo: Path) -> None:
-    recording = jid.load(repo / "examples" / "data" / "well_excited.csv.gz").crop(0.0, 3.0)
-    error = refused(recording, jid.thesis_joint(), model="stribeck:asymmetric")
-    assert (error.argument, error.value) == ("asymmetric", True)
-    call = error.remedy[0]
-    assert isinstance(call, Action)
-    assert dict(call.arguments) == {"parameters": {"sensor_offset": ...}}
-
-
 def test_a_checkpoint_is_refused_before_the_search(tmp_path: Path) -> None:
     nowhere = tmp_path / "nowhere" / "search.state"
     error = refused(PLAIN, search=jid.Search(checkpoint=nowhere))

@@ -112,11 +112,6 @@ def reversed_sensor(r: jid.Recording) -> jid.Recording:
     return changed(r, sensor=-r.sensor)
 
 
-def torque_with_inertia(r: jid.Recording) -> jid.Recording:
-    assert r.torque is not None
-    return changed(r, torque=1.2 * r.torque)
-
-
 def same(r: jid.Recording) -> jid.Recording:
     return r
 
@@ -125,7 +120,6 @@ CALLS: Mapping[str, tuple[Callable[[jid.Recording], jid.Recording], Mapping[str,
     "signal_lag": (late_velocity, {}),
     "velocity_mismatch": (lambda r: changed(r, velocity=0.5 * r.velocity), {}),
     "reversed_sign": (reversed_sensor, {}),
-    "wrong_scale": (torque_with_inertia, {}),
     "ripple": (rippled, {}),
     "few_windows": (same, {"windows": 30}),
     "at_bound": (same, {"parameters": {"viscous": {"min": 10.0, "max": 19.9}}}),

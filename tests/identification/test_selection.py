@@ -119,14 +119,15 @@ def test_the_same_bits_for_any_number_of_threads() -> None:
     assert found[0] == found[1] == found[2]
 
 
-def test_models_are_compared_block_by_block() -> None:
-    """One slow block holds nearly all squares of a wrong model; the others must be heard as well."""
-    best = np.full(10, 1.0)
-    worse = np.array([1000.0, *np.full(9, 1.3)])
-    assert excess(worse, best) > 1.0
+def test_blocks_are_compared_by_ratio_and_by_square() -> None:
+    best = np.linspace(1.0, 1.2, 10)
     assert excess(best, best) == 0.0
-    noisy = best + np.tile([0.3, -0.3], 5)
-    assert abs(excess(noisy, best)) < 1.0
+    one_slow_block = best * np.array([1000.0, *np.full(9, 3.0)])
+    assert excess(one_slow_block, best) > 2.0  # by its square alone it is 1: one block of ten
+    assert abs(excess(best + np.tile([0.3, -0.3], 5), best)) < 1.0
+    quiet = np.array([0.01] * 5 + [10.0] * 5)
+    both_miss = quiet + np.array([-0.0099] * 5 + [3.0, 3.5, 4.0, 3.0, 3.5])
+    assert excess(both_miss, quiet) > 2.0  # by its ratios alone it is better
 
 
 def test_it_is_saved_and_read(home: jid.Estimate) -> None:

@@ -7,8 +7,8 @@ from jointid.identification.search.computed_bounds import shape_bounds
 
 
 def test_default_bounds_are_those_of_the_table() -> None:
-    assert shape_bounds("stribeck", 2.0) == ((0.5 * 2.0) ** -2, (0.0125 * 2.0) ** -2)
-    assert shape_bounds("stribeck_velocity", 2.0) == (0.025, 1.0)
+    assert shape_bounds("stribeck", 2.0) == ((0.5 * 2.0) ** -2, (0.01 * 2.0) ** -2)
+    assert shape_bounds("stribeck_velocity", 2.0) == (0.02, 1.0)
     assert shape_bounds("stribeck_exponent", 2.0) == (0.5, 4.0)
     for shape in _core.shapes():
         low, high = shape_bounds(shape.name, 0.7)

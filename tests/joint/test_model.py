@@ -19,6 +19,7 @@ from jointid.joint.model import FIELDS, Model, ResolvedModel
         (Model("coulomb_viscous", asymmetric=True), "coulomb_viscous:asymmetric"),
         (Model("stribeck", ripple=(2, 4), asymmetric=True), "stribeck:asymmetric:ripple=2,4"),
         (Model("stribeck", asymmetric=False), "stribeck:asymmetric=false"),
+        (Model("stribeck", load_friction="link"), "stribeck:load_friction=link"),
         (Model(ripple=()), ":ripple=none"),
         (Model(gravity="free"), ":gravity=free"),
         (

@@ -68,10 +68,10 @@ def test_directions_apart() -> None:
         "viscous_positive": 4.0,
         "viscous_negative": 5.0,
     }
-    estimate = jid.identify(smooth(truth), model=jid.Model(asymmetric=True))
+    joint = jid.Joint(torque_offset=False)
+    estimate = jid.identify(smooth(truth), joint, model=jid.Model(asymmetric=True))
     check(estimate, truth)
     assert "torque_offset" not in estimate.parameters
-    assert "torque_offset" in estimate.report()  # with a word
     curve = estimate.friction([-1.0, 1.0])
     np.testing.assert_allclose(curve.torque, [-8.0, 6.0], rtol=0.01)
     again = jid.identify(smooth(truth), estimate.joint, search="separable")
@@ -87,7 +87,8 @@ def test_published_asymmetric_fit(shared_data: Path) -> None:
         "coulomb_negative": 20.6277,
     }
     recording = jid.load(shared_data / "emps" / "emps_train.csv.gz")
-    estimate = jid.identify(recording, model=jid.Model(asymmetric=True))
+    joint = jid.Joint(kind="prismatic", torque_offset=False)  # as published
+    estimate = jid.identify(recording, joint, model=jid.Model(asymmetric=True))
     for name, value in published.items():
         assert estimate.parameters[name].value == pytest.approx(value, rel=0.02), name
 
@@ -290,11 +291,6 @@ def test_the_sensors_zero_and_polarity_are_arbitrary(
 
 
 REFUSED = {
-    "asymmetric with an offset": (
-        {"asymmetric": True},
-        jid.Joint(torque_offset=True),
-        "asymmetric",
-    ),
     "ripple without a gear": ({"ripple": (2,)}, None, "gear_ratio"),
     "ripple twice": ({"ripple": (2, 2)}, jid.Joint(gear_ratio=9.0), "different orders"),
     "ripple that is none": ({"ripple": 2}, jid.Joint(gear_ratio=9.0), "orders"),
@@ -314,16 +310,3 @@ def test_indistinguishable_terms_are_refused(
     recording = smooth({"inertia": 0.8, "coulomb": 2.0, "viscous": 4.0})
     with pytest.raises(jid.InputError, match=wording):
         jid.identify([recording, recording], joint, model=options)
-
-
-def test_asymmetric_with_a_free_sensor_offset_is_refused(well_excited: jid.Recording) -> None:
-    with pytest.raises(jid.InputError, match="sensor_offset"):
-        jid.identify(well_excited, jid.thesis_joint(), model=jid.Model(asymmetric=True))
-    fixed = jid.identify(
-        well_excited,
-        jid.thesis_joint(),
-        parameters={"sensor_offset": 15.0},
-        model=jid.Model(asymmetric=True),
-        search="separable",
-    )
-    check(fixed, {"coulomb_positive": 25.0, "coulomb_negative": 25.0, "sensor_gain": 2.4})

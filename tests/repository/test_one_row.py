@@ -28,7 +28,10 @@ ALLOWED: list[tuple[str, str, str]] = [
         "python/jointid/",
         "an option of the model, which the sensor's offset excludes",
     ),
-    ("load_friction", "python/jointid/", "an option of the model, and of the joint file"),
+    ("load_friction*", "python/jointid/", "an option of the model, and of the joint file"),
+    ("load_friction", "cpp/identify/penalty/", "the balance is not linear in it"),
+    ("link_share", "cpp/identify/penalty/", "the balance is not linear in it"),
+    ("link_share", "python/jointid/", "known where the link and the drive are"),
     # Capabilities: what a row declares as simulated or compensated is written here, once each.
     ("*", "cpp/model/joint.cpp", "the simulated joint"),
     ("*", "cpp/bind/simulate.cpp", "the simulated joint"),
@@ -37,7 +40,7 @@ ALLOWED: list[tuple[str, str, str]] = [
     ("*", "python/jointid/simulation/plant.py", "values for both"),
     # Judgements about one friction model.
     ("*", "python/jointid/identification/warnings/", "whether the data support static friction"),
-    ("coulomb*", "python/jointid/identification/search/domain.py", "collinear with an offset"),
+    ("coulomb*", "python/jointid/problem/constant_torque.py", "collinear with an offset"),
     ("*", "python/jointid/joint/thesis.py", "the thesis's joint, with its bounds"),
     ("coulomb", "python/jointid/simulation/scenario.py", "a controller with friction estimates"),
     ("coulomb", "python/jointid/cli/", "a controller with friction estimates; the demo's values"),
@@ -54,7 +57,10 @@ def names() -> set[str]:
     """Keys, names and shapes of the table, as the built core has them."""
     rows = _core.terms()
     return (
-        {row.key for row in rows} | {row.name for row in rows} | {s for r in rows for s in r.shapes}
+        {row.key for row in rows}
+        | {row.name for row in rows}
+        | {s for r in rows for s in r.shapes}
+        | {shape.name for shape in _core.shapes()}
     )
 
 

@@ -404,16 +404,15 @@ def test_wrong_input_is_reported_in_a_sentence(
 def test_a_refused_row_has_no_advice_and_the_error_has(
     recording: jid.Recording, joint: jid.Joint
 ) -> None:
-    mixed = jid.sweep(
-        recording, joint, grid={"model": ["stribeck", "stribeck:asymmetric"]}, trials=1
-    )
+    blind = joint.replace(sensor=False, torque_offset=None)
+    mixed = jid.sweep(recording, blind, grid={"residual": ["torque", "sensor"]}, trials=1)
     message = mixed.rows[1].message
-    assert message.startswith("asymmetric is True: ")
+    assert message.startswith("residual is 'sensor': ")
     assert "identify with" not in message
     with pytest.raises(jid.InputError) as caught:
-        jid.sweep(recording, joint, model="stribeck:asymmetric", trials=1)
-    assert (caught.value.argument, caught.value.value) == ("asymmetric", True)
-    assert "identify with parameters=" in str(caught.value)
+        jid.sweep(recording, blind, residual="sensor", trials=1)
+    assert (caught.value.argument, caught.value.value) == ("residual", "sensor")
+    assert "identify with residual=" in str(caught.value)
 
 
 def test_a_scenario_refuses_what_it_has_not(scenario: jid.Scenario, joint: jid.Joint) -> None:

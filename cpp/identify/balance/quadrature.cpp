@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "base/clones.hpp"
 
@@ -138,12 +139,8 @@ void integrate(const Term& term, double gear_ratio, const RecordingView& r,
       trapezoid(r, usable, windows, result, [&](Eigen::Index k) { return r.sensor[k]; });
       return;
     case Integral::load_friction:
-      sum_intervals(usable, windows, result, [&](Eigen::Index k) {
-        const auto [before, after] = shares(r.velocity[k], r.velocity[k + 1]);
-        return 0.5 * (r.time[k + 1] - r.time[k]) *
-               (before * std::fabs(r.torque[k]) + after * std::fabs(r.torque[k + 1]));
-      });
-      return;
+    case Integral::link_friction:
+      throw std::logic_error("load friction has no integral of its own");
     case Integral::friction:
       break;
   }

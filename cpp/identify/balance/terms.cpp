@@ -14,6 +14,7 @@ namespace {
 using model::Direction;
 using model::SpeedBasis;
 
+constexpr const char* kLoads = "motion that drives a load and is driven by it, such as up and down";
 constexpr const char* kSlow = "slow motion through speeds near zero, in both directions";
 
 // A row made here is neither simulated nor accepted by controllers until `simulated` says so.
@@ -99,9 +100,16 @@ std::vector<Term> base_rows() {
                 .non_negative = true,
                 .unit = "1",
                 .unit_prismatic = "1",
-                .meaning = "friction per transmitted torque",
-                .advice = "motion with different loads",
+                .meaning = "friction per torque of the drive",
+                .advice = kLoads,
                 .option = "load_friction"};
+  };
+  const auto link_friction = [&] {
+    Term term = load_friction();
+    term.key = "load_friction_link";
+    term.integral = Integral::link_friction;
+    term.meaning = "friction per torque behind the gear";
+    return term;
   };
   const auto gain = [&] {
     Term term =
@@ -124,6 +132,7 @@ std::vector<Term> base_rows() {
           Control::refused),
       simulated(viscous(), Control::compensated),
       simulated(load_friction(), Control::refused),
+      link_friction(),
       simulated(torque("torque_offset", "torque_offset", Integral::duration,
                        "constant offset of the torque",
                        "as much motion in one direction as in the other"),
@@ -200,6 +209,21 @@ const std::vector<Shape>& shape_table() {
        .advice = kSlow,
        .lower = 0.5,
        .upper = 4.0},
+      // At 1 a joint locks by itself in one quadrant.
+      {.name = "load_friction",
+       .unit = "1",
+       .unit_prismatic = "1",
+       .meaning = "friction per load",
+       .advice = kLoads,
+       .lower = 0.0,
+       .upper = 0.95},
+      {.name = "link_share",
+       .unit = "1",
+       .unit_prismatic = "1",
+       .meaning = "share of the inertia behind the gear",
+       .advice = "hard acceleration against different loads",
+       .lower = 0.0,
+       .upper = 1.0},
   };
   return table;
 }
@@ -219,7 +243,7 @@ bool is_friction(const Term& term) {
 }
 
 bool needs_load(const Term& term) {
-  return term.integral == Integral::load_friction;
+  return term.integral == Integral::load_friction || term.integral == Integral::link_friction;
 }
 
 model::Decay decay_of(const Term& term) {

@@ -19,7 +19,8 @@ namespace jointid::identify {
 enum class Integral {
   velocity_change,  ///< [v]: no acceleration needed
   friction,         ///< integral of sgn v h(|v|), h a SpeedBasis, in one Direction or both
-  load_friction,    ///< integral of sgn v |torque|
+  load_friction,    ///< none: it acts on the sum of all other terms, see load_friction.hpp
+  link_friction,    ///< none: the same, by the torque behind the gear
   displacement,     ///< [q] = integral of v
   duration,         ///< T
   cosine,           ///< integral of cos(frequency q)

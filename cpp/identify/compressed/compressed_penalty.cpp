@@ -118,6 +118,7 @@ CompressedPenalty::CompressedPenalty(const Penalty& frame)
   }
   rows_ = static_cast<Eigen::Index>(constant_.size()) + 1;
   if (has_too_many_terms()) reason_ = "the model has too many terms";
+  if (!frame.is_linear()) reason_ = "load friction acts on the sum of all other terms";
 }
 
 CompressedPenalty::CompressedPenalty(const Penalty& penalty, const search::Domain& domain,
@@ -128,13 +129,13 @@ CompressedPenalty::CompressedPenalty(const Penalty& penalty, const search::Domai
     throw std::invalid_argument("domain must have " + std::to_string(penalty.parameters()) +
                                 " parameters, got " + std::to_string(domain.size()));
   }
-  if (!has_too_many_terms()) build(penalty, domain, pool);
+  if (reason_.empty()) build(penalty, domain, pool);
 }
 
 CompressedPenalty::CompressedPenalty(const Penalty& frame, const std::optional<ShapeNodes>& nodes,
                                      const std::vector<Digest>& digests)
     : CompressedPenalty(frame) {
-  if (!has_too_many_terms()) assemble(nodes, digests);
+  if (reason_.empty()) assemble(nodes, digests);
 }
 
 bool CompressedPenalty::has_too_many_terms() const {

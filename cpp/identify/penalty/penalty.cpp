@@ -11,6 +11,12 @@ namespace jointid::identify {
 void Penalty::add_term(const std::string& key) {
   const Term term = find_term(key);
   const auto coefficients = static_cast<std::ptrdiff_t>(terms_.size());
+  if (needs_load(term)) {  // it acts on the sum of the other terms
+    load_ = static_cast<Eigen::Index>(names_.size() - terms_.size());
+    link_load_ = term.integral == Integral::link_friction;
+    names_.push_back(term.name);
+    return;
+  }
   const auto begin = names_.begin();
   if (std::find(begin, begin + coefficients, term.name) != begin + coefficients) {
     throw std::invalid_argument("term '" + term.name + "' is listed twice");
@@ -31,6 +37,17 @@ void Penalty::add_term(const std::string& key) {
 }
 
 namespace {
+
+/// Usable intervals in which the joint moves backward on the whole.
+std::vector<std::uint8_t> backward_intervals(const RecordingView& r,
+                                             const std::vector<std::uint8_t>& usable) {
+  std::vector<std::uint8_t> result(usable.size());
+  for (std::size_t k = 0; k < usable.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    result[k] = usable[k] != 0 && r.velocity[i] + r.velocity[i + 1] < 0.0 ? 1 : 0;
+  }
+  return result;
+}
 
 std::vector<std::shared_ptr<const MaskedRecording>> masked(const std::vector<Recording>& recordings,
                                                            bool mask_standstill) {
@@ -60,6 +77,10 @@ Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms
     throw std::invalid_argument("gear_ratio must be finite and not 0");
   }
   for (const auto& key : terms) add_term(key);
+  if (link_load_ && gain_index_ < 0) {  // nothing parts the link's inertia from the drive's
+    share_ = static_cast<Eigen::Index>(names_.size() - terms_.size());
+    names_.emplace_back("link_share");
+  }
   if (residual != Residual::torque && gain_index_ < 0) {
     throw std::invalid_argument(std::string("residual '") +
                                 (residual == Residual::sensor ? "sensor" : "instruments") +
@@ -88,7 +109,16 @@ Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms
   cut(recordings, options);
   integrate_all(recordings, gear_ratio, pool);
   own_columns(per_recording, recordings.size());
-  if (cumulative_) accumulate_all();
+  weigh_link();
+  accumulate_all();
+}
+
+void Penalty::accumulate_all() {
+  if (!cumulative_) return;
+  accumulate(target_);
+  if (load_ >= 0) return;  // there it is the sum's residuals that are accumulated
+  for (Eigen::Index j = 0; j < columns_.cols(); ++j) accumulate(columns_.col(j));
+  for (Eigen::Index j = 0; j < link_.cols(); ++j) accumulate(link_.col(j));
 }
 
 void Penalty::cut(const Masked& recordings, WindowOptions wanted) {
@@ -140,6 +170,13 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
   columns_.setZero(rows, static_cast<Eigen::Index>(terms_.size()));
   target_.resize(rows);
   usable_duration_.resize(rows);
+  std::vector<std::vector<std::uint8_t>> backward;
+  if (load_ >= 0) {
+    backward_.setZero(rows, columns_.cols());
+    for (const auto& masked : recordings) {
+      backward.push_back(backward_intervals(masked->recording(), masked->usable()));
+    }
+  }
   struct Block {  // windows of one recording
     std::size_t begin;
     std::size_t end;
@@ -181,15 +218,24 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
       integrate(link[j], gear_ratio, r, masked.usable(), windows,
                 link_.col(static_cast<Eigen::Index>(j)).segment(first, count));
     }
+    if (load_ < 0) return;
+    const auto& usable = backward[static_cast<std::size_t>(recording_of_[block.begin])];
+    for (std::size_t j = 0; j < terms_.size(); ++j) {
+      if (!terms_[j].shapes.empty()) continue;
+      integrate(terms_[j], gear_ratio, r, usable, windows,
+                backward_.col(static_cast<Eigen::Index>(j)).segment(first, count));
+    }
   };
   if (pool == nullptr) {
     for (const auto& block : blocks) linear(block);
-    collect_nodes(recordings, cancel);
+    collect_nodes(recordings, cancel, false);
+    if (load_ >= 0) collect_nodes(recordings, cancel, true);
   } else {  // the nodes are one task, the longest: it goes first
     pool->for_each(blocks.size() + 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         if (i == 0) {
-          collect_nodes(recordings, cancel);
+          collect_nodes(recordings, cancel, false);
+          if (load_ >= 0) collect_nodes(recordings, cancel, true);
         } else {
           linear(blocks[i - 1]);
         }
@@ -198,33 +244,10 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
   }
 }
 
-Eigen::Matrix<std::int64_t, Eigen::Dynamic, 2> Penalty::window_bounds() const {
-  Eigen::Matrix<std::int64_t, Eigen::Dynamic, 2> bounds(window_count(), 2);
-  for (std::size_t w = 0; w < windows_.size(); ++w) {
-    const auto row = static_cast<Eigen::Index>(w);
-    bounds(row, 0) = windows_[w].begin;
-    bounds(row, 1) = windows_[w].end;
-  }
-  return bounds;
-}
-
-Eigen::VectorXd Penalty::torque_steps(const Masked& recordings) const {
-  Eigen::VectorXd steps(window_count());
-  for (std::size_t from = 0; from < windows_.size();) {
-    std::size_t to = from;
-    while (to < windows_.size() && recording_of_[to] == recording_of_[from]) ++to;
-    const auto& masked = *recordings.at(static_cast<std::size_t>(recording_of_[from]));
-    sum_torque_steps(
-        masked.recording(), masked.usable(), std::span(windows_).subspan(from, to - from),
-        steps.segment(static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(to - from)));
-    from = to;
-  }
-  return steps;
-}
-
-void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel) {
+void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel, bool backward) {
   if (shaped_.empty()) return;
-  auto& all = nodes_[0];
+  auto& store = backward ? backward_nodes_ : nodes_;
+  auto& all = store[0];
   std::size_t samples = windows_.size();
   for (const auto& window : windows_)
     samples += static_cast<std::size_t>(window.end - window.begin);
@@ -238,50 +261,18 @@ void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel
     while (end < windows_.size() && end - w < kWindows && recording_of_[end] == recording_of_[w])
       ++end;
     const auto& masked = *recordings[static_cast<std::size_t>(recording_of_[w])];
-    append_nodes(masked.recording(), masked.usable(), std::span(windows_).subspan(w, end - w), all);
+    const auto& r = masked.recording();
+    append_nodes(r, backward ? backward_intervals(r, masked.usable()) : masked.usable(),
+                 std::span(windows_).subspan(w, end - w), all);
     w = end;
   }
   bool both = false;
   for (const auto& shaped : shaped_) {
-    auto& nodes = nodes_[static_cast<std::size_t>(shaped.term.direction)];
-    if (nodes.first.size() == 1) nodes = nodes_of(shaped.term.direction, nodes_[0]);
+    auto& nodes = store[static_cast<std::size_t>(shaped.term.direction)];
+    if (nodes.first.size() == 1) nodes = nodes_of(shaped.term.direction, store[0]);
     both = both || shaped.term.direction == model::Direction::both;
   }
-  if (!both) nodes_[0] = {};
-}
-
-void Penalty::own_columns(const std::vector<std::string>& per_recording, std::size_t recordings) {
-  if (recordings < 2) return;
-  for (const auto& name : per_recording) {
-    const auto found = std::find_if(terms_.begin(), terms_.end(),
-                                    [&](const Term& term) { return term.name == name; });
-    if (found == terms_.end()) {
-      throw base::InputError("'" + name + "' is not a coefficient of the model", "per_recording");
-    }
-    if (!found->shapes.empty() || found->integral == Integral::sensor) {
-      throw base::InputError("'" + name + "' must be the same in all recordings", "per_recording");
-    }
-    const auto at = static_cast<Eigen::Index>(found - terms_.begin());
-    const auto extra = static_cast<Eigen::Index>(recordings) - 1;
-    const Eigen::Index old = columns_.cols();
-    Eigen::MatrixXd wider = Eigen::MatrixXd::Zero(columns_.rows(), old + extra);
-    wider.leftCols(at) = columns_.leftCols(at);
-    wider.rightCols(old - at - 1) = columns_.rightCols(old - at - 1);
-    for (Eigen::Index row = 0; row < columns_.rows(); ++row) {
-      wider(row, at + recording_of_[static_cast<std::size_t>(row)]) = columns_(row, at);
-    }
-    columns_ = std::move(wider);
-    const Term term = *found;
-    terms_.insert(terms_.begin() + at, static_cast<std::size_t>(extra), term);
-    names_.insert(names_.begin() + at, static_cast<std::size_t>(extra), name);
-    for (std::size_t i = 0; i < recordings; ++i) {
-      names_[static_cast<std::size_t>(at) + i] = name + "[" + std::to_string(i) + "]";
-    }
-    if (gain_index_ > at) gain_index_ += extra;
-    for (auto& shaped : shaped_) {
-      if (shaped.coefficient > at) shaped.coefficient += extra;
-    }
-  }
+  if (!both) store[0] = {};
 }
 
 Penalty Penalty::fragment(const Masked& recordings, const std::vector<std::string>& terms,
@@ -295,6 +286,7 @@ Penalty Penalty::fragment(const Masked& recordings, const std::vector<std::strin
   }
   result.choice_.duration = window_duration;
   result.integrate_all(recordings, gear_ratio, nullptr);
+  result.weigh_link();
   return result;
 }
 
@@ -318,12 +310,6 @@ void Penalty::accumulate(Eigen::Ref<Eigen::VectorXd> values) const {
   }
 }
 
-void Penalty::accumulate_all() {
-  accumulate(target_);
-  for (Eigen::Index j = 0; j < columns_.cols(); ++j) accumulate(columns_.col(j));
-  for (Eigen::Index j = 0; j < link_.cols(); ++j) accumulate(link_.col(j));
-}
-
 void Penalty::shaped_column(const Shaped& shaped, const double* shapes, int which,
                             const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) const {
   std::array<double, 4> own{};
@@ -338,6 +324,11 @@ void Penalty::columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
   for (const auto& s : shaped_) {
     shaped_column(s, shapes.data(), kValue, cancel, result.col(s.coefficient));
   }
+  if (cumulative_ && load_ >= 0) {
+    for (Eigen::Index j = 0; j < result.cols(); ++j) {
+      if (!is_shaped(j)) accumulate(result.col(j));
+    }
+  }
 }
 
 double Penalty::operator()(const Eigen::VectorXd& theta, const base::Cancel* cancel) const {
@@ -350,6 +341,11 @@ void Penalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
                         Eigen::MatrixXd* jacobian, const base::Cancel* cancel) const {
   check(theta);
   const Eigen::Index p = coefficients();
+  if (load_ >= 0) {
+    loaded_residuals(theta, residual, jacobian, cancel);
+    divide_by_gain(theta, residual, jacobian);
+    return;
+  }
   if (jacobian != nullptr) {
     jacobian->setZero(window_count(), parameters());
     jacobian->leftCols(p) = -columns_;
@@ -369,6 +365,11 @@ void Penalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
       jacobian->col(p + s.shapes[i]) -= coefficient * column;
     }
   }
+  divide_by_gain(theta, residual, jacobian);
+}
+
+void Penalty::divide_by_gain(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                             Eigen::MatrixXd* jacobian) const {
   if (residual_ != Residual::sensor) return;
   const double scale = 1.0 / theta[gain_index_];
   residual *= scale;

@@ -22,6 +22,7 @@ namespace jointid::identify {
 /// that over sensor_gain. Parameters are ordered as `names()`: coefficients in the order given,
 /// then shapes. A coefficient of `per_recording` is one a recording, "name[0]", "name[1]", ...
 /// With cumulative windows r is the running sum of the windows' residuals, within each recording.
+/// Load friction acts on that sum of terms, F, in each direction of motion: see load_friction.hpp.
 class Penalty final : public PenaltyFunction {
  public:
   using Masked = std::vector<std::shared_ptr<const MaskedRecording>>;
@@ -78,6 +79,9 @@ class Penalty final : public PenaltyFunction {
   /// Turns `residuals` into those with the reading itself, whose scatter is the estimate's; they
   /// are the same unless the reading is projected.
   void observe(const Eigen::VectorXd& theta, Eigen::VectorXd& residual) const;
+  [[nodiscard]] bool is_linear() const override { return load_ < 0; }
+  void linear_columns(const Eigen::VectorXd& shapes, const Eigen::VectorXd& about,
+                      Eigen::MatrixXd& result, const base::Cancel* cancel = nullptr) const override;
   /// Integrals of the torque.
   [[nodiscard]] const Eigen::VectorXd& target() const override { return target_; }
   /// Columns without the shaped ones, which are zero here.
@@ -107,15 +111,19 @@ class Penalty final : public PenaltyFunction {
  private:
   void add_term(const std::string& key);
   friend class PenaltyParts;
+  void weigh_link();
   Penalty(const Masked& recordings, const std::vector<std::string>& terms, Residual residual,
           double gear_ratio);  ///< terms only; no windows yet
   void cut(const Masked& recordings, WindowOptions options);
   void integrate_all(const Masked& recordings, double gear_ratio, base::Pool* pool);
-  void collect_nodes(const Masked& recordings, const base::Cancel* cancel);
+  void collect_nodes(const Masked& recordings, const base::Cancel* cancel, bool backward);
   void own_columns(const std::vector<std::string>& per_recording, std::size_t recordings);
   /// A shaped term's column, or its derivative by the term's shape number `which`.
   void shaped_column(const Shaped& shaped, const double* shapes, int which,
                      const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) const;
+  /// All columns, not accumulated; of the intervals with negative velocity, or of all.
+  void plain_columns(const double* shapes, bool backward, const base::Cancel* cancel,
+                     Eigen::MatrixXd& result) const;
   void accumulate(Eigen::Ref<Eigen::VectorXd> values) const;
   void accumulate_all();
   [[nodiscard]] Instruments instruments(const std::vector<Eigen::Index>& free,
@@ -127,6 +135,25 @@ class Penalty final : public PenaltyFunction {
   [[nodiscard]] Eigen::MatrixXd instrument_triangle(const Instruments& instruments,
                                                     base::Pool* pool) const;
   [[nodiscard]] std::vector<Stretch> blocks() const;
+  void divide_by_gain(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                      Eigen::MatrixXd* jacobian) const;
+  /// Balance of the torque in both directions of motion, a row a window.
+  struct Loaded {
+    Eigen::MatrixXd all;   ///< plain columns
+    Eigen::MatrixXd back;  ///< the part of them with negative velocity
+    Eigen::VectorXd torque;
+    Eigen::VectorXd by_load;
+    Eigen::VectorXd by_share;
+    Eigen::VectorXd weights;  ///< of the coefficients, in the torque behind the gear
+    Eigen::MatrixXd gain;  ///< of the columns' forward and backward part, and of the link's in them
+    /// A column's derivative from its parts; `weight` is its share in the link's torque.
+    [[nodiscard]] Eigen::VectorXd slope(const Eigen::VectorXd& every, const Eigen::VectorXd& part,
+                                        double weight) const;
+  };
+  [[nodiscard]] Loaded loaded(const double* shapes, const Eigen::VectorXd& coefficients,
+                              const base::Cancel* cancel) const;
+  void loaded_residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                        Eigen::MatrixXd* jacobian, const base::Cancel* cancel) const;
 
   std::vector<std::string> names_;  ///< coefficients, then shapes
   std::vector<Term> terms_;
@@ -142,6 +169,12 @@ class Penalty final : public PenaltyFunction {
   double fastest_ = 0.0;  ///< in the whole recordings
   Eigen::Index runs_ = 0;
   std::array<FrictionNodes, 3> nodes_;  ///< by model::Direction, as far as needed
+  Eigen::Index load_ = -1;              ///< load friction, among the shapes; -1 without it
+  Eigen::MatrixXd backward_;      ///< of columns_, the part of intervals with negative velocity
+  bool link_load_ = false;        ///< the load is the torque behind the gear, not the drive's
+  Eigen::Index share_ = -1;       ///< the share of the inertia behind it, among the shapes
+  Eigen::VectorXd link_weights_;  ///< of the coefficients, in the torque behind the gear
+  std::array<FrictionNodes, 3> backward_nodes_;
   std::vector<Window> windows_;
   std::vector<int> recording_of_;
   Eigen::VectorXd usable_duration_;

@@ -40,6 +40,13 @@ class PenaltyFunction {
   virtual void columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
                        const base::Cancel* cancel = nullptr) const = 0;
   [[nodiscard]] virtual const Eigen::VectorXd& target() const = 0;
+  /// Whether, for given shapes, the residuals of the torque are linear in the coefficients.
+  [[nodiscard]] virtual bool is_linear() const { return true; }
+  /// Columns of the balance made linear about these coefficients; else the same as `columns`.
+  virtual void linear_columns(const Eigen::VectorXd& shapes, const Eigen::VectorXd& /*about*/,
+                              Eigen::MatrixXd& result, const base::Cancel* cancel = nullptr) const {
+    columns(shapes, result, cancel);
+  }
 
   /// Throws std::invalid_argument when theta has the wrong length or the gain is zero.
   virtual double operator()(const Eigen::VectorXd& theta,

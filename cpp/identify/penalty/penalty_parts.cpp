@@ -32,6 +32,7 @@ PenaltyParts::PenaltyParts(const Penalty::Masked& recordings, const std::vector<
   first_.push_back(windows_.size());
   Penalty whole = frame_;
   whole.columns_.setZero(0, static_cast<Eigen::Index>(whole.terms_.size()));
+  whole.backward_.setZero(0, whole.columns_.cols());
   whole.own_columns(per_recording, recordings.size());
   names_ = whole.parameters();
   coefficients_ = whole.coefficients();
@@ -46,7 +47,8 @@ Penalty PenaltyParts::part(std::size_t index) const {
   result.recording_of_.assign(recording_of_.begin() + from, recording_of_.begin() + to);
   result.integrate_all(recordings_, gear_ratio_, nullptr);
   result.own_columns(per_recording_, recordings_.size());
-  if (result.cumulative_) result.accumulate_all();
+  result.weigh_link();
+  result.accumulate_all();
   return result;
 }
 

@@ -180,6 +180,14 @@ void mark_standing(const RecordingView& r, const MotionScale& scale,
   }
 }
 
+/// Intervals that begin or end slower than the recording's least speed.
+void mark_slow(const RecordingView& r, std::vector<std::uint8_t>& usable) {
+  for (Eigen::Index k = 0; k + 1 < r.samples(); ++k) {
+    const double slowest = std::min(std::fabs(r.velocity[k]), std::fabs(r.velocity[k + 1]));
+    if (slowest < r.min_speed) usable[static_cast<std::size_t>(k)] = 0;
+  }
+}
+
 /// Reversals at which a held command jumps: the instant at which the joint reverses, sticks or
 /// breaks away lies between samples and is unknown. The error is friction times a sample period.
 void mark_jolts(const RecordingView& r, const MotionScale& scale,
@@ -272,6 +280,7 @@ UsableIntervals usable_intervals(const RecordingView& r, const MotionScale& scal
     }
   }
   if (mask_standstill && r.torque_hold == Hold::zero_order) mark_jolts(r, scale, result.usable);
+  if (r.min_speed > 0.0) mark_slow(r, result.usable);
   for (const auto gap : r.gap_after) result.usable[static_cast<std::size_t>(gap)] = 0;
   return result;
 }

@@ -37,17 +37,19 @@ struct RecordingView {
   Signal sensor;
   Hold torque_hold;
   std::vector<std::int64_t> gap_after;
+  double min_speed = 0.0;  ///< [rad/s or m/s]; what is slower is left out
 
   RecordingView(const Recording& r);  // implicit: a recording is its own view
   RecordingView(Signal time_, Signal position_, Signal velocity_, Signal torque_, Signal sensor_,
-                Hold hold, std::vector<std::int64_t> gaps)
+                Hold hold, std::vector<std::int64_t> gaps, double slowest = 0.0)
       : time(time_),
         position(position_),
         velocity(velocity_),
         torque(torque_),
         sensor(sensor_),
         torque_hold(hold),
-        gap_after(std::move(gaps)) {}
+        gap_after(std::move(gaps)),
+        min_speed(slowest) {}
   [[nodiscard]] Eigen::Index samples() const { return time.size(); }
   [[nodiscard]] bool has_sensor() const { return sensor.size() > 0; }
   /// As `Recording::validate`.

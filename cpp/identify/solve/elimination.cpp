@@ -10,6 +10,8 @@ namespace jointid::identify {
 
 namespace {
 
+constexpr int kPasses = 2;  // of a balance that is not linear, each about the one before
+
 /// Coefficients split into fixed (moved to the target) and free.
 struct Reduced {
   Eigen::MatrixXd columns;
@@ -104,15 +106,23 @@ Eigen::VectorXd best_coefficients(const PenaltyFunction& penalty, const Eigen::V
   Eigen::VectorXd start = domain.lower.head(p);
   const bool ratio =
       penalty.residual() == Residual::sensor && domain.lower[gain] < domain.upper[gain];
-  Eigen::VectorXd best;
-  if (ratio) {
-    best = solve_ratio(penalty, reduce(penalty, columns, domain, false), columns.col(gain), domain,
-                       start);
-  } else {
-    best = solve_box(reduce(penalty, columns, domain, true), domain, start);
+  const auto solved = [&]() -> Eigen::VectorXd {
+    Eigen::VectorXd best;
+    if (ratio) {
+      best = solve_ratio(penalty, reduce(penalty, columns, domain, false), columns.col(gain),
+                         domain, start);
+    } else {
+      best = solve_box(reduce(penalty, columns, domain, true), domain, start);
+    }
+    // Rounding may leave a bound by an ulp.
+    return best.cwiseMax(domain.lower.head(p)).cwiseMin(domain.upper.head(p));
+  };
+  Eigen::VectorXd best = solved();
+  for (int pass = 0; pass < kPasses && !penalty.is_linear(); ++pass) {
+    penalty.linear_columns(shapes, best, columns, cancel);
+    best = solved();
   }
-  // Rounding may leave a bound by an ulp.
-  return best.cwiseMax(domain.lower.head(p)).cwiseMin(domain.upper.head(p));
+  return best;
 }
 
 }  // namespace jointid::identify

@@ -11,7 +11,8 @@ namespace jointid::identify {
 /// The best coefficients for given shapes, within the domain.
 ///
 /// residual torque: bounded least squares. residual sensor: linear in u = 1/gain and g = c/gain,
-/// where the box of each c becomes lower u <= g <= upper u. Throws std::invalid_argument when the
+/// where the box of each c becomes lower u <= g <= upper u. Near the best only where the balance is
+/// not linear. Throws std::invalid_argument when the
 /// gain's bounds contain zero.
 Eigen::VectorXd best_coefficients(const PenaltyFunction& penalty, const Eigen::VectorXd& shapes,
                                   const search::Domain& domain,

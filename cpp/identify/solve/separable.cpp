@@ -15,8 +15,9 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr int kScan = 64;             // intervals over the domain of a single free shape
-constexpr int kGrid = 16;             // over each of several
+constexpr int kScan = 64;  // intervals over the domain of a single free shape
+constexpr int kGrid = 16;  // over each of several
+constexpr int kFew = 4;
 constexpr std::size_t kPolished = 3;  // best points of the grid that are polished
 constexpr double kNarrow = 1e-9;      // of a scale's range: tolerance of the lowest point
 
@@ -164,16 +165,30 @@ void search_near(const Eliminated& reduced, const Scale& scale, base::Pool& pool
   }
 }
 
+/// What elimination comes near to only.
+void polish_best(const PenaltyFunction& penalty, const search::Domain& domain, base::Pool& pool,
+                 const Eliminated& reduced, SeparableResult& result) {
+  const auto residuals = [&](const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
+                             Eigen::MatrixXd* jacobian) {
+    penalty.residuals(theta, residual, jacobian, &pool.cancel());
+  };
+  reduced.offer(search::polish(residuals, domain, result.best, pool).best, result);
+}
+
 void search_grid(const Eliminated& reduced, const std::vector<Scale>& scales,
                  const PenaltyFunction& penalty, const search::Domain& domain, base::Pool& pool,
                  SeparableResult& result) {
   std::vector<std::vector<double>> points{{}};
-  for (const auto& scale : scales) {
+  for (std::size_t s = 0; s < scales.size(); ++s) {
+    const auto& scale = scales[s];
+    // Where the balance is not linear the polish goes further than from point to point.
+    const auto& shape = find_shape(penalty.names()[static_cast<std::size_t>(reduced.free()[s])]);
+    const int steps = penalty.is_linear() || shape.speed_power != 0.0 ? kGrid : kFew;
     std::vector<std::vector<double>> wider;
     for (const auto& point : points) {
-      for (int i = 0; i <= kGrid; ++i) {
+      for (int i = 0; i <= steps; ++i) {
         wider.push_back(point);
-        wider.back().push_back(scale.at(static_cast<double>(i) / kGrid));
+        wider.back().push_back(scale.at(static_cast<double>(i) / steps));
       }
     }
     points = std::move(wider);
@@ -234,6 +249,8 @@ SeparableResult minimise_separable(const PenaltyFunction& penalty, const search:
   } else {
     search_grid(reduced, scales, penalty, domain, pool, result);
   }
+  if (!penalty.is_linear() && scales.size() < 2)
+    polish_best(penalty, domain, pool, reduced, result);
   return result;
 }
 

@@ -163,6 +163,36 @@ def fixed_values(arguments: argparse.Namespace) -> dict[str, float]:
     return _numbers("parameters", arguments.set)
 
 
+def refinement_arguments(command: argparse.ArgumentParser) -> None:
+    """Add what is done to the data before the search."""
+    command.add_argument(
+        "--shift",
+        action="append",
+        type=pair,
+        metavar="SIGNAL=SECONDS",
+        help="delay of torque, sensor or velocity to take away, positive: late; torque=0 takes away none "
+        "(default: those that are certain)",
+    )
+    command.add_argument(
+        "--min-speed",
+        type=decimal,
+        help="leave out slower motion, rad/s or m/s; 0: nothing (default: chosen)",
+    )
+
+
+def refinements(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The delays and the least speed of a command, as arguments of `identify`.
+
+    Raises
+    ------
+    InputError
+        Not a number, or a signal is given twice.
+    """
+    given = arguments.shift
+    shift = None if given is None else _numbers("shift", given)
+    return {"shift": shift, "min_speed": arguments.min_speed}
+
+
 def _numbers(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str, float]:
     numbers: dict[str, float] = {}
     for name, value in by_name(argument, pairs).items():

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointid.cli.arguments import fixed_values, load_all
+from jointid.cli.arguments import fixed_values, load_all, refinements
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
 from jointid.cli.parser import BAD_USAGE
 from jointid.cli.session import emulate, run
@@ -87,6 +87,7 @@ def identify(arguments: argparse.Namespace) -> int:
             residual=arguments.residual,
             windows=arguments.windows,
             torque_hold=arguments.torque_hold,
+            **refinements(arguments),
         )
     tested = estimate.selftest(seed=arguments.seed) if arguments.selftest else None
     draws = arguments.bootstrap
@@ -133,6 +134,7 @@ def compare(arguments: argparse.Namespace) -> int:
             residual=arguments.residual,
             windows=arguments.windows,
             torque_hold=arguments.torque_hold,
+            **{name: given for name, given in refinements(arguments).items() if given is not None},
             callback=progress,
         )
     refused = _write(comparison.estimate, arguments)

@@ -12,6 +12,7 @@ from jointid.cli.arguments import (
     file_kinds,
     pair,
     reading_arguments,
+    refinement_arguments,
     several_recordings,
     whole,
     whole_seed,
@@ -219,6 +220,7 @@ def _identification_arguments(command: argparse.ArgumentParser, *, method: str) 
         type=windows,
         help="number of windows (default 400), duration (0.05s) or cumulative",
     )
+    refinement_arguments(command)
     command.add_argument(
         "--set",
         action="append",

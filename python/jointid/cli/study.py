@@ -17,6 +17,8 @@ from jointid.cli.arguments import (
     load_all,
     number_or_text,
     pair,
+    refinement_arguments,
+    refinements,
     several_recordings,
     whole,
     whole_seed,
@@ -78,6 +80,7 @@ def add_sweep(commands: Any) -> None:
         type=windows,
         help="number of windows (default 400), duration (0.05s) or cumulative",
     )
+    refinement_arguments(sweep)
     sweep.add_argument(
         "--set",
         action="append",
@@ -135,7 +138,7 @@ def sweep(arguments: argparse.Namespace) -> None:
         name: getattr(arguments, name)
         for name in ("model", "residual", "windows")
         if getattr(arguments, name) is not None
-    }
+    } | refinements(arguments)
     subject: Any
     if arguments.simulate is not None:
         subject = scenario_of(arguments.simulate, arguments)

@@ -11,9 +11,10 @@ import numpy as np
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.comparison.held_out import Fold, folds_by_block, folds_by_recording
-from jointid.comparison.parsimony import judge, refusal
+from jointid.comparison.parsimony import counted, judge, refusal
 from jointid.comparison.result import ComparedModel, Comparison
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.settings import model_of
 from jointid.identification.identification import identify
 from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
@@ -83,6 +84,8 @@ def compare_models(
     windows: Windows = None,
     torque_hold: str | None = None,
     mask_standstill: bool = True,
+    shift: Mapping[str, float] | None = None,
+    min_speed: float = 0.0,
     callback: Callable[[ComparisonStep], object] | None = None,
 ) -> Comparison:
     """Compare friction models by how well they predict what they were not fitted to.
@@ -97,8 +100,7 @@ def compare_models(
     ----------
     recordings : Recording or sequence of Recording
     joint : Joint, optional
-        As in `identify`, except that its model's name and `asymmetric` are not used, and that an
-        asymmetric model has no offset, because asymmetric Coulomb friction contains it.
+        As in `identify`, except that its model's name and `asymmetric` are not used.
     models : sequence of Model, str or mapping, optional
         Models or their texts, such as "coulomb_viscous:asymmetric". Default: `default_models()`, without
         those that cannot be used with these data; they are listed in `settings["left_out"]`.
@@ -110,6 +112,10 @@ def compare_models(
         As in `identify`; default "separable".
     residual, torque_hold, mask_standstill
         As in `identify`.
+    shift : mapping of str to float, optional
+        As in `identify`; what is chosen, is chosen from all data, and the same for all models.
+    min_speed : float
+        As in `identify`, the same for all models. Default 0: all motion is judged.
     windows : int, float, str or WindowOptions, optional
         As in `identify`; the same for all models. Default: the shortest of the models' defaults.
     callback : callable, optional
@@ -140,6 +146,8 @@ def compare_models(
             "residual": residual,
             "torque_hold": torque_hold,
             "mask_standstill": mask_standstill,
+            "shift": shift,
+            "min_speed": min_speed,
         },
         total=len(specs) * (1 + parts),
         callback=callback,
@@ -157,6 +165,8 @@ def compare_models(
                 cause if isinstance(cause, InputError) else error
             )
             fitter.total -= 1 + parts
+    # Delays come from the data, whatever the model: those of all data hold for their parts.
+    fitter.shift(next(iter(whole.values())).settings["shift"])
     # Residuals over windows of different duration cannot be compared: all models get the shortest.
     duration = min(estimate.settings["windows"] for estimate in whole.values())
     cut = _core.WindowOptions(duration=duration, cumulative=_cumulative(windows))
@@ -171,7 +181,8 @@ def compare_models(
         else folds_by_recording(runs, parts)
     )
     rows = [
-        _row(spec, estimate, fitter.scores(spec, splits, cut)) for spec, estimate in whole.items()
+        _row(spec, estimate, fitter.scores(_as_found(spec, estimate), splits, cut))
+        for spec, estimate in whole.items()
     ]
     judged, winner, reason = judge(rows)
     kind = "block" if len(runs) == 1 else "recording" if parts == len(runs) else "recordings"
@@ -206,14 +217,14 @@ class _Fitter:
         self.total = total
         self._done = 0
 
+    def shift(self, delays: Mapping[str, float]) -> None:
+        self._common = {**self._common, "shift": delays}
+
     def fit(
         self, spec: Model, training: Sequence[Recording], windows: Windows, where: str = ""
     ) -> Estimate:
-        joint = self._joint
-        if joint is not None and joint.torque_offset and spec.asymmetric:
-            joint = joint.replace(torque_offset=False)
         try:
-            estimate = identify(training, joint, model=spec, windows=windows, **self._common)
+            estimate = identify(training, self._joint, model=spec, windows=windows, **self._common)
         except InputError as error:
             raise error.at(f"model '{_text(spec)}'{where}") from error
         self._done += 1
@@ -238,6 +249,13 @@ def _text(spec: Model) -> str:
     return str(spec if spec.asymmetric else spec.replace(asymmetric=None))
 
 
+def _as_found(spec: Model, estimate: Estimate) -> Model:
+    """Return a model with the load that all data chose, so that every fold has the same terms."""
+    if not spec.load_friction:
+        return spec
+    return spec.replace(load_friction=model_of(estimate.settings).load_friction)
+
+
 def _without_remedy(error: InputError) -> str:
     """Return an error's sentence; the caller did not choose this model, and cannot act on it."""
     return str(
@@ -255,7 +273,7 @@ def _row(spec: Model, estimate: Estimate, scores: Sequence[float]) -> ComparedMo
     return ComparedModel(
         model=_text(spec),
         spec=spec,
-        parameters=sum(parameter.vary for parameter in estimate.parameters.values()),
+        parameters=counted(estimate),
         score=float(np.mean(scores)),
         stderr=float(np.std(scores, ddof=1) / np.sqrt(len(scores))),
         fold_scores=tuple(scores),

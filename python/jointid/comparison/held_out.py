@@ -10,6 +10,7 @@ import numpy as np
 
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.prediction import predicted_torque
 from jointid.problem.window_table import WindowTable
 from jointid.recording.recording import Recording
 
@@ -41,7 +42,10 @@ class Fold:
     held_out: tuple[Block, ...]
 
     def residual(self, estimate: Estimate) -> float:
-        """Return the relative residual of the held-out windows: norm of the residuals over that of the measured.
+        """Return the relative residual of the held-out windows: norm of the torque's residuals over that of the torque.
+
+        The torque is predicted from the motion, and from the reading where there is a sensor, whatever the residual
+        that was fitted: the same signal for every model.
 
         Parameters
         ----------
@@ -55,10 +59,10 @@ class Fold:
         """
         missed = measured = 0.0
         for block in self.held_out:
-            table = estimate.predict(block.recording).windows
-            inside = (table.start >= block.start) & (table.stop <= block.stop)
-            missed += float(np.sum(table.residual[inside] ** 2))
-            measured += float(np.sum(table.measured[inside] ** 2))
+            found = predicted_torque(estimate, block.recording)
+            inside = (found.start >= block.start) & (found.stop <= block.stop)
+            missed += float(np.sum(found.residual[inside] ** 2))
+            measured += float(np.sum(found.torque[inside] ** 2))
         if measured == 0.0:
             raise InputError(
                 "the torque is zero in the held-out part",

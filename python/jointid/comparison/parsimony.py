@@ -5,8 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from jointid.comparison.load_evidence import load_refusal
 from jointid.comparison.result import ComparedModel
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.student import quantile
+from jointid.problem.constant_torque import undivided
+
+_ONE_ERROR = 0.841345  # probability below one standard error of a normal distribution
 
 
 def judge(rows: Sequence[ComparedModel]) -> tuple[tuple[ComparedModel, ...], int, str]:
@@ -23,7 +28,8 @@ def judge(rows: Sequence[ComparedModel]) -> tuple[tuple[ComparedModel, ...], int
     """
     entrants = [row for row in rows if row.eligible] or list(rows)
     best = min(entrants, key=lambda row: row.score)
-    limit = best.score + best.stderr
+    # Few folds know their own standard error badly: Student's t has the same probability with a larger number.
+    limit = best.score + best.stderr * quantile(_ONE_ERROR, max(1, len(best.fold_scores) - 1))
     near = [row for row in entrants if row.score <= limit]
     winner = min(near, key=lambda row: (row.parameters, row.score))
     best_score = f"{100.0 * best.score:.3g} ± {100.0 * best.stderr:.2g} %"
@@ -60,6 +66,12 @@ def judge(rows: Sequence[ComparedModel]) -> tuple[tuple[ComparedModel, ...], int
     return tuple(judged), list(rows).index(winner), sentence
 
 
+def counted(estimate: Estimate) -> int:
+    """Return the number of parameters that the data determine; an offset that nothing divides is none."""
+    free = [parameter.name for parameter in estimate.parameters.values() if parameter.vary]
+    return len(free) - len(undivided(free))
+
+
 def refusal(estimate: Estimate) -> str | None:
     """Return why the data do not support a model, or None if they do."""
     for warning in estimate.warnings:
@@ -71,4 +83,5 @@ def refusal(estimate: Estimate) -> str | None:
             f"{p.name} at its {'lower' if p.at_bound == 'min' else 'upper'} bound" for p in ended
         )
         return f"not eligible: {bounds}"
-    return None
+    reason = load_refusal(estimate)
+    return None if reason is None else f"not eligible: {reason}"

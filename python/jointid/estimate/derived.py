@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.estimate.intervals import squared_half_widths
+from jointid.problem.constant_torque import undivided
 
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
@@ -27,7 +28,8 @@ class DerivedValue:
     Attributes
     ----------
     name : str
-        "breakaway" or "stribeck_velocity", with the parameters' suffix for direction or recording.
+        "breakaway", "stribeck_velocity", "coulomb_sum" or "constant", with the parameters' suffix for direction or
+        recording.
     meaning : str
     unit : str
     value : float
@@ -50,8 +52,8 @@ class DerivedValue:
 
 
 def derived_values(estimate: Estimate) -> dict[str, DerivedValue]:
-    """Breakaway friction of each direction and recording, and the Stribeck velocity, if the model has them."""
-    values = (*_breakaway(estimate), *_stribeck_velocity(estimate))
+    """Return breakaway friction, Stribeck velocity, and what is known of an undivided offset, if the model has them."""
+    values = (*_breakaway(estimate), *_constants(estimate), *_stribeck_velocity(estimate))
     return {each.name: each for each in values}
 
 
@@ -74,6 +76,39 @@ def _breakaway(estimate: Estimate) -> Iterator[DerivedValue]:
                     slopes=dict.fromkeys(names, 1.0),
                     formula=" + ".join(names),
                 )
+
+
+def _constants(estimate: Estimate) -> Iterator[DerivedValue]:
+    """What a recording tells where it does not divide an offset from the difference of Coulomb frictions."""
+    found = estimate.parameters
+    sides = ("coulomb_positive", "coulomb_negative")
+    if not all(name in found for name in sides):
+        return
+    unit = found[sides[0]].unit
+    yield _derived(
+        estimate,
+        name="coulomb_sum",
+        meaning="Coulomb friction of both directions",
+        unit=unit,
+        value=sum(found[name].value for name in sides),
+        slopes=dict.fromkeys(sides, 1.0),
+        formula=" + ".join(sides),
+    )
+    offsets = [n for n in found if n.partition("[")[0] in ("torque_offset", "sensor_offset")]
+    for offset in offsets:
+        run = offset[len(offset.partition("[")[0]) :]
+        for name, sign in zip(sides, (1.0, -1.0), strict=True):
+            yield _derived(
+                estimate,
+                name=f"constant_{name.removeprefix('coulomb_')}{run}",
+                meaning="friction and offset at low speed, "
+                + name.removeprefix("coulomb_")
+                + " velocity",
+                unit=unit,
+                value=found[name].value + sign * found[offset].value,
+                slopes={name: 1.0, offset: sign},
+                formula=f"{name} {'+' if sign > 0 else '-'} {offset}",
+            )
 
 
 def _stribeck_velocity(estimate: Estimate) -> Iterator[DerivedValue]:
@@ -133,5 +168,11 @@ def _error(estimate: Estimate, slopes: Mapping[str, float], matrix: Array) -> fl
     slope = np.array([slopes[name] for name in free])
     if not np.isfinite(slope).all():
         return None
-    variance = float(slope @ matrix[np.ix_(places, places)] @ slope)
+    covariance = matrix[np.ix_(places, places)]
+    for each in undivided(estimate.free):
+        if sum(slopes.get(name, 0.0) * sign for name, sign in each.change.items()) != 0.0:
+            return None
+        if each.offset in free:  # it cancels; the others' covariance is that at a given offset
+            covariance[free.index(each.offset), free.index(each.offset)] = 0.0
+    variance = float(slope @ covariance @ slope)
     return math.sqrt(max(variance, 0.0)) if math.isfinite(variance) else None

@@ -12,8 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from jointid.base.argument_checks import require_kind, require_path, whole_number
 from jointid.base.errors import InputError
+from jointid.estimate.delays import Delay
 from jointid.estimate.findings import Finding
 from jointid.estimate.selection import Selection
+from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import (
     Convergence,
     FrictionCurve,
@@ -54,7 +56,8 @@ class Estimate:
     weakest : tuple of str
         Parameters with a large share in the least determined direction.
     covariance : ndarray, shape (p, p)
-        Of the free parameters.
+        Of the free parameters. Where nothing divides an offset from the difference of two directions' Coulomb
+        friction, the offset has an infinite variance and the others have theirs at a given offset.
     residuals : ResidualStatistics
     windows : WindowTable
     convergence : Convergence or None
@@ -62,8 +65,9 @@ class Estimate:
     findings : tuple of Finding
         What the data and the fit show, the most severe first; `docs/findings.md` lists the codes.
     derived : mapping of str to DerivedValue
-        Quantities that follow from the parameters: "breakaway" (coulomb + static) and
-        "stribeck_velocity" (1/√stribeck), with standard errors.
+        Quantities that follow from the parameters, with standard errors: "breakaway" (coulomb + static),
+        "stribeck_velocity" (1/√stribeck); of asymmetric friction "coulomb_sum" and, with an offset,
+        "constant_positive" and "constant_negative", which are known even where the offset is not.
     warnings : tuple of Finding
         The findings of severity "warning" or "blocking".
     joint : Joint
@@ -72,6 +76,11 @@ class Estimate:
         Everything needed to repeat the run: method, residual, terms, options, seed, versions, fingerprints.
     seconds : float
         Wall time.
+    delays : mapping of str to Delay
+        The constant delay of each signal against the position, as far as the data show it; a certain one
+        is taken away before the identification.
+    slow_motion : SlowMotion or None
+        How the slowest windows disagree with the faster ones; None where that was not asked.
     selection : Selection or None
         How the model was chosen; None if it was named.
     follow_up : FollowUp or None
@@ -94,6 +103,8 @@ class Estimate:
     joint: Joint
     settings: Mapping[str, Any]
     seconds: float = field(repr=False)
+    delays: Mapping[str, Delay] = field(default_factory=dict)
+    slow_motion: SlowMotion | None = None
     selection: Selection | None = field(default=None, repr=False)
     follow_up: FollowUp | None = field(default=None, repr=False)
 

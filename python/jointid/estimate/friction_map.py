@@ -50,7 +50,8 @@ def friction_curve(estimate: Estimate, velocity: Array, load: float = 0.0) -> Fr
     # An infinite variance must not meet a sensitivity of exactly zero.
     matrix = squared_half_widths(estimate)
     finite = np.where(np.isfinite(matrix), matrix, 0.0)
-    unknown = ~np.isfinite(np.diag(matrix))
+    errors = [estimate.parameters[name].stderr for name in estimate.free]
+    unknown = np.array([error is None or not np.isfinite(error) for error in errors], dtype=bool)
     square = np.einsum("ij,jk,ik->i", sensitivity, finite, sensitivity)
     square[np.any(np.abs(sensitivity[:, unknown]) > 0.0, axis=1)] = np.inf
     half = np.sqrt(np.maximum(square, 0.0))

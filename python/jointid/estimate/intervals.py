@@ -27,4 +27,8 @@ def squared_half_widths(estimate: Estimate) -> Array:
         p = estimate.parameters[name]
         if p.interval is not None and p.stderr is not None and _TINY < p.stderr < np.inf:
             scale[i] = 0.5 * (p.interval[1] - p.interval[0]) / p.stderr
+        elif p.stderr == np.inf:
+            scale[i] = 0.0
+    # Of what no recording divides only sums are known; they are as uncertain as the others at most.
+    scale[scale == 0.0] = scale.max(initial=_NORMAL)
     return np.asarray(estimate.covariance * np.outer(scale, scale))

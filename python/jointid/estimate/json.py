@@ -12,11 +12,13 @@ from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.base.schema import Number, read_json
+from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.json_schema import ESTIMATE
 from jointid.estimate.selection import Candidate, Selection
 from jointid.estimate.settings import model_of
+from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import Convergence, ParameterEstimate, ResidualStatistics
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_document, joint_from_document
@@ -90,6 +92,8 @@ def _estimate(d: Mapping[str, Any]) -> Estimate:
         joint=joint_from_document(d["joint"], "joint"),
         settings=d["settings"],
         seconds=d["seconds"],
+        delays={name: Delay(**entry) for name, entry in d.get("delays", {}).items()},
+        slow_motion=None if d.get("slow_motion") is None else SlowMotion(**d["slow_motion"]),
         selection=_selection(d.get("selection")),
     )
 
@@ -100,6 +104,9 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     for name, entry in names.items():
         if entry["name"] != name:
             yield f"parameters.{name}.name", "this is not the name of the entry"
+    for name, entry in d.get("delays", {}).items():
+        if entry["signal"] != name:
+            yield f"delays.{name}.signal", "this is not the name of the entry"
     for i, name in enumerate(free):
         if name not in names or name in free[:i]:
             yield f"free[{i}]", "this is none of the parameters, or there twice"

@@ -80,6 +80,26 @@ _FINDING = Record(
         "message": _SENTENCES,
     }
 )
+_DELAY = Record(
+    {
+        "signal": Text(known=("torque", "sensor", "velocity")),
+        "value": _VALUE,
+        "stderr": _ANY,
+        "certain": Flag(),
+        "fits": Flag(),
+        "applied": _VALUE,
+    }
+)
+_SLOW_MOTION = Record(
+    {
+        "speed": _NOT_NEGATIVE,
+        "excess": _VALUE,
+        "stderr": _ANY,
+        "level": _VALUE,
+        "share": _NOT_NEGATIVE,
+        "applied": Flag(),
+    }
+)
 _FIELDS: dict[str, Kind] = {
     "schema": _COUNT,
     "kind": Text(),
@@ -111,6 +131,8 @@ ESTIMATE: dict[int, Kind] = {
             "selection": OrNull(SELECTION),
             "selftest": Plain(),
             "bootstrap": Plain(),
+            "delays": TableOf(_DELAY),
+            "slow_motion": OrNull(_SLOW_MOTION),
         },
     ),
 }

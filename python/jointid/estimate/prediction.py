@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from jointid import _core
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.estimate.friction_map import shared_value
@@ -15,13 +18,66 @@ from jointid.problem.recordings import listed
 from jointid.problem.terms import TermChoice
 from jointid.problem.window_table import Prediction, r_squared, relative_residual
 from jointid.recording.recording import Recording
+from jointid.recording.shifting import shifted
 
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
 
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PredictedTorque:
+    """The drive's torque in each window, and what a prediction from motion and reading misses of it.
+
+    Attributes
+    ----------
+    start, stop : ndarray
+        [s]
+    torque, residual : ndarray
+        Integrals [N·m·s]; the residual is the torque less the predicted one.
+    """
+
+    start: Array
+    stop: Array
+    torque: Array
+    residual: Array
+
 
 def predict(estimate: Estimate, recording: Recording) -> Prediction:
     """Predict a recording: see `Estimate.predict`."""
+    problem, penalty, theta = _posed(estimate, recording)
+    table = problem.table(penalty, theta)
+    return Prediction(
+        windows=table,
+        relative=relative_residual(table),
+        r_squared=r_squared(table),
+    )
+
+
+def predicted_torque(estimate: Estimate, recording: Recording) -> PredictedTorque:
+    """Return how an estimate predicts the drive's torque, whichever residual it was fitted by.
+
+    Raises
+    ------
+    InputError
+        As `Estimate.predict`.
+    """
+    _, penalty, theta = _posed(estimate, recording)
+    residual = np.asarray(penalty.residuals(theta))
+    if penalty.residual == _core.Residual.sensor:
+        residual = residual * theta[penalty.names.index("sensor_gain")]
+    bounds = np.asarray(penalty.windows)
+    return PredictedTorque(
+        start=recording.time[bounds[:, 0]],
+        stop=recording.time[bounds[:, 1]],
+        torque=np.asarray(penalty.target),
+        residual=residual,
+    )
+
+
+def _posed(estimate: Estimate, recording: Recording) -> tuple[Problem, _core.Penalty, Array]:
+    """Return the problem that a recording poses, its penalty, and the estimate's values in it."""
     require_kind("recording", recording, Recording)
     settings = estimate.settings
     choice = TermChoice(
@@ -42,19 +98,19 @@ def predict(estimate: Estimate, recording: Recording) -> Prediction:
         raise InputError(
             "the estimate has a torque sensor, the recording has none", argument="recording.sensor"
         )
+    shift = settings.get("shift", {})
+    if recording.velocity_derived:
+        shift = {name: delay for name, delay in shift.items() if name != "velocity"}
     problem = Problem(
-        recordings=listed(recording),
+        recordings=tuple(shifted(run, shift) for run in listed(recording)),
         joint=estimate.joint,
         choice=choice,
         torque_hold=settings["torque_hold"],
         mask_standstill=settings["mask_standstill"],
+        shift=shift,
+        min_speed=settings.get("min_speed", 0.0),
     )
     penalty = problem.penalty(settings["windows"])
     values = {name: parameter.value for name, parameter in estimate.parameters.items()}
     theta = np.array([shared_value(values, name) for name in penalty.names])
-    table = problem.table(penalty, theta)
-    return Prediction(
-        windows=table,
-        relative=relative_residual(table),
-        r_squared=r_squared(table),
-    )
+    return problem, penalty, theta

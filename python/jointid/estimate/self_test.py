@@ -12,6 +12,7 @@ from jointid.estimate.wording import number, percent, two_digits
 SCHEMA = 1
 """Raised when a reader of the old form would misread the new one."""
 
+_LARGE = 20.0  # an error that is so many times the truth is no share of it
 _HEAD = ("parameter", "truth", "identified", "error", "95 % interval", "unit", "comes back")
 
 
@@ -51,6 +52,14 @@ class SelfTestRow:
     def error(self) -> float:
         """Identified value less truth."""
         return self.value - self.truth
+
+    @property
+    def shown_error(self) -> str:
+        """The error for people: a share of the truth, or with the unit where the truth is next to nothing."""
+        sign = "-" if self.error < 0.0 else "+"
+        if abs(self.error) <= _LARGE * abs(self.truth):
+            return f"{sign}{percent(abs(self.error / self.truth))}" if self.error else "0 %"
+        return f"{sign}{two_digits(abs(self.error))} {self.unit}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,23 +112,18 @@ class SelfTest:
             return f"a trial could not be identified: {self.failed}"
         if self.passed:
             return (
-                f"all parameters come back in {self.trials} trials: with this motion and this noise they can be "
-                "identified, if the joint is as modelled"
+                f"all parameters come back in {self.trials} trials: such a motion, with noise and a misfit as "
+                "recorded, determines them if the joint is as modelled"
             )
         parts = [f"{name} ({self._worst(name)})" for name in self.lost]
         return (
-            f"these parameters do not come back: {', '.join(parts)}: this motion and this noise do not "
-            "determine them, even for a joint that is exactly as modelled"
+            f"these parameters do not come back: {', '.join(parts)}: such a motion, with noise and a misfit as "
+            "recorded, does not determine them, even if the joint is as modelled"
         )
 
     def _worst(self, parameter: str) -> str:
         mine = [row for row in self.rows if row.parameter == parameter]
-        worst = max(mine, key=lambda row: abs(row.error))
-        if worst.truth == 0.0:
-            return f"off by {two_digits(abs(worst.error))} {worst.unit}"
-        return (
-            f"off by up to {percent(max(abs(row.error / row.truth) for row in mine if row.truth))}"
-        )
+        return f"off by up to {max(mine, key=lambda row: abs(row.error)).shown_error.lstrip('+-')}"
 
     def report(self) -> str:
         """Return the result as text: a table for each trial, then the verdict."""
@@ -175,10 +179,6 @@ def _title(trial: int) -> str:
 
 
 def _cells(row: SelfTestRow) -> tuple[str, ...]:
-    error = f"{row.error:+.2g}"
-    if row.truth != 0.0:
-        sign = "-" if row.error < 0.0 else "+"
-        error = f"{sign}{percent(abs(row.error / row.truth))}"
     interval = "on a bound"
     if row.interval is not None:
         interval = f"{row.interval[0]:.5g} … {row.interval[1]:.5g}"
@@ -186,7 +186,7 @@ def _cells(row: SelfTestRow) -> tuple[str, ...]:
     if row.close and not row.covered:
         answer = "outside its interval"
     return (
-        *(row.parameter, number(row.truth), number(row.value), error),
+        *(row.parameter, number(row.truth), number(row.value), row.shown_error),
         *(interval, row.unit, answer),
     )
 

@@ -30,6 +30,8 @@ SETTINGS = Record(
     optional={
         "dropped": Text(),
         "bounds_from_data": ListOf(Text()),
+        "shift": TableOf(Number(low=-1.0, high=1.0)),
+        "min_speed": Number(low=0.0, high=1e6),
         "residual_reason": Text(),
     },
     other=Plain(),

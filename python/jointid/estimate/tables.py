@@ -78,6 +78,7 @@ def quality(estimate: Estimate) -> list[tuple[str, str]]:
             "left out",
             f"{100.0 * r.left_out:.1f} % of the intervals; standing still in {100.0 * r.standing:.1f} % of the samples",
         ),
+        *_refinements(estimate),
         ("residuals", f"autocorrelation of neighbouring windows {r.autocorrelation:.2f}"),
         (
             "condition",
@@ -86,6 +87,27 @@ def quality(estimate: Estimate) -> list[tuple[str, str]]:
         ("correlation", strongest_correlation(estimate)),
         ("search", f"{estimate.message}; {estimate.status} in {estimate.seconds:.2f} s"),
     ]
+
+
+def _refinements(estimate: Estimate) -> list[tuple[str, str]]:
+    """What was found about the data before the search, and done about it."""
+    lines = []
+    if estimate.delays:
+        each = [
+            f"{delay.shown}{' (taken away)' if delay.applied else ''}"
+            for delay in estimate.delays.values()
+        ]
+        lines.append(("delays", f"against the position: {', '.join(each)}"))
+    slow = estimate.slow_motion
+    if slow is not None and slow.applied:
+        lines.append(
+            (
+                "slow motion",
+                f"{percent(slow.share)} of the motion, below {number(slow.speed)}, is left out: its friction "
+                f"differs by {number(slow.excess)} ± {two_digits(slow.stderr)} from what faster motion shows",
+            )
+        )
+    return lines
 
 
 def strongest_correlation(estimate: Estimate) -> str:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence
 from jointid.identification.inference.covariance import parameter_covariance
@@ -17,12 +19,16 @@ from jointid.identification.inference.inference import (
     parameters_of,
     statistics_of,
 )
+from jointid.identification.inference.lag import of_lags
 from jointid.identification.inference.segments import Motion, motion_segments
 from jointid.identification.inference.systematic import systematic_errors
+from jointid.identification.inference.undivided import divided, with_undivided
+from jointid.identification.refinements.refinements import Refinements
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.warnings.diagnosis import diagnose
 from jointid.identification.warnings.evidence import Evidence, regressor
 from jointid.identification.warnings.inspection import inspect
+from jointid.problem.constant_torque import undivided
 from jointid.problem.inner_products import columns_with, size
 from jointid.problem.problem import Problem
 
@@ -39,12 +45,13 @@ def infer(
     domain: SearchDomain,
     best: Array,
     shifts: tuple[Array | None, Array | None],
-    given: Array | None,
+    beside: Mapping[str, Array | None],
     convergence: Convergence | None,
     status: str,
     message: str,
     settings: dict[str, Any],
     seconds: float,
+    refinements: Refinements,
 ) -> Estimate:
     """Return the estimate at a minimum.
 
@@ -52,8 +59,10 @@ def infer(
     ----------
     shifts : tuple of ndarray or None
         Change of each parameter when the windows are halved and doubled.
-    given : ndarray or None
-        Change of each parameter when the given facts are at the limits of their tolerances.
+    refinements : Refinements
+        What was done to the data before the search.
+    beside : mapping of str to ndarray or None
+        Change of each parameter by causes that the intervals do not contain.
     """
     threads = problem.threads
     # First, before arrays of one value per window are allocated, and these are freed early: a recording
@@ -69,17 +78,26 @@ def infer(
     freedom = freedom_of(domain, best, columns_with(jacobian, residual), alone)
     free = list(freedom.indices)
     table = problem.table(penalty, best, (residual, columns))
-    free_jacobian = jacobian[:, free]
+    names = list(domain.names)
+    groups = undivided([names[index] for index in free])
+    kept = divided(free, names, groups)
+    free_jacobian = jacobian[:, kept]
     del jacobian
-    centre = _centre(penalty, columns, free)
+    centre = _centre(penalty, columns, kept)
     segments = motion_segments(Motion.of(problem, penalty))
     spread = parameter_covariance(
         free_jacobian, residual, centre, threads=threads, segments=segments
     )
-    parts = systematic_errors(problem, penalty, best, free, free_jacobian, columns, shifts)
-    if given is not None:
-        parts["given"] = given
+    spread = with_undivided(spread, kept, free, names, groups)
+    parts = systematic_errors(problem, penalty, best, kept, free_jacobian, columns, shifts)
+    lags = {each.signal: _unknown(each) for each in refinements.delays.values() if each.certain}
+    if lags:
+        parts["lag"] = np.zeros(len(best))
+        parts["lag"][kept] = of_lags(problem, penalty, best, free_jacobian, lags)
+    parts |= {name: moved for name, moved in beside.items() if moved is not None}
     del free_jacobian
+    if not penalty.is_linear:
+        columns = penalty.linear_columns(best)
     at_best = regressor(penalty, columns, threads)
     del columns
     parameters = parameters_of(problem, penalty, domain, best, freedom, spread, parts, shifts)
@@ -109,6 +127,8 @@ def infer(
                 for i in range(len(free))
                 for j in range(i)
             },
+            delays=refinements.delays,
+            slow_motion=refinements.slow_motion,
         )
     )
     return Estimate(
@@ -128,7 +148,14 @@ def infer(
         joint=joint_of(problem, parameters),
         settings=settings,
         seconds=seconds,
+        delays=refinements.delays,
+        slow_motion=refinements.slow_motion,
     )
+
+
+def _unknown(delay: Delay) -> float:
+    """What is not known of a delay, or was left in the signals [s]."""
+    return delay.stderr if delay.applied else float(np.hypot(delay.value, delay.stderr))
 
 
 def _centre(

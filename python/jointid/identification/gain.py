@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 from jointid import _core
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
 from jointid.identification.search.domain import SearchDomain
 from jointid.problem.problem import Problem
 from jointid.problem.windows import Windows
 
 _CUMULATIVE = "running integrals, as in the thesis"
+_LOADED = "friction depends on the sensed load"
 _WEAK = "the motion explains too little of the reading"
 
 
@@ -33,10 +36,24 @@ def with_instruments(
     windows : int, float, str, WindowOptions or None
     stated : bool
         Whether the caller asked for this residual, which then is not replaced.
+
+    Raises
+    ------
+    InputError
+        The caller asked for instruments and for friction that depends on the load.
     """
     if penalty.residual != _core.Residual.instruments:
         return problem, penalty
     reason = _CUMULATIVE if penalty.cumulative else ""
+    if problem.choice.model.resolved.load_friction:
+        reason = _LOADED
+        if stated:
+            raise InputError(
+                "it cannot be combined with friction that depends on the sensed load",
+                argument="residual",
+                value="instruments",
+                remedy=Action("call", {"residual": "sensor"}),
+            )
     if stated or not reason:
         free = [
             index

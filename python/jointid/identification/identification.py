@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import time
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -13,6 +14,8 @@ from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
+from jointid.problem.recordings import listed
+from jointid.problem.terms import loads
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
 
@@ -28,6 +31,8 @@ def identify(
     windows: Windows = None,
     torque_hold: str | None = None,
     mask_standstill: bool = True,
+    shift: Mapping[str, float] | None = None,
+    min_speed: float | None = None,
 ) -> Estimate:
     """Identify a joint's friction, and its torque sensor if it has one, from ordinary motion.
 
@@ -67,6 +72,14 @@ def identify(
     mask_standstill : bool
         Whether to leave out the parts in which the joint sticks or stands still, where friction is
         set-valued and the model does not apply. Default True.
+    shift : mapping of str to float, optional
+        Delays of "torque", "sensor" and "velocity" against the position [s], to be taken away; positive:
+        the signal is late. An empty mapping shifts nothing. Default: the delays that are certain; the
+        estimate's `delays` and its report tell them.
+    min_speed : float, optional
+        Motion slower than this is left out [rad/s or m/s]; 0 leaves out nothing. Default: chosen; 0 unless
+        slow motion contradicts the friction that faster motion shows (creep), and 0 for models whose
+        friction depends on slow motion, such as "stribeck". The estimate's `slow_motion` tells it.
 
     Returns
     -------
@@ -81,6 +94,25 @@ def identify(
     """
     started = time.perf_counter()
     chosen = Search.of(search)
+    stated = Model.of(model)
+    merged = stated.over(joint.model) if isinstance(joint, Joint) else stated
+    if merged.load_friction is True:
+        either = [
+            functools.partial(identify, recordings, joint, model=stated.replace(load_friction=load))
+            for load in loads(merged, listed(recordings), joint)
+        ]
+        found = [
+            each(
+                parameters=parameters,
+                search=chosen,
+                residual=residual,
+                windows=windows,
+                torque_hold=torque_hold,
+                mask_standstill=mask_standstill,
+            )
+            for each in either
+        ]
+        return min(found, key=lambda estimate: estimate.residuals.relative)
     prepared = prepare(
         recordings,
         joint,
@@ -90,6 +122,8 @@ def identify(
         windows=windows,
         torque_hold=torque_hold,
         mask_standstill=mask_standstill,
+        shift=shift,
+        min_speed=min_speed,
         threads=chosen.threads,
         choose=True,
     )

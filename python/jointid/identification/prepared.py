@@ -21,6 +21,13 @@ from jointid.identification.conclusion import infer
 from jointid.identification.follow_up import EstimateSource
 from jointid.identification.gain import with_instruments
 from jointid.identification.inference.given import of_given_facts
+from jointid.identification.inference.residual_side import of_residual_side
+from jointid.identification.refinements.refinements import (
+    Refinements,
+    without_creep,
+    without_delays,
+)
+from jointid.identification.refinements.slow_motion import checked_speed
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Outcome
 from jointid.identification.search.run import run_search
@@ -29,6 +36,7 @@ from jointid.identification.selection.selecting import select_model
 from jointid.joint.joint import Joint
 from jointid.joint.model import AUTO, Model
 from jointid.joint.parameters import Parameter
+from jointid.problem.constant_torque import balanced, with_fixed_offset
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import listed
 from jointid.problem.terms import Request, TermChoice, choose_terms
@@ -50,6 +58,10 @@ class Prepared:
     domain : SearchDomain
     windows : int, float, str, WindowOptions or None
         As given in the call.
+    given : tuple of Recording
+        As given in the call; those of the problem may be shifted.
+    refinements : Refinements
+        What was done to the data, and why.
     selection : Selection or None
         How the model was chosen; None if it was named.
     """
@@ -58,6 +70,8 @@ class Prepared:
     penalty: _core.Penalty
     domain: SearchDomain
     windows: Windows
+    given: tuple[Recording, ...]
+    refinements: Refinements
     selection: Selection | None = None
 
     def estimate(self, search: Search, outcome: Outcome, started: float) -> Estimate:
@@ -70,18 +84,24 @@ class Prepared:
         started : float
             Reading of `time.perf_counter` at the start of the identification.
         """
+        domain = self.domain
+        best = balanced(domain.names, domain.lower, domain.upper, outcome.best)
         estimate = infer(
             problem=self.problem,
             penalty=self.penalty,
-            domain=self.domain,
-            best=outcome.best,
-            shifts=self._window_shifts(outcome.best),
-            given=of_given_facts(self.problem, self.windows, self.domain, outcome.best),
+            domain=domain,
+            best=best,
+            shifts=self._window_shifts(best),
+            beside={
+                "residual_side": of_residual_side(self.problem, self.windows, domain, best),
+                "given": of_given_facts(self.problem, self.windows, domain, best),
+            },
             convergence=outcome.convergence,
             status=outcome.status,
             message=outcome.message,
             settings=self._settings(search),
             seconds=time.perf_counter() - started,
+            refinements=self.refinements,
         )
         source = EstimateSource(
             problem=self.problem,
@@ -102,7 +122,7 @@ class Prepared:
 
     def _settings(self, search: Search) -> dict[str, Any]:
         problem, penalty, choice = self.problem, self.penalty, self.problem.choice
-        runs = problem.recordings
+        runs = self.given
         return {
             "version": _core.__version__,
             "kind": runs[0].kind,
@@ -116,6 +136,8 @@ class Prepared:
             "cumulative": penalty.cumulative,
             "torque_hold": problem.torque_hold,
             "mask_standstill": problem.mask_standstill,
+            "shift": dict(problem.shift),
+            "min_speed": problem.min_speed,
             "seed": search.seed,
             "ga": None if search.method == "separable" else search.genetic.asdict(),
             "bounds_from_data": list(self.domain.from_data),
@@ -126,6 +148,7 @@ class Prepared:
         """Return the change of the parameters when windows are halved and doubled; None where that is impossible."""
         problem, domain = self.problem, self.domain
         options = problem.window_options(self.windows)
+        lower, upper = with_fixed_offset(domain.names, domain.lower, domain.upper, best)
         shifts: list[Array | None] = []
         for factor in (0.5, 2.0):
             try:
@@ -136,7 +159,7 @@ class Prepared:
             if other.window_count == self.penalty.window_count:
                 shifts.append(None)
                 continue
-            found = other.refit(domain.lower, domain.upper, best, threads=problem.threads)
+            found = other.refit(lower, upper, best, threads=problem.threads)
             shifts.append(found - best)
         return shifts[0], shifts[1]
 
@@ -161,6 +184,8 @@ def prepare(
     windows: Windows = None,
     torque_hold: str | None = None,
     mask_standstill: bool = True,
+    shift: Mapping[str, float] | None = None,
+    min_speed: float | None = None,
     threads: int = 0,
     choose: bool = False,
 ) -> Prepared:
@@ -204,14 +229,22 @@ def prepare(
         mask_standstill=mask_standstill,
         threads=whole_number("threads", threads, 0, 1024),
     )
+    problem, delays = without_delays(problem, shift)
+    speed = checked_speed(min_speed)
     selection = None
     if choose and not merged.named:
         problem, selection = select_model(problem, request, parameters, windows)
-    penalty = problem.penalty(windows)
+    problem, penalty, slow_motion = without_creep(problem, windows, speed)
     domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
     problem, penalty = with_instruments(problem, penalty, domain, windows, residual is not None)
     return Prepared(
-        problem=problem, penalty=penalty, domain=domain, windows=windows, selection=selection
+        problem=problem,
+        penalty=penalty,
+        domain=domain,
+        windows=windows,
+        given=runs,
+        refinements=Refinements(delays=delays, slow_motion=slow_motion),
+        selection=selection,
     )
 
 

@@ -52,7 +52,8 @@ class Joint:
     kind : {"revolute", "prismatic"}
         Default ``"revolute"``.
     inertia : float, optional
-        Of the drive, at the output [kg·m²]. Default: from `rotor_inertia`; without it, identified.
+        Of the drive alone, at the output [kg·m²]. Default: from `rotor_inertia`; without it, identified.
+        Without a torque sensor the identified inertia contains the link's.
     rotor_inertia : float, optional
         Motor side [kg·m²].
     gear_ratio : float
@@ -297,6 +298,29 @@ class Joint:
         if self.inertia is not None or self.rotor_inertia is None:
             return self.inertia
         return self.gear_ratio * self.gear_ratio * self.rotor_inertia
+
+    @property
+    def link_inertia(self) -> float:
+        """Inertia of the link about the joint's axis [kg·m²], or its mass [kg]; 0 without a link.
+
+        A link without a stated inertia is a point mass.
+        """
+        if self.link is None:
+            return 0.0
+        if self.kind == "prismatic":
+            return self.link.mass
+        if self.link.inertia is not None:
+            return self.link.inertia
+        return self.link.mass * self.link.centre_of_mass * self.link.centre_of_mass
+
+    @property
+    def known_inertia(self) -> float | None:
+        """Inertia that the drive's torque accelerates [kg·m²], or [kg]; None if it is not known.
+
+        A torque sensor sees the link; without one the link's inertia and the drive's are one.
+        """
+        drive = self.reflected_inertia
+        return drive if drive is None or self.sensor else drive + self.link_inertia
 
     @property
     def gravity_coefficients(self) -> GravityCoefficients:

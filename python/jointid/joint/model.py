@@ -14,6 +14,7 @@ from jointid.base.errors import InputError
 from jointid.joint.checks import check_choice, check_flag, finite_number, suggestion
 
 Gravity = Literal["none", "known", "free"]
+Load = Literal["drive", "link"]
 
 AUTO = "auto"
 """Name of a model that `identify` chooses from the recordings; as good as no name."""
@@ -47,8 +48,10 @@ class Model:
         has a sine and a cosine coefficient [N·m]. Default none.
     harmonics : collection of float, optional
         Orders of a torque that is periodic in the joint's angle. Default none.
-    load_friction : bool, optional
-        Whether friction grows with the magnitude of the drive's torque. Default False.
+    load_friction : bool or {"drive", "link"}, optional
+        Whether friction grows in proportion to a load: to the magnitude of the drive's torque ("drive"), or
+        of the torque behind the gear ("link"), which a sensor or gravity gives. True: whichever of the two fits
+        better. Default False.
     per_recording : collection of str, optional
         Coefficients with a separate value for each of several recordings, e.g. ("torque_offset",).
         Default none.
@@ -70,7 +73,7 @@ class Model:
     asymmetric: bool | None = None
     ripple: tuple[float, ...] | None = None
     harmonics: tuple[float, ...] | None = None
-    load_friction: bool | None = None
+    load_friction: bool | Load | None = None
     per_recording: tuple[str, ...] | None = None
 
     def __post_init__(self) -> None:
@@ -78,9 +81,10 @@ class Model:
             check_choice("", "name", self.name, (*_core.model_names(), AUTO))
         if self.gravity is not None:
             check_choice("", "gravity", self.gravity, get_args(Gravity))
-        for flag in ("asymmetric", "load_friction"):
-            if getattr(self, flag) is not None:
-                check_flag("", flag, getattr(self, flag))
+        if self.asymmetric is not None:
+            check_flag("", "asymmetric", self.asymmetric)
+        if self.load_friction not in (None, *get_args(Load)):
+            check_flag("", "load_friction", self.load_friction)
         for name in ("ripple", "harmonics"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, _orders(name, getattr(self, name)))
@@ -209,7 +213,7 @@ class ResolvedModel:
     asymmetric: bool = False
     ripple: tuple[float, ...] = ()
     harmonics: tuple[float, ...] = ()
-    load_friction: bool = False
+    load_friction: bool | Load = False
     per_recording: tuple[str, ...] = ()
 
     def __str__(self) -> str:

@@ -135,6 +135,13 @@ class Settings:
                 value=chosen.name,
                 remedy="use the model stribeck",
             )
+        if chosen.load_friction:
+            raise InputError(
+                "it acts on the sum of all other terms, which takes too long to search while samples arrive",
+                argument="load_friction",
+                value=chosen.load_friction,
+                remedy="leave it out",
+            )
         if model.per_recording:
             raise InputError(
                 "there is only one recording on line",

@@ -13,11 +13,13 @@ from jointid import _core
 from jointid.base.errors import InputError
 from jointid.identification.inference.covariance import parameter_covariance
 from jointid.identification.inference.inference import freedom_of, joint_of, parameters_of
+from jointid.identification.inference.undivided import divided, with_undivided
 from jointid.online.online_estimate import OnlineEstimate
 from jointid.online.pieces import SHORTEST, next_piece
 from jointid.online.plan import Plan, make_plan, outdated
 from jointid.online.samples import Samples
 from jointid.online.settings import Settings
+from jointid.problem.constant_torque import balanced, undivided
 from jointid.problem.inner_products import columns_with, size
 from jointid.recording.recording import Recording
 
@@ -178,16 +180,20 @@ class Sliding:
             return None
         if form.error > _ROUGH:
             raise InputError(form.reason, place="on-line identification")
-        best = _core.minimise_separable(form, domain.lower, domain.upper, threads=1).best
+        found = _core.minimise_separable(form, domain.lower, domain.upper, threads=1).best
+        best = balanced(domain.names, domain.lower, domain.upper, found)
         penalty, residual, jacobian = plan.penalty.linearised(best)
         sizes = np.linalg.norm(jacobian, axis=0)
         noise = size(residual) / np.sqrt(max(1, residual.size - best.size))
         alone = noise / np.where(sizes > 0.0, sizes, 1.0)
         freedom = freedom_of(domain, best, columns_with(jacobian, residual), alone)
         free = list(freedom.indices)
-        spread = parameter_covariance(
-            jacobian[:, free], residual, self._centre(plan, free), threads=1
-        )
+        names = list(domain.names)
+        groups = undivided([names[index] for index in free])
+        kept = divided(free, names, groups)
+        centre = self._centre(plan, kept)
+        spread = parameter_covariance(jacobian[:, kept], residual, centre, threads=1)
+        spread = with_undivided(spread, kept, free, names, groups)
         parameters = parameters_of(
             plan.problem, plan.frame, domain, best, freedom, spread, {}, (None, None)
         )

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import TypeVar
 
 import numpy as np
@@ -39,6 +40,10 @@ class Problem:
     mask_standstill : bool
     threads : int
         0 (default): all.
+    shift : mapping of str to float
+        Delays that were taken away from the signals [s]. Default: none.
+    min_speed : float
+        What is slower is left out [rad/s or m/s]. Default 0: nothing.
     """
 
     recordings: tuple[Recording, ...]
@@ -47,6 +52,8 @@ class Problem:
     torque_hold: str | None
     mask_standstill: bool
     threads: int = 0
+    shift: Mapping[str, float] = field(default_factory=dict)
+    min_speed: float = 0.0
 
     def penalty(self, windows: Windows) -> _core.Penalty:
         """Return the penalty over these windows: an int is their number, a float their duration [s].
@@ -162,21 +169,31 @@ class Problem:
     @functools.cached_property
     def in_core(self) -> list[_core.Recording]:
         """The recordings for the core; they share the arrays, and each computes its mask once."""
-        return [self._in_core(recording) for recording in self.recordings]
+        return [self._in_core(number) for number in range(len(self.recordings))]
 
-    def _in_core(self, recording: Recording) -> _core.Recording:
+    def hold(self, number: int) -> str:
+        """How the torque of a recording varies between samples: "zoh" or "linear"."""
         hold = self.torque_hold
         if hold is None:
-            hold = recording.torque_hold
+            hold = self.recordings[number].torque_hold
         if hold is None:
             hold = (self.joint.torque_hold if self.joint is not None else None) or "linear"
         check_choice("", "torque_hold", hold, _HOLDS)
+        return hold
+
+    def output_torque(self, number: int) -> Array:
+        """The drive's torque of a recording at the output [N·m or N]."""
+        return output_torque(self.recordings[number], self.joint)
+
+    def _in_core(self, number: int) -> _core.Recording:
+        recording = self.recordings[number]
         return _core.Recording(
             time=recording.time,
             position=recording.position,
             velocity=recording.velocity,
-            torque=output_torque(recording, self.joint),
+            torque=self.output_torque(number),
             sensor=recording.sensor if self.choice.sensor else None,
-            torque_hold=_HOLDS[hold],
+            torque_hold=_HOLDS[self.hold(number)],
             gap_after=[gap.index for gap in recording.gaps],
+            min_speed=self.min_speed,
         )

@@ -8,10 +8,11 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.joint.checks import check_choice
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model
+from jointid.joint.model import Load, Model, ResolvedModel
 from jointid.recording.recording import Recording
 
 _GRAVITY = ("gravity_cos", "gravity_sin")
+_LOADS = {"link": "load_friction_link"}
 _SENSOR = ("sensor_gain", "sensor_offset")
 
 # What the residual compares: the torque with the part of the reading that the motion explains, the reading
@@ -86,11 +87,20 @@ def choose_terms(
     model = stated.resolved
     _check_kind(recordings, joint)
     sensor = _has_sensor(recordings, joint)
-    residual = request.residual or ("instruments" if sensor else "torque")
+    # The instruments project the reading, which load friction needs apart for each direction of motion.
+    usual = "instruments" if sensor and not model.load_friction else "torque"
+    residual = request.residual or usual
     check_choice("", "residual", residual, RESIDUALS)
     if residual != "torque" and not sensor:
         raise InputError(
             "the recording has no torque sensor",
+            argument="residual",
+            value=residual,
+            remedy=Action("call", {"residual": "torque"}),
+        )
+    if residual == "instruments" and model.load_friction:
+        raise InputError(
+            "load friction depends on the reading itself, which instruments replace",
             argument="residual",
             value=residual,
             remedy=Action("call", {"residual": "torque"}),
@@ -109,12 +119,14 @@ def choose_terms(
             value=model.gravity,
             remedy="give a joint with a link, or set gravity to free",
         )
-    offset, dropped = _offset(base, model.asymmetric, sensor)
+    offset, dropped = _offset(base, model, sensor)
     friction = next(entry for entry in _core.models() if entry.name == model.name)
     wanted = {"inertia", *_friction(friction.terms, model.asymmetric)}
     wanted.update(_GRAVITY if model.gravity != "none" else ())
     wanted.update(_SENSOR if sensor else ())
-    wanted.update(("load_friction",) if model.load_friction else ())
+    wanted.update(
+        (_LOADS.get(str(model.load_friction), "load_friction"),) if model.load_friction else ()
+    )
     wanted.update(("torque_offset",) if offset else ())
     terms = _ordered(wanted, model.ripple, model.harmonics)
     apart = stated.per_recording
@@ -131,6 +143,12 @@ def choose_terms(
         gear_ratio=base.gear_ratio,
         dropped=dropped,
     )
+
+
+def loads(model: Model, recordings: Sequence[Recording], joint: Joint | None) -> tuple[Load, ...]:
+    """Return what friction may depend on in these recordings: the torque behind the gear must be known somehow."""
+    sensor = _has_sensor(recordings, joint)
+    return ("drive", "link") if sensor or model.resolved.gravity != "none" else ("drive",)
 
 
 def _check_kind(recordings: Sequence[Recording], joint: Joint | None) -> None:
@@ -168,7 +186,7 @@ def _friction(terms: Sequence[str], asymmetric: bool) -> list[str]:
     return [f"{term}_{side}" for term in terms for side in ("positive", "negative")]
 
 
-def _offset(joint: Joint, asymmetric: bool, sensor: bool) -> tuple[bool, str]:
+def _offset(joint: Joint, model: ResolvedModel, sensor: bool) -> tuple[bool, str]:
     """Return whether the torque has a separate offset, and the message if another term replaces it."""
     if sensor:
         if joint.torque_offset:
@@ -179,18 +197,9 @@ def _offset(joint: Joint, asymmetric: bool, sensor: bool) -> tuple[bool, str]:
                 remedy=Action("call", {"torque_offset": False}, function="Joint"),
             )
         return False, ""
-    if asymmetric:
-        if joint.torque_offset:
-            raise InputError(
-                "torque_offset and asymmetric Coulomb friction are indistinguishable while the joint moves",
-                argument="torque_offset",
-                value=True,
-                remedy=(
-                    Action("call", {"torque_offset": False}, function="Joint"),
-                    "leave out asymmetric",
-                ),
-            )
-        return False, "torque_offset: asymmetric Coulomb friction contains it"
+    if joint.torque_offset is None and model.asymmetric and model.gravity != "none":
+        # No motion tells a constant from a difference of Coulomb frictions; gravity it does tell.
+        return False, "torque_offset: all torque that does not reverse is taken for gravity"
     return joint.torque_offset is not False, ""
 
 

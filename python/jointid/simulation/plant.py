@@ -111,7 +111,7 @@ def simulated_joint(
         weights.append(_weight(joint.link))
     load = 0.0
     if isinstance(payload, Link):
-        link_inertia += _inertia(payload, revolute)
+        link_inertia += Joint(kind=joint.kind, link=payload).link_inertia
         if revolute:
             weights.append(_weight(payload))
     else:
@@ -217,7 +217,7 @@ def control_estimates(joint: Joint) -> dict[str, Any]:
 
 def _inertias(joint: Joint, values: Values) -> tuple[float, float]:
     """Inertia of the drive, and of the link behind the sensor."""
-    link = 0.0 if joint.link is None else _inertia(joint.link, joint.kind == "revolute")
+    link = joint.link_inertia
     identified = values.get("inertia")
     if identified is not None:
         # Without a sensor the identified inertia includes the link's.
@@ -231,14 +231,6 @@ def _inertias(joint: Joint, values: Values) -> tuple[float, float]:
         )
     values.used["inertia"] = drive if joint.sensor else drive + link
     return drive, link
-
-
-def _inertia(link: Link, revolute: bool) -> float:
-    if not revolute:
-        return link.mass
-    if link.inertia is not None:
-        return link.inertia
-    return link.mass * link.centre_of_mass * link.centre_of_mass
 
 
 def _weight(link: Link) -> tuple[float, float]:

@@ -26,7 +26,11 @@ def terms_of(joint: Joint) -> tuple[_core.Term, ...]:
     return tuple(
         term
         for term in _core.terms()
-        if (
+        if not (
+            term.needs_load
+            and (term.key == "load_friction_link") != (model.load_friction == "link")
+        )
+        and (
             term.key in friction
             if term.option == "name"
             else present.get(term.option, bool(getattr(model, term.option, False)))

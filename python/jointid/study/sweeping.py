@@ -88,6 +88,8 @@ def sweep(
     windows: Windows = None,
     torque_hold: str | None = None,
     mask_standstill: bool = True,
+    shift: Mapping[str, float] | None = None,
+    min_speed: float | None = None,
     standard_errors: bool = False,
     tracking: bool = False,
     truth: Mapping[str, float] | None = None,
@@ -112,7 +114,7 @@ def sweep(
         ``"sensors.FIELD"``, ``"controller.FIELD"``, ``"truth.NAME"``. Default: one cell.
     trials : int
         Number for each combination. Default 10.
-    model, parameters, residual, windows, torque_hold, mask_standstill
+    model, parameters, residual, windows, torque_hold, mask_standstill, shift, min_speed
         As in `identify`, for all cells, except that a model without a name is "coulomb_viscous".
     search : Search or str, optional
         As in `identify`. In every cell, trial t adds t to its seed, for the search and for the noise of a
@@ -159,6 +161,8 @@ def sweep(
         "windows": windows,
         "torque_hold": torque_hold,
         "mask_standstill": mask_standstill,
+        "shift": shift,
+        "min_speed": min_speed,
     }
     work = work_of(subject, joint, grid, Search.of(search), common, standard_errors, tracking)
     if work.threads == 0 and executor is not None:

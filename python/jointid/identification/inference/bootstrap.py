@@ -69,6 +69,8 @@ def _parameter(
     else:
         high = quantile(0.975, freedom) * stderr
         low = -high
+    if p.stderr == np.inf:  # nothing determines it, whatever the draws' convention
+        stderr, low, high = np.inf, -np.inf, np.inf
     usable = p.stderr is not None and 0.0 < p.stderr < np.inf
     return BootstrapParameter(
         name=p.name,

@@ -18,6 +18,7 @@ from jointid.identification.search.domain import SearchDomain
 from jointid.identification.search.stated_bounds import known_values
 from jointid.joint.joint import Joint
 from jointid.joint.tolerances import Tolerances, share_of
+from jointid.problem.constant_torque import with_fixed_offset
 from jointid.problem.problem import Problem
 from jointid.problem.windows import Windows
 
@@ -58,18 +59,21 @@ def of_given_facts(
     if joint is None or not joint.tolerances.given:
         return None
     parts = problem.parts(windows)
-    shapes = {shape.name for shape in _core.shapes()}
-    linear = np.array([name not in shapes for name in domain.names])
+    # Shapes do not grow with the torque, nor does friction as a share of the load.
+    scaled = {term.name for term in map(_core.term, problem.choice.terms) if not term.needs_load}
+    linear = np.array([name.split("[")[0] in scaled for name in domain.names])
+
+    low, high = with_fixed_offset(domain.names, domain.lower, domain.upper, best)
 
     def refitted(change: _Change, side: float) -> Array:
         """The parameters with the fact at one of its limits."""
         scale = np.where(linear, 1.0 + side * change.scale, 1.0)
-        lower = (domain.lower + side * change.moved) / scale
-        upper = (domain.upper + side * change.moved) / scale
+        lower = (low + side * change.moved) / scale
+        upper = (high + side * change.moved) / scale
         start = np.clip(best / scale, lower, upper)
         return np.asarray(scale * parts.refit(lower, upper, start, threads=problem.threads))
 
-    same = parts.refit(domain.lower, domain.upper, best, threads=problem.threads)
+    same = parts.refit(low, high, best, threads=problem.threads)
     square = np.zeros(len(best))
     for change in _changes(problem, joint, domain, best):
         if change.scale or np.any(change.moved):

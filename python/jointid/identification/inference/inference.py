@@ -22,6 +22,8 @@ from jointid.problem.window_table import WindowTable, r_squared, relative_residu
 
 Array = NDArray[np.float64]
 
+# Not in the intervals: what another choice would give, and what the recording knows nothing of.
+_BESIDE = ("residual_side", "given")
 _NORMAL = 1.959964  # standard errors of a 95 % interval
 
 
@@ -91,6 +93,8 @@ def _terms_and_shapes(penalty: _core.Penalty) -> dict[str, _core.Term | _core.Sh
     for name, term in zip(penalty.names, penalty.terms, strict=False):
         known[name] = term
         known.update({shape: shapes[shape] for shape in term.shapes if shape not in known})
+    # What acts on the sum of all terms belongs to none of them.
+    known.update({name: shapes[name] for name in penalty.names if name not in known})
     return known
 
 
@@ -141,7 +145,7 @@ def parameters_of(
 
 def _half_width(chance: float, systematic: Mapping[str, float]) -> float:
     """Half of the 95 % interval: chance, already at its quantile, and what the recording shows besides."""
-    shown = math.hypot(*(size for part, size in systematic.items() if part != "given"))
+    shown = math.hypot(*(size for part, size in systematic.items() if part not in _BESIDE))
     return math.hypot(chance, _NORMAL * shown)
 
 
@@ -154,9 +158,7 @@ def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Join
             name=recording.name,
             kind=recording.kind,
             sensor=choice.sensor,
-            torque_offset=None
-            if choice.model.resolved.asymmetric
-            else "torque_offset" in choice.terms,
+            torque_offset="torque_offset" in choice.terms,
         )
     table = dict(base.parameters)
     for name, found in parameters.items():
@@ -169,8 +171,10 @@ def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Join
         table[name] = Parameter(name=name, value=found.value, min=low, max=high, vary=vary)
     inertia = parameters.get("inertia")
     if inertia is not None and inertia.vary and base.reflected_inertia is not None:
-        # The estimate replaces the joint's own value.
-        unstated = replace(base.tolerances, inertia=None, rotor_inertia=None)
-        base = base.replace(inertia=inertia.value, rotor_inertia=None, tolerances=unstated)
+        # The estimate replaces the joint's own value, which is the drive's alone.
+        drive = inertia.value - (0.0 if base.sensor else base.link_inertia)
+        if drive > 0.0:
+            others = replace(base.tolerances, inertia=None, rotor_inertia=None)
+            base = base.replace(inertia=drive, rotor_inertia=None, tolerances=others)
     model = choice.model.replace(per_recording=base.model.per_recording)
     return base.replace(parameters=table, model=model)

@@ -104,7 +104,6 @@ def domain_for(
             )
         lower[index], upper[index] = low, high
     _refuse_zero_gain(penalty, names, lower, upper)
-    _refuse_collinear(names, lower, upper)
     if bool(np.all(lower == upper)):
         raise InputError("every parameter is fixed; leave at least one free", argument="parameters")
     return SearchDomain(
@@ -143,21 +142,5 @@ def _refuse_zero_gain(
                 "set its min above 0",
                 "set its max below 0",
                 Action("call", {"residual": "torque"}),
-            ),
-        )
-
-
-def _refuse_collinear(names: tuple[str, ...], lower: Array, upper: Array) -> None:
-    free = {name for name, low, high in zip(names, lower, upper, strict=True) if low < high}
-    if {"coulomb_positive", "coulomb_negative", "sensor_offset"} <= free:
-        raise InputError(
-            "asymmetric Coulomb friction and sensor_offset are indistinguishable while the joint moves",
-            argument="asymmetric",
-            value=True,
-            remedy=(
-                Action(
-                    "call", {"parameters": {"sensor_offset": ...}}, text="which fixes the offset"
-                ),
-                "leave out asymmetric",
             ),
         )

@@ -63,12 +63,16 @@ def parameter_bounds(
 
 
 def known_values(joint: Joint | None) -> dict[str, Parameter]:
-    """Return parameters that the joint's data fix: reflected inertia, and gravity when it is known."""
+    """Return parameters that the joint's data fix: known inertia, and gravity when it is known."""
     values: dict[str, Parameter] = {}
     if joint is None:
         return values
-    if joint.reflected_inertia is not None:
-        values["inertia"] = Parameter(name="inertia", value=joint.reflected_inertia, vary=False)
+    inertia = joint.known_inertia
+    if inertia is not None:
+        values["inertia"] = Parameter(name="inertia", value=inertia, vary=False)
+        if joint.link is not None:
+            share = joint.link_inertia / (joint.link_inertia + (joint.reflected_inertia or 0.0))
+            values["link_share"] = Parameter(name="link_share", value=share, vary=False)
     if joint.model.resolved.gravity == "known":
         gravity = joint.gravity_coefficients
         values["gravity_cos"] = Parameter(name="gravity_cos", value=gravity.cos, vary=False)

@@ -19,7 +19,6 @@ Array = NDArray[np.float64]
 _BLOCKS, _PIECES, _FEWEST = 10, 4, 4
 # A coefficient below so many of its standard errors is not significant; the finding model_too_rich has the same rule.
 _SIGNIFICANT = 2.0
-_STATIC = ("static", "static_positive", "static_negative")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,7 +82,7 @@ def _refusal(fitted: Fitted, columns: ShapedColumns, candidate: Candidate) -> st
     for place, index in enumerate(columns.free(choice)):
         term = _core.term(columns.keys[index])
         value = fitted.whole[best, place]
-        if term.name in _STATIC and value < _SIGNIFICANT * errors[place]:
+        if term.friction and term.shapes and value < _SIGNIFICANT * errors[place]:
             return f"its {term.name} friction is not significant"
         if term.friction and term.non_negative and value < -_SIGNIFICANT * errors[place]:
             return f"its {term.name} friction is negative"

@@ -61,7 +61,8 @@ def select_model(
     entries: list[Entry] = []
     energy = 0.0
     if len(rivals) > 1:
-        widest = replace(problem, choice=rivals[-1].choice)
+        # The torque is what all predict, whatever the residual compares.
+        widest = replace(problem, choice=replace(rivals[-1].choice, residual="torque"))
         try:
             penalty = widest.penalty(None if windows == "cumulative" else windows)
         except (
@@ -119,12 +120,19 @@ def _judged(entries: Sequence[Entry], energy: float) -> tuple[Candidate, Selecti
 def excess(missed: Array, best: Array) -> float:
     """Return by how much a model's held-out errors are larger than the best one's, in standard errors.
 
-    Ratios are compared, block by block: a few slow windows hold nearly all of a wrong model's squares.
+    The larger of two answers, over the blocks: of the logarithms' difference, because a few slow blocks may
+    hold nearly all of a wrong model's squares; and of the squares' difference, because a misfit that both
+    models have makes the ratios of the quiet blocks arbitrary.
     """
     floor = 1e-30 * float(best.sum() + missed.sum()) + 1e-300
     ratio = np.log((missed + floor) / (best + floor))
-    error = float(np.std(ratio, ddof=1) / np.sqrt(len(ratio)))
-    mean = float(ratio.mean())
+    return max(_in_errors(ratio), _in_errors(missed - best))
+
+
+def _in_errors(differences: Array) -> float:
+    """Return the mean of differences over its standard error."""
+    mean = float(differences.mean())
+    error = float(np.std(differences, ddof=1) / np.sqrt(len(differences)))
     if error == 0.0:
         return float(np.sign(mean)) * (float("inf") if mean else 0.0)
     return mean / error

@@ -66,7 +66,11 @@ class Injection:
             self._run(number, recording, table)
             for number, recording in enumerate(problem.recordings)
         ]
-        true = replace(problem, recordings=tuple(run.true for run in self._runs))
+        true = replace(
+            problem,
+            recordings=tuple(run.true for run in self._runs),
+            choice=replace(problem.choice, residual="torque"),
+        )
         period = min(recording.sample_period for recording in problem.recordings)
         self._fine = true.penalty(_core.WindowOptions(duration=period))
         shapes = self._fine.columns(theta[self._fine.coefficients :])
@@ -76,7 +80,7 @@ class Injection:
             if term.name in ("sensor_gain", "sensor_offset")
         ]
         # The torque at the sensor is the same whatever the sensor's parameters are.
-        self._sensed = shapes[:, self._reading] @ theta[self._reading]
+        self._sensed = np.einsum("ij,j->i", shapes[:, self._reading], theta[self._reading])
         # The noise of position, velocity and sensor explains a part of the residuals; the torque has the rest.
         self._share = 0.0
         trial = replace(problem, recordings=self.recordings(theta, rng))
@@ -139,7 +143,7 @@ class Injection:
         fine = self._fine
         columns = fine.columns(theta[fine.coefficients :])
         columns[:, self._reading] = 0.0
-        needed = columns @ theta[: fine.coefficients] + self._sensed
+        needed = np.einsum("ij,j->i", columns, theta[: fine.coefficients]) + self._sensed
         bounds, run_of = fine.windows, np.asarray(fine.recording_of)
         made = []
         for number, run in enumerate(self._runs):
@@ -152,7 +156,11 @@ class Injection:
     def sizes(self, theta: Array) -> Array:
         """Return the change of the torque for one unit of each parameter, as a share; infinite for shapes."""
         columns = self._fine.columns(theta[self._fine.coefficients :])
-        level = float(np.sqrt(np.sum(np.square(columns @ theta[: self._fine.coefficients]))))
+        level = float(
+            np.sqrt(
+                np.sum(np.square(np.einsum("ij,j->i", columns, theta[: self._fine.coefficients])))
+            )
+        )
         sizes = np.full(len(theta), np.inf)
         if level > 0.0:
             sizes[: self._fine.coefficients] = np.sqrt(np.square(columns).sum(axis=0)) / level

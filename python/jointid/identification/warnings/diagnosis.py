@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from jointid.estimate.findings import Finding, Severity
-from jointid.identification.warnings import registry, sensor_lag
+from jointid.identification.warnings import registry
 from jointid.identification.warnings.evidence import Evidence
 
 _ORDER: tuple[Severity, ...] = ("blocking", "warning", "info")
@@ -11,12 +11,7 @@ _ORDER: tuple[Severity, ...] = ("blocking", "warning", "info")
 
 def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
     """All findings, the most severe first; those of one severity in the order of the checks."""
-    raised = [(check, found) for check in registry.CHECKS for found in check.find(evidence)]
-    codes = {found.code for _, found in raised}
-    # A controller feeds the ripple of a sensor back; the resulting motion looks like a lag of the sensor.
-    modelled = any(name.startswith("ripple_") for name in evidence.parameters)
-    ripples = modelled or "ripple" in codes
-    kept = [found for check, found in raised if not (ripples and check is sensor_lag.CHECK)]
+    kept = [found for check in registry.CHECKS for found in check.find(evidence)]
     units = [found for found in kept if found.code == "implausible_units"]
     # With degrees the motor's angle is wrong, too: a residual that oscillates with it is not ripple.
     spurious = [found for found in kept if units and found.code == "ripple"]

@@ -9,10 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.estimate.delays import Delay
+from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.identification.inference.covariance import Triangle
 from jointid.identification.warnings.inspection import Inspected
 from jointid.joint.joint import Joint
+from jointid.problem.constant_torque import Undivided, undivided
 from jointid.problem.problem import Problem
 from jointid.problem.window_table import WindowTable
 from jointid.recording.recording import Recording
@@ -70,6 +73,10 @@ class Evidence:
         At the estimated shape parameters.
     correlations : mapping
         Of each pair of free parameters, offsets centred.
+    delays : mapping of str to Delay
+        Of the signals against the position.
+    slow_motion : SlowMotion or None
+        How slow windows disagree with faster ones.
     """
 
     problem: Problem
@@ -88,6 +95,8 @@ class Evidence:
     inspections: tuple[Inspected, ...]
     at_best: Regressor
     correlations: Mapping[tuple[str, str], float]
+    delays: Mapping[str, Delay]
+    slow_motion: SlowMotion | None
 
     @property
     def recordings(self) -> tuple[Recording, ...]:
@@ -105,6 +114,13 @@ class Evidence:
         return self.problem.choice.model.resolved.name
 
     @property
+    def undivided(self) -> tuple[Undivided, ...]:
+        """Directions along which nothing tells an offset from the difference of Coulomb frictions."""
+        return undivided(
+            [p.name for p in self.parameters.values() if p.vary and p.at_bound is None]
+        )
+
+    @property
     def sensor_parameters(self) -> tuple[str, ...]:
         """Parameters of the torque sensor."""
         names = ("sensor_gain", "sensor_offset")
@@ -114,8 +130,7 @@ class Evidence:
         """Window integrals of every term and of the target, at the estimated shape parameters or others [unit · s]."""
         if best is None:
             return self.at_best
-        count = self.penalty.coefficients
-        columns = self.penalty.columns(best[count:])
+        columns = self.penalty.linear_columns(best)
         return regressor(self.penalty, columns, self.problem.threads)
 
 

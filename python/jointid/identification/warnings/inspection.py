@@ -55,7 +55,6 @@ def inspect(recording: Recording, threads: int = 0) -> Inspected:
         position=recording.position,
         velocity=recording.velocity,
         velocity_derived=recording.velocity_derived,
-        sensor=recording.sensor if recording.kind == "revolute" else None,
         period=recording.sample_period,
         channels=[
             (signal, rules.get(name, _core.SpikeRule.other), True)

@@ -43,10 +43,11 @@ class _Reason:
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
+    told = {name for each in evidence.undivided for name in each.change}  # by a finding of its own
     reasons: dict[str, list[_Reason]] = {
         p.name: found
         for p in evidence.parameters.values()
-        if (found := _why_undetermined(p, evidence))
+        if p.name not in told and (found := _why_undetermined(p, evidence))
     }
     for name, reason in _between_the_regressions(evidence):
         reasons.setdefault(name, [reason])

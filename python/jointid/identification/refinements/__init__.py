@@ -1,0 +1,1 @@
+"""Refinements of the data before the search: delays between signals, and a minimum speed."""

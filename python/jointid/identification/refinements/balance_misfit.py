@@ -1,0 +1,74 @@
+"""Whether the torque balance fits better with a signal shifted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.problem.problem import Problem
+from jointid.recording.recording import Recording
+
+Array = NDArray[np.float64]
+
+_DECAYS = (0.02, 0.05, 0.1, 0.25)  # Stribeck speeds, of the peak speed
+
+
+def fits_better(before: Problem, after: Problem, least: float) -> bool:
+    """Whether the sum of squared residuals falls by more than a share from one problem to the other.
+
+    Parameters
+    ----------
+    before, after : Problem
+        The second has the same recordings with a signal shifted; samples that it lacks are left out of both.
+    least : float
+        The share.
+    """
+    rows = tuple(
+        _rows_of(run, other) for run, other in zip(before.recordings, after.recordings, strict=True)
+    )
+    return _misfit(after) < (1.0 - least) * _misfit(replace(before, recordings=rows))
+
+
+def _misfit(problem: Problem) -> float:
+    """Share of the torque's integrals that the terms do not explain, whatever their coefficients."""
+    terms = [_core.term(key) for key in problem.choice.terms]
+    keys = tuple(term.key for term in terms if not term.shapes)
+    decays = any(term.shapes for term in terms)
+    if decays:
+        keys = (*keys, "static")
+    choice = replace(
+        problem.choice,
+        terms=tuple(term.key for term in _core.terms() if term.key in keys)
+        + tuple(key for key in keys if key not in {term.key for term in _core.terms()}),
+        residual="torque",
+    )
+    penalty = replace(problem, choice=choice).penalty(None)
+    shapes = [(1.0 / (part * problem.peak_speed)) ** 2 for part in _DECAYS] if decays else []
+    columns = np.asarray(penalty.columns(np.array(shapes[:1])))
+    if decays:
+        static = list(penalty.names).index("static")
+        others = [np.asarray(penalty.columns(np.array([k])))[:, static] for k in shapes[1:]]
+        columns = np.column_stack([columns, *others])
+    weight = 1.0 / np.sqrt(np.asarray(penalty.usable_duration))
+    columns, target = columns * weight[:, None], np.asarray(penalty.target) * weight
+    sizes = np.linalg.norm(columns, axis=0)
+    columns = columns / np.where(sizes > 0.0, sizes, 1.0)
+    found = np.linalg.lstsq(columns, target, rcond=1e-10)[0]
+    missed = target - columns @ found
+    return float(missed @ missed) / max(float(target @ target), 1e-300)
+
+
+def _rows_of(recording: Recording, other: Recording) -> Recording:
+    """The samples of a recording at the other's times."""
+    kept = np.searchsorted(recording.time, other.time)
+    if len(kept) == len(recording):
+        return recording
+    return Recording(
+        **{name: getattr(recording, name)[kept] for name in recording.signals},
+        kind=recording.kind,
+        torque_hold=recording.torque_hold,
+        velocity_derived=recording.velocity_derived,
+    )

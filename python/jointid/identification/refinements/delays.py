@@ -1,0 +1,235 @@
+"""Constant delays of torque, sensor and velocity against the position.
+
+Each signal is held against the motion by itself: the velocity against the position's rate, the sensor's
+reading against link inertia and gravity, the torque against inertia, gravity and friction as any function of
+the speed. So no delay is blamed on another signal. A model error may still ask for a shift, but not for the same one
+of every part of the torque; see `_torque`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+from jointid.estimate.delays import Delay
+from jointid.identification.refinements.balance_columns import conservative, friction, stacked
+from jointid.identification.refinements.balance_misfit import fits_better
+from jointid.identification.refinements.shift_fit import Balance, Shift, fit_shift
+from jointid.identification.refinements.smooth_windows import SmoothWindows, half_length
+from jointid.identification.refinements.stretches import Piece, pieces_of
+from jointid.problem.problem import Problem
+from jointid.recording.shifting import shifted
+
+_REACH = 0.006  # [s] of the search for the least misfit; at slow rates three samples
+_SMALL = 3e-4  # [s]; a shorter delay of torque or sensor is left alone
+_SURE = 5.0  # standard errors
+_SURE_OF_VELOCITY = 8.0  # standard errors; no friction stands between velocity and position
+_VELOCITY = 0.35  # sample periods; a backward difference has 0.5
+_SUSPECT = 0.6  # of what would be long enough: look closer
+_ALIKE, _BARELY_ALIKE = 0.5, 0.7  # of the delay: how far estimates of it may be apart
+_MOST_LEFT = 0.5  # of a signal's variance unexplained: other torques act
+_MOST_LEFT_OF_VELOCITY = 0.05
+# The fall of the sum of squares that makes a shift worth it: noise of a reading leaves little to fall.
+_LEAST_GAIN = {"velocity": 0.01, "sensor": 0.0, "torque": 0.02}
+_CLEAR = 3  # samples from a reversal, beside half a window
+
+
+def refined_delays(
+    problem: Problem, given: Mapping[str, float] | None
+) -> tuple[Problem, dict[str, Delay]]:
+    """Return the problem with its signals' delays taken away, and the delays by signal.
+
+    Parameters
+    ----------
+    problem : Problem
+        Of the recordings as they are.
+    given : mapping of str to float, optional
+        Delays to take away [s], no others. Default: those that are certain and without which the torque
+        balance fits better.
+    """
+    choose = given is None
+    shift = dict(given or {})
+    if shift:
+        problem = _shifted(problem, shift)
+    found: dict[str, Delay] = {}
+    pieces = pieces_of(problem)
+    for signal, measure in (("velocity", _velocity), ("sensor", _sensor), ("torque", _torque)):
+        measured = measure(pieces)
+        if measured is None:
+            continue
+        left, certain = measured
+        taken = shift.get(signal, 0.0)
+        value, fits = taken + left.value, False
+        if certain:
+            without = _shifted(problem, {signal: left.value})
+            fits = fits_better(problem, without, _LEAST_GAIN[signal])
+            # Friction that the model lacks may look like a late torque; the others are measured without friction.
+            certain = fits or signal != "torque"
+            if fits and choose:
+                shift[signal] = taken = left.value
+                problem, pieces = without, pieces_of(without)
+        found[signal] = Delay(
+            signal=signal,
+            value=value,
+            stderr=left.stderr,
+            certain=certain,
+            fits=fits,
+            applied=taken,
+        )
+    return replace(problem, shift=shift) if shift else problem, found
+
+
+def _shifted(problem: Problem, shift: Mapping[str, float]) -> Problem:
+    return replace(problem, recordings=tuple(shifted(run, shift) for run in problem.recordings))
+
+
+def _velocity(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
+    pieces = [piece for piece in pieces if not piece.stretch.derived]
+    if not pieces:
+        return None
+    windows = []
+    for piece in pieces:
+        half = half_length(replace(piece.stretch, derived=True))
+        windows.append(
+            SmoothWindows(
+                stretch=piece.stretch,
+                half=half,
+                stride=max(1, half // 2),
+                margin=_margin(piece),
+                usable_only=False,
+            )
+        )
+    columns = stacked([[each.rate(each.stretch.position)] for each in windows])
+    balance = Balance(
+        windows=windows,
+        signals=[piece.stretch.velocity for piece in pieces],
+        columns=columns,
+        conservative=1,
+        held=False,
+    )
+    period = pieces[0].stretch.period
+    found = _searched(balance, period, _VELOCITY * period)
+    if found is None or found.unexplained > _MOST_LEFT_OF_VELOCITY:
+        return None
+    long = abs(found.value) > max(_VELOCITY * period, _SURE_OF_VELOCITY * found.stderr)
+    return found, long
+
+
+def _sensor(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
+    pieces = [piece for piece in pieces if piece.sensor is not None]
+    if not pieces:
+        return None
+
+    def balance(factor: int) -> Balance:
+        windows = []
+        for piece in pieces:
+            half = factor * half_length(piece.stretch, 3)
+            windows.append(
+                SmoothWindows(
+                    stretch=piece.stretch,
+                    half=half,
+                    stride=max(1, half // 2),
+                    margin=_margin(piece),
+                    clear=half + _CLEAR,
+                    usable_only=False,
+                )
+            )
+        # Of a control cycle: the reading is taken before the new command acts, so it shows the
+        # acceleration of the interval before its sample.
+        columns = stacked(
+            [
+                conservative(each, piece.angle, delayed=piece.held)
+                for each, piece in zip(windows, pieces, strict=True)
+            ]
+        )
+        return Balance(
+            windows=windows,
+            signals=[piece.sensor for piece in pieces if piece.sensor is not None],
+            columns=columns,
+            conservative=columns.shape[1],
+            held=False,
+        )
+
+    period = pieces[0].stretch.period
+    found = _searched(balance(1), period, _SMALL)
+    if found is None or found.unexplained > _MOST_LEFT:
+        return None
+    # An early reading is one that is not of a control cycle, up to half a sample.
+    least = _SMALL if found.value > 0.0 or not pieces[0].held else _SMALL + 0.6 * period
+    if not _is_long(found, least):
+        return found, False
+    smoother = _searched(balance(4), period, 0.0)
+    return found, smoother is not None and found.agrees(smoother, _ALIKE)
+
+
+def _torque(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
+    """The torque's delay, and whether it is certain.
+
+    Certain is what conservative torque and friction ask for alike, with and without an inertia that
+    varies, with and without the reversals, and beside pre-sliding friction: the last two fake a delay at
+    the reversals, the first away from them.
+    """
+
+    def windows(clear: bool) -> list[SmoothWindows]:
+        result = []
+        for piece in pieces:
+            half, margin = half_length(piece.stretch), _margin(piece)
+            result.append(
+                SmoothWindows(
+                    stretch=piece.stretch,
+                    half=half,
+                    stride=max(1, half // 2),
+                    margin=margin,
+                    clear=half + margin if clear else 0,
+                )
+            )
+        return result
+
+    def balance(clear: bool = False, varying: bool = False, bristles: bool = False) -> Balance:
+        each = list(zip(windows(clear), pieces, strict=True))
+        first = [conservative(w, piece.angle, varying=varying) for w, piece in each]
+        rest = [friction(w, piece.angle, bristles=bristles) for w, piece in each]
+        return Balance(
+            windows=[w for w, _ in each],
+            signals=[piece.torque for piece in pieces],
+            columns=stacked([[*a, *b] for a, b in zip(first, rest, strict=True)]),
+            conservative=len(first[0]),
+            held=pieces[0].held,
+        )
+
+    if not pieces:
+        return None
+    period = pieces[0].stretch.period
+    found = _searched(balance(), period, _SMALL)
+    if found is None or found.unexplained > _MOST_LEFT:
+        return None
+    if not _is_long(found, _SMALL) or not found.is_of_all(_BARELY_ALIKE):
+        return found, False
+    others: tuple[tuple[Callable[[], Balance], float], ...] = (
+        (lambda: balance(varying=True), _ALIKE),
+        (lambda: balance(clear=True), _ALIKE),
+        (lambda: balance(bristles=True), _BARELY_ALIKE),
+    )
+    for other, share in others:
+        compared = _searched(other(), period, 0.0)
+        if compared is None or not found.agrees(compared, share):
+            return found, False
+    return found, True
+
+
+def _searched(balance: Balance, period: float, least: float) -> Shift | None:
+    """The delay: from no shift, and only where that looks long, from the shift of least misfit."""
+    if least > 0.0:
+        found = fit_shift(balance)
+        if found is not None and abs(found.value) < max(_SUSPECT * least, 2.0 * found.stderr):
+            return found
+    return fit_shift(balance, reach=max(_REACH, 3.0 * period))
+
+
+def _is_long(found: Shift, least: float) -> bool:
+    return abs(found.value) > max(least, _SURE * found.stderr)
+
+
+def _margin(piece: Piece) -> int:
+    period = piece.stretch.period
+    return int(2.0 * max(_REACH, 3.0 * period) / period) + 2

@@ -1,0 +1,74 @@
+"""The refinements: delays first, since a late signal also looks like slow motion that disagrees."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from jointid import _core
+from jointid.estimate.delays import Delay
+from jointid.estimate.slow_motion import SlowMotion
+from jointid.identification.refinements.delays import refined_delays
+from jointid.identification.refinements.slow_motion import contradicting
+from jointid.problem.problem import Problem
+from jointid.problem.windows import Windows
+from jointid.recording.shifting import checked_shift
+
+
+@dataclass(frozen=True, kw_only=True)
+class Refinements:
+    """What was found out about the data before the search, and done to them.
+
+    Attributes
+    ----------
+    delays : mapping of str to Delay
+    slow_motion : SlowMotion or None
+    """
+
+    delays: Mapping[str, Delay]
+    slow_motion: SlowMotion | None
+
+
+def without_delays(
+    problem: Problem, shift: Mapping[str, float] | None
+) -> tuple[Problem, dict[str, Delay]]:
+    """Return the problem without its signals' delays, and these by signal.
+
+    Parameters
+    ----------
+    shift : mapping of str to float or None
+        [s]; None: chosen.
+
+    Raises
+    ------
+    InputError
+        A shift that cannot be used.
+    """
+    return refined_delays(problem, None if shift is None else checked_shift(shift))
+
+
+def without_creep(
+    problem: Problem, windows: Windows, min_speed: float | None
+) -> tuple[Problem, _core.Penalty, SlowMotion | None]:
+    """Return the problem without slow motion that contradicts, its penalty, and that slow motion.
+
+    Parameters
+    ----------
+    min_speed : float or None
+        [rad/s or m/s]; None: chosen.
+
+    Raises
+    ------
+    InputError
+        Windows that cannot be cut.
+    """
+    if min_speed:
+        problem = replace(problem, min_speed=min_speed)
+    penalty = problem.penalty(windows)
+    if min_speed is not None:
+        return problem, penalty, None
+    slow = contradicting(problem, penalty)
+    if slow is not None:
+        problem = replace(problem, min_speed=slow.speed)
+        penalty = problem.penalty(windows)
+    return problem, penalty, slow

@@ -1,0 +1,95 @@
+"""The stretches of a problem's recordings on which delays are estimated: uniform, without gaps, not too many."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.identification.refinements.smooth_windows import Stretch
+from jointid.problem.problem import Problem
+
+Array = NDArray[np.float64]
+
+_SHORTEST = 250  # samples
+_PIECE = 12_000  # samples
+_MOST = 60_000  # samples of all pieces: an hour of motion says it no better
+_UNEVEN = 1e-3  # of the period
+
+
+@dataclass(frozen=True, kw_only=True)
+class Piece:
+    """A stretch with its signals.
+
+    Attributes
+    ----------
+    stretch : Stretch
+    angle : ndarray
+        The position as an angle; of a prismatic axis, its travel as half a turn.
+    torque : ndarray
+        Of the drive at the output.
+    sensor : ndarray or None
+    held : bool
+        Whether the torque is held between samples.
+    """
+
+    stretch: Stretch
+    angle: Array
+    torque: Array
+    sensor: Array | None
+    held: bool
+
+
+def pieces_of(problem: Problem) -> list[Piece]:
+    """Return stretches of all recordings, evenly chosen where there is more than a minute's worth."""
+    spans = []
+    for number, recording in enumerate(problem.recordings):
+        edges = [0, *(gap.index + 1 for gap in recording.gaps), len(recording)]
+        for first, last in itertools.pairwise(edges):
+            parts = max(1, round((last - first) / _PIECE))
+            cuts = np.linspace(first, last, parts + 1).astype(int)
+            spans += [
+                (number, int(a), int(b)) for a, b in itertools.pairwise(cuts) if b - a >= _SHORTEST
+            ]
+    total = sum(last - first for _, first, last in spans)
+    if total > _MOST:
+        count = max(1, len(spans) * _MOST // total)
+        spans = [spans[i] for i in np.linspace(0, len(spans) - 1, count).astype(int)]
+    return [_piece(problem, *span) for span in spans]
+
+
+def _piece(problem: Problem, number: int, first: int, last: int) -> Piece:
+    recording = problem.recordings[number]
+    usable = np.asarray(_core.usable_intervals(problem.in_core[number], True), dtype=bool)
+    both = np.ones(len(recording), dtype=bool)
+    both[:-1] &= usable
+    both[1:] &= usable
+    cut = slice(first, last)
+    time = recording.time[cut]
+    grid = np.linspace(time[0], time[-1], len(time))
+    uneven = float(np.abs(grid - time).max()) > _UNEVEN * recording.sample_period
+    torque = problem.output_torque(number)
+
+    def even(signal: Array) -> Array:
+        return np.interp(grid, time, signal[cut]) if uneven else signal[cut]
+
+    position = even(recording.position)
+    angle = position
+    if recording.kind == "prismatic":
+        angle = np.pi * (position - position.mean()) / max(float(np.ptp(position)), 1e-300)
+    return Piece(
+        stretch=Stretch(
+            time=grid,
+            position=position,
+            velocity=even(recording.velocity),
+            usable=even(both.astype(np.float64)) > 0.999 if uneven else both[cut],
+            derived=recording.velocity_derived,
+        ),
+        angle=angle,
+        torque=even(torque),
+        sensor=None if recording.sensor is None else even(recording.sensor),
+        held=problem.hold(number) == "zoh",
+    )
