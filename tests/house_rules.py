@@ -31,7 +31,11 @@ ROOMS: dict[str, set[str]] = {
         *("base", "model", "search"),
         *("identify/recording", "identify/balance", "identify/penalty"),
     },
-    "diagnose": {"base", "identify/recording", "identify/balance", "identify/penalty"},
+    "signals": {"base"},
+    "diagnose": {
+        *("base", "signals"),
+        *("identify/recording", "identify/balance", "identify/penalty"),
+    },
 }
 ROOMS["bind"] = ROOMS["tests"] = set(ROOMS)
 PRINTING = {"iostream", "cstdio", "stdio.h", "print"}

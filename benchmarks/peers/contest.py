@@ -102,8 +102,8 @@ def make_contest(recording: jid.Recording | None = None) -> Contest:
 def problem_of(
     recording: jid.Recording, joint: jid.Joint, windows: int | None
 ) -> tuple[Problem, _core.Penalty]:
-    """The problem and its direct penalty as `identify` makes them."""
-    choice = choose_terms((recording,), joint, Request())
+    """The problem and its direct penalty as `identify` makes them for the residual of the thesis."""
+    choice = choose_terms((recording,), joint, Request(residual="sensor"))
     problem = Problem(
         recordings=(recording,), joint=joint, choice=choice, torque_hold=None, mask_standstill=True
     )

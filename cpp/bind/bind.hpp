@@ -155,6 +155,7 @@ void bind_genetic(py::module_& m);
 void bind_search(py::module_& m);
 void bind_online(py::module_& m);
 void bind_diagnose(py::module_& m);
+void bind_signals(py::module_& m);
 void bind_regression(py::module_& m);
 void bind_simulate(py::module_& m);
 

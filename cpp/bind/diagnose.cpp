@@ -35,6 +35,7 @@ void bind_diagnose(py::module_& m) {
       .def_property_readonly("highest", [](const SignalFacts& f) { return f.range.highest; })
       .def_readonly("fine", &SignalFacts::fine, "The usual step is at least 30 smallest ones.")
       .def_readonly("changes", &SignalFacts::changes, "Steps that are not zero.")
+      .def_readonly("smallest", &SignalFacts::smallest, "The smallest of those; infinite: none.")
       .def_readonly("lower", &SignalFacts::lower)
       .def_readonly("upper", &SignalFacts::upper)
       .def_readonly("moving", &SignalFacts::moving, "Intervals at a fair speed.")

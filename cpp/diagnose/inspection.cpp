@@ -21,7 +21,8 @@ Inspection inspect(const Subject& s, base::Pool* pool) {
       result.agreement = velocity_agreement(s.time, s.position, s.velocity, s.period, cancel);
     });
   }
-  tasks.emplace_back([&] { result.timing = timing_errors(s.time, s.position, s.period, cancel); });
+  tasks.emplace_back(
+      [&] { result.timing = signals::timing_errors(s.time, s.position, s.period, cancel); });
   tasks.emplace_back([&] {
     result.position = extremes(s.position);
     result.jump = largest_jump(s.time, s.position, cancel);
@@ -33,7 +34,8 @@ Inspection inspect(const Subject& s, base::Pool* pool) {
     });
     if (!s.channels[c].look_for_spikes) continue;
     tasks.emplace_back([&, c] {
-      result.spikes[c] = largest_spike(s.channels[c].values, s.channels[c].rule, cancel);
+      result.spikes[c] = largest_spike(s.channels[c].values, s.channels[c].rule, s.velocity,
+                                       result.peak_speed, cancel);
     });
   }
   identify::for_each(tasks.size(), pool, [&](std::size_t i) { tasks[i](); });

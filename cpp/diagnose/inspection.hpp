@@ -7,6 +7,7 @@
 #include "base/pool.hpp"
 #include "diagnose/consistency.hpp"
 #include "diagnose/spikes.hpp"
+#include "signals/timing.hpp"
 
 namespace jointid::diagnose {
 
@@ -33,7 +34,7 @@ struct Inspection {
   std::vector<Spike> spikes;       ///< a channel
   std::int64_t jump = -1;
   std::optional<Agreement> agreement;  ///< none also for a derived velocity
-  TimingErrors timing;
+  signals::TimingErrors timing;
 };
 
 Inspection inspect(const Subject& subject, base::Pool* pool);

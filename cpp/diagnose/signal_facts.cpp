@@ -75,6 +75,7 @@ SignalFacts inspect_signal(const Signal& signal, const Signal& velocity, double 
     facts.changes += step > 0.0 ? 1 : 0;
     smallest = step > 0.0 && step < smallest ? step : smallest;
   }
+  facts.smallest = smallest;
   const auto [lowest, highest] = facts.range;
   const double close = kNear * (highest - lowest);
   const double fair = kMoving * peak_speed;

@@ -2,14 +2,14 @@
 // What a single signal shows of clipping, repeated samples and hanging: counts, exact, in two
 // passes.
 
-#include <Eigen/Core>
 #include <cstdint>
 
 #include "base/cancel.hpp"
+#include "signals/signal.hpp"
 
 namespace jointid::diagnose {
 
-using Signal = Eigen::Map<const Eigen::VectorXd>;
+using signals::Signal;
 
 /// Smallest and largest value.
 struct Extremes {
@@ -29,6 +29,7 @@ struct SignalFacts {
   Extremes range;
   bool fine = false;  ///< the usual step is at least 30 of the smallest: equal neighbours are odd
   std::int64_t changes = 0;  ///< steps that are not zero
+  double smallest = 0.0;     ///< of those the smallest; infinite without any
   Limit lower;
   Limit upper;
   std::int64_t moving = 0;  ///< intervals at a fair speed

@@ -14,7 +14,10 @@ namespace {
 constexpr double kSpike = 25.0;         // usual changes over the spike's width
 constexpr double kPositionSpike = 8.0;  // usual changes
 constexpr double kOfRange = 0.1;        // of the range that holds 95 % of the samples
-constexpr double kOfCommand = 0.3;
+constexpr double kOfCommand = 0.6;
+constexpr double kAtTurn = 1.2;     // of the range, where the joint reverses or sticks
+constexpr double kSlow = 0.05;      // of the peak speed: friction falls, and may let go at once
+constexpr Eigen::Index kReach = 6;  // samples: a derived velocity tells a reversal no better
 constexpr double kJump = 4.0;       // times the rate that 1 % of the intervals exceed
 constexpr double kClearly = 1e-12;  // rounding never decides
 constexpr Eigen::Index kBlock = 65536;
@@ -56,9 +59,22 @@ double spread(const Signal& signal, const base::Cancel* cancel) {
          base::quantile(count, count, 0.025, value, cancel);
 }
 
+/// Whether the joint reverses, sticks or moves slowly within a few samples of begin .. end.
+bool turns(const Signal& velocity, double peak_speed, Eigen::Index begin, Eigen::Index end) {
+  const Eigen::Index from = std::max<Eigen::Index>(0, begin - kReach);
+  const Eigen::Index to = std::min(velocity.size() - 1, end + kReach);
+  const double slow = kSlow * peak_speed;
+  const bool forward = velocity[from] > 0.0;
+  for (Eigen::Index k = from; k <= to; ++k) {
+    if (std::fabs(velocity[k]) <= slow || (velocity[k] > 0.0) != forward) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
-Spike largest_spike(const Signal& signal, SpikeRule rule, const base::Cancel* cancel) {
+Spike largest_spike(const Signal& signal, SpikeRule rule, const Signal& velocity, double peak_speed,
+                    const base::Cancel* cancel) {
   const double share = rule == SpikeRule::command ? kOfCommand : kOfRange;
   const double times = rule == SpikeRule::position ? kPositionSpike : kSpike;
   double range = -1.0;  // not known yet
@@ -100,10 +116,24 @@ Spike largest_spike(const Signal& signal, SpikeRule rule, const base::Cancel* ca
         rule == SpikeRule::position
             ? times * usual
             : std::max(times * usual, share * std::sqrt(static_cast<double>(width)) * range);
-    std::int64_t count = 0;
-    for (Eigen::Index k = 0; k < places; ++k) count += height(k) > limit ? 1 : 0;
-    if (count == 0) continue;
-    return {highest, first_at(places, highest, height) + width, (count + width - 1) / width};
+    const double at_turn = kAtTurn * range;
+    Spike found;
+    for (Eigen::Index k = 0; k < places; ++k) {
+      const double here = height(k);
+      if (!(here > limit)) continue;
+      if (rule != SpikeRule::position && here <= at_turn &&
+          turns(velocity, peak_speed, k, k + 2 * width)) {
+        continue;
+      }
+      ++found.count;
+      if (here > found.height) {
+        found.height = here;
+        found.index = k + width;
+      }
+    }
+    if (found.count == 0) continue;
+    found.count = (found.count + width - 1) / width;
+    return found;
   }
   return {};
 }

@@ -20,7 +20,11 @@ struct Spike {
   std::int64_t count = 0;  ///< 0: none
 };
 
-Spike largest_spike(const Signal& signal, SpikeRule rule, const base::Cancel* cancel);
+/// A torque, a reading and a velocity truly step where the joint reverses, sticks or breaks loose:
+/// within a few samples of that, only what leaves the signal's usual range altogether is a spike.
+/// `peak_speed` is that of the motion.
+Spike largest_spike(const Signal& signal, SpikeRule rule, const Signal& velocity, double peak_speed,
+                    const base::Cancel* cancel);
 
 /// The sample after which the position moves on faster than it ever does otherwise, and stays
 /// there; -1 without one.

@@ -98,8 +98,10 @@ def draw(gallery: Gallery) -> None:
     _maps(gallery, opened, "")
     _maps(gallery, open_loop(RIPPLE, size=54.0, rate=0.25), ", five times faster")
     for name, run in loops.items():
-        plain = jid.identify(run, hanging_joint())
-        modelled = jid.identify(run, hanging_joint(), model=jid.Model(ripple=(2,)))
+        plain = jid.identify(run, hanging_joint(), residual="sensor")  # the residual of the thesis
+        modelled = jid.identify(
+            run, hanging_joint(), model=jid.Model(ripple=(2,)), residual="sensor"
+        )
         for how, estimate in (("without", plain), ("with", modelled)):
             worst = max(map(abs, errors(found(estimate)).values()))
             what = f"{name} loop, identified {how} ripple=(2,): worst parameter off by"

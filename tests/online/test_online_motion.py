@@ -30,7 +30,9 @@ def arrays(recording: jid.Recording) -> dict[str, Any]:
 def agree(found: jid.OnlineEstimate, recording: jid.Recording) -> None:
     """With `identify` on the same samples, within the combined standard errors."""
     joint = jid.thesis_joint()
-    whole = jid.identify(recording.crop(found.begin, found.end), joint, search="separable")
+    whole = jid.identify(
+        recording.crop(found.begin, found.end), joint, search="separable", residual="sensor"
+    )
     assert found.at_bound == ()
     for name in whole.free:
         here, there = found.parameters[name], whole.parameters[name]

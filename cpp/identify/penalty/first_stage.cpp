@@ -2,8 +2,10 @@
 // they make of it.
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
+#include "base/elementary.hpp"
 #include "identify/penalty/penalty.hpp"
 #include "identify/penalty/penalty_parts.hpp"
 
@@ -15,10 +17,9 @@ namespace {
 // must hold no more of the reading's noise than the balance's own do.
 constexpr std::array<double, 8> kShares{0.6, 0.33, 0.18, 0.1, 0.055, 0.03, 0.017, 0.009};
 constexpr std::size_t kRows = 4096;  // of a block
+constexpr std::size_t kKept = 4;     // blocks up to which their rows are kept between the stages
 // Each recording's link has columns of its own while windows outnumber all columns by this.
 constexpr std::size_t kPerColumn = 50;
-// Fewer windows a column than this: no decays, whose columns would follow the noise.
-constexpr std::size_t kFewest = 10;
 
 }  // namespace
 
@@ -41,7 +42,6 @@ Instruments Penalty::instruments(const std::vector<Eigen::Index>& free, std::siz
   }
   result.runs = runs_;
   if (windows < kPerColumn * static_cast<std::size_t>(result.size())) result.runs = 1;
-  if (windows < kFewest * static_cast<std::size_t>(result.size())) result.rates.clear();
   return result;
 }
 
@@ -85,15 +85,33 @@ Eigen::MatrixXd Penalty::instrument_rows(const Instruments& instruments,
   return result;
 }
 
-Eigen::MatrixXd Penalty::instrument_triangle(const Instruments& instruments,
-                                             base::Pool* pool) const {
+void Penalty::integrate_link(const RecordingView& recording, Eigen::Index first,
+                             Eigen::Index count) {
+  for (Eigen::Index row = first; row < first + count; ++row) {
+    // Simpson's rule: an instrument need not be exact, only free of the reading's errors.
+    const auto& window = windows_[static_cast<std::size_t>(row)];
+    const double from = recording.position[window.begin];
+    const double middle = recording.position[(window.begin + window.end) / 2];
+    const double to = recording.position[window.end];
+    const double sixth = usable_duration_[row] / 6.0;
+    link_(row, 0) = sixth * (base::cos(from) + 4.0 * base::cos(middle) + base::cos(to));
+    link_(row, 1) = sixth * (base::sin(from) + 4.0 * base::sin(middle) + base::sin(to));
+    link_(row, 2) = usable_duration_[row];
+    link_(row, 3) = recording.velocity[window.end] - recording.velocity[window.begin];
+  }
+}
+
+Eigen::MatrixXd Penalty::instrument_triangle(const Instruments& instruments, base::Pool* pool) {
   const auto parts = blocks();
   const Eigen::VectorXd observed = reading();
   std::vector<Eigen::MatrixXd> triangles(parts.size());
+  kept_rows_.assign(parts.size() <= kKept ? parts.size() : 0, {});
   for_each(parts.size(), pool, [&](std::size_t i) {
     const auto rows = static_cast<Eigen::Index>(parts[i].end - parts[i].begin);
     Eigen::MatrixXd both(rows, instruments.size() + 1);
-    both.leftCols(instruments.size()) = instrument_rows(instruments, parts[i]);
+    Eigen::MatrixXd own = instrument_rows(instruments, parts[i]);
+    both.leftCols(instruments.size()) = own;
+    if (!kept_rows_.empty()) kept_rows_[i].swap(own);
     both.rightCols(1) = observed.segment(static_cast<Eigen::Index>(parts[i].begin), rows);
     triangles[i] = square_triangle(both);
   });
@@ -114,9 +132,15 @@ void Penalty::project_reading(const FirstStage& stage, base::Pool* pool) {
   const auto parts = blocks();
   for_each(parts.size(), pool, [&](std::size_t i) {
     const auto rows = static_cast<Eigen::Index>(parts[i].end - parts[i].begin);
-    columns_.col(gain_index_).segment(static_cast<Eigen::Index>(parts[i].begin), rows).noalias() =
-        instrument_rows(stage.instruments, parts[i]) * stage.weights;
+    auto column =
+        columns_.col(gain_index_).segment(static_cast<Eigen::Index>(parts[i].begin), rows);
+    if (kept_rows_.empty()) {
+      column.noalias() = instrument_rows(stage.instruments, parts[i]) * stage.weights;
+    } else {
+      column.noalias() = kept_rows_[i] * stage.weights;
+    }
   });
+  kept_rows_.clear();
   first_stage_ = stage;
 }
 

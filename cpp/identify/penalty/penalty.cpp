@@ -191,13 +191,7 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
     w = end;
   }
   const Term duration = find_term("torque_offset");
-  std::vector<Term> link;
-  if (residual_ == Residual::instruments) {
-    for (const auto* key : {"gravity_cos", "gravity_sin", "torque_offset", "inertia"}) {
-      link.push_back(find_term(key));
-    }
-  }
-  link_.resize(rows, static_cast<Eigen::Index>(link.size()));
+  link_.resize(residual_ == Residual::instruments ? rows : 0, Instruments::kLink);
   const base::Cancel* cancel = pool != nullptr ? &pool->cancel() : nullptr;
   const auto linear = [&](const Block& block) {
     if (cancel != nullptr) cancel->check();
@@ -214,10 +208,7 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
       integrate(terms_[j], gear_ratio, r, masked.usable(), windows,
                 columns_.col(static_cast<Eigen::Index>(j)).segment(first, count));
     }
-    for (std::size_t j = 0; j < link.size(); ++j) {
-      integrate(link[j], gear_ratio, r, masked.usable(), windows,
-                link_.col(static_cast<Eigen::Index>(j)).segment(first, count));
-    }
+    if (residual_ == Residual::instruments) integrate_link(r, first, count);
     if (load_ < 0) return;
     const auto& usable = backward[static_cast<std::size_t>(recording_of_[block.begin])];
     for (std::size_t j = 0; j < terms_.size(); ++j) {

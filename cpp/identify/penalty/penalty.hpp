@@ -126,6 +126,7 @@ class Penalty final : public PenaltyFunction {
                      Eigen::MatrixXd& result) const;
   void accumulate(Eigen::Ref<Eigen::VectorXd> values) const;
   void accumulate_all();
+  void integrate_link(const RecordingView& recording, Eigen::Index first, Eigen::Index count);
   [[nodiscard]] Instruments instruments(const std::vector<Eigen::Index>& free,
                                         std::size_t windows) const;
   /// The instruments over some windows; of running sums, over all.
@@ -133,7 +134,7 @@ class Penalty final : public PenaltyFunction {
                                                 const Stretch& windows) const;
   /// Of (instruments, reading).
   [[nodiscard]] Eigen::MatrixXd instrument_triangle(const Instruments& instruments,
-                                                    base::Pool* pool) const;
+                                                    base::Pool* pool);
   [[nodiscard]] std::vector<Stretch> blocks() const;
   void divide_by_gain(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
                       Eigen::MatrixXd* jacobian) const;
@@ -164,7 +165,8 @@ class Penalty final : public PenaltyFunction {
   Eigen::MatrixXd columns_;  ///< windows x coefficients; shaped ones stay zero here
   Eigen::VectorXd target_;
   Eigen::MatrixXd link_;  ///< windows x (cosine, sine, duration, velocity change), for instruments
-  Eigen::VectorXd reading_;  ///< the gain's column before its projection
+  std::vector<Eigen::MatrixXd> kept_rows_;  ///< instruments between the two stages, if few
+  Eigen::VectorXd reading_;                 ///< the gain's column before its projection
   std::optional<FirstStage> first_stage_;
   double fastest_ = 0.0;  ///< in the whole recordings
   Eigen::Index runs_ = 0;

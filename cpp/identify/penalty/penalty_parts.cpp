@@ -52,13 +52,16 @@ Penalty PenaltyParts::part(std::size_t index) const {
   return result;
 }
 
-std::optional<FirstStage> PenaltyParts::first_stage(const std::vector<Eigen::Index>& free,
-                                                    base::Pool* pool) const {
+std::optional<FirstStage> PenaltyParts::first_stage(
+    const std::vector<Eigen::Index>& free, const std::vector<std::unique_ptr<Penalty>>& made,
+    base::Pool* pool) const {
   if (frame_.residual() != Residual::instruments) return std::nullopt;
-  const Instruments instruments = part(0).instruments(free, windows_.size());
+  const Instruments instruments =
+      (made.empty() ? part(0) : *made[0]).instruments(free, windows_.size());
   std::vector<Eigen::MatrixXd> triangles(count());
   for_each(count(), pool, [&](std::size_t i) {
-    triangles[i] = part(i).instrument_triangle(instruments, nullptr);
+    triangles[i] = made.empty() ? part(i).instrument_triangle(instruments, nullptr)
+                                : made[i]->instrument_triangle(instruments, nullptr);
   });
   return solve_first_stage(instruments, fold(triangles), window_count());
 }

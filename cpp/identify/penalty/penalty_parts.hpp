@@ -3,6 +3,7 @@
 // needs no columns of all of them in memory, and its parts go over the threads.
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,8 +34,10 @@ class PenaltyParts {
   [[nodiscard]] Penalty part(std::size_t index) const;
   /// The first stage over all windows, where the residual is that of instruments: for
   /// `part(i).project_reading`. `free` are the parameters that vary.
-  [[nodiscard]] std::optional<FirstStage> first_stage(const std::vector<Eigen::Index>& free,
-                                                      base::Pool* pool) const;
+  /// Parts that a caller has made already are not made again.
+  [[nodiscard]] std::optional<FirstStage> first_stage(
+      const std::vector<Eigen::Index>& free, const std::vector<std::unique_ptr<Penalty>>& made,
+      base::Pool* pool) const;
   [[nodiscard]] const RecordingView& recording(int index) const {
     return recordings_[static_cast<std::size_t>(index)]->recording();
   }

@@ -27,8 +27,15 @@ struct Sums {
 class Windows {
  public:
   Windows(const PenaltyParts& parts, const search::Domain& domain, base::Pool* pool)
-      : parts_(parts), pool_(pool), stage_(parts.first_stage(domain.free(), pool)) {
-    if (parts.samples() <= kKept) kept_.resize(parts.count());
+      : parts_(parts), pool_(pool) {
+    if (parts.samples() <= kKept) {
+      kept_.resize(parts.count());
+      for_each(parts.count(), pool,
+               [&](std::size_t i) { kept_[i] = std::make_unique<Penalty>(parts.part(i)); });
+    }
+    stage_ = parts.first_stage(domain.free(), kept_, pool);
+    if (!stage_) return;
+    for (auto& part : kept_) part->project_reading(*stage_);
   }
 
   [[nodiscard]] Sums at(const Eigen::VectorXd& theta) {
@@ -37,9 +44,10 @@ class Windows {
       Eigen::VectorXd residual;
       Eigen::MatrixXd jacobian;
       if (kept_.empty()) {
-        part(i).residuals(theta, residual, &jacobian);
+        Penalty part = parts_.part(i);
+        if (stage_) part.project_reading(*stage_);
+        part.residuals(theta, residual, &jacobian);
       } else {
-        if (kept_[i] == nullptr) kept_[i] = std::make_unique<Penalty>(part(i));
         kept_[i]->residuals(theta, residual, &jacobian);
       }
       each[i].square.setZero(jacobian.cols(), jacobian.cols());
@@ -58,12 +66,6 @@ class Windows {
   }
 
  private:
-  [[nodiscard]] Penalty part(std::size_t index) const {
-    Penalty result = parts_.part(index);
-    if (stage_) result.project_reading(*stage_);
-    return result;
-  }
-
   const PenaltyParts& parts_;
   base::Pool* pool_;
   std::optional<FirstStage> stage_;

@@ -53,6 +53,11 @@ def reading_arguments(command: argparse.ArgumentParser) -> None:
         command.add_argument(
             name, action="append", type=pair, default=[], metavar=shown, help=explanation
         )
+    command.add_argument(
+        "--drop-copies",
+        action="store_true",
+        help="leave out rows that repeat the one before, as a logger makes them that is faster than the bus",
+    )
 
 
 def pair(text: str) -> tuple[str, str]:
@@ -147,6 +152,7 @@ def load_all(paths: Sequence[Path], arguments: argparse.Namespace) -> list[Recor
             units=units or None,
             scale=scale or None,
             where=where or None,
+            drop_copies=arguments.drop_copies,
         )
         for path in paths
     ]

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-_READING = {"columns": "--column", "units": "--unit", "scale": "--scale", "where": "--where"}
+_READING = {
+    "columns": "--column",
+    "units": "--unit",
+    "scale": "--scale",
+    "where": "--where",
+    "drop_copies": "--drop-copies",
+}
 _IDENTIFICATION = {
     **_READING,
     "joint": "--joint",
@@ -103,7 +109,10 @@ FILES: Mapping[str, str] = {
 """Options that take a file, and what stands for one that the user has to choose."""
 
 FLAGS = frozenset(
-    {"--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run", "--selftest"}
+    {
+        *("--drop-copies", "--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run"),
+        "--selftest",
+    }
 )
 """Options that may stand without a value."""
 

@@ -23,6 +23,7 @@ from jointid.identification.inference.lag import of_lags
 from jointid.identification.inference.segments import Motion, motion_segments
 from jointid.identification.inference.systematic import systematic_errors
 from jointid.identification.inference.undivided import divided, with_undivided
+from jointid.identification.inference.velocity_noise import velocity_systematic
 from jointid.identification.refinements.refinements import Refinements
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.warnings.diagnosis import diagnose
@@ -94,6 +95,9 @@ def infer(
     if lags:
         parts["lag"] = np.zeros(len(best))
         parts["lag"][kept] = of_lags(problem, penalty, best, free_jacobian, lags)
+    effect = velocity_systematic(problem, penalty, best, domain.lower, domain.upper)
+    if effect is not None:
+        parts["velocity"] = np.where(np.isin(np.arange(len(best)), free), effect.systematic, 0.0)
     parts |= {name: moved for name, moved in beside.items() if moved is not None}
     del free_jacobian
     if not penalty.is_linear:
@@ -122,6 +126,7 @@ def infer(
             guessed_sign=domain.guessed_sign,
             inspections=inspections,
             at_best=at_best,
+            velocity_effect=effect,
             correlations={
                 (domain.names[free[i]], domain.names[free[j]]): float(spread.correlation[i, j])
                 for i in range(len(free))

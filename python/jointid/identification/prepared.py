@@ -41,6 +41,7 @@ from jointid.problem.problem import Problem
 from jointid.problem.recordings import listed
 from jointid.problem.terms import Request, TermChoice, choose_terms
 from jointid.problem.windows import Windows
+from jointid.recording.motion import raise_if_hardly_moving
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -232,10 +233,14 @@ def prepare(
     problem, delays = without_delays(problem, shift)
     speed = checked_speed(min_speed)
     selection = None
-    if choose and not merged.named:
-        problem, selection = select_model(problem, request, parameters, windows)
-    problem, penalty, slow_motion = without_creep(problem, windows, speed)
-    domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
+    try:
+        if choose and not merged.named:
+            problem, selection = select_model(problem, request, parameters, windows)
+        problem, penalty, slow_motion = without_creep(problem, windows, speed)
+        domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
+    except InputError:
+        raise_if_hardly_moving(runs)  # what was refused follows from it
+        raise
     problem, penalty = with_instruments(problem, penalty, domain, windows, residual is not None)
     return Prepared(
         problem=problem,

@@ -51,7 +51,8 @@ class OnlineIdentifier:
         Time between estimates, and duration of a piece [s], rounded up to a whole number of integration
         windows; default 0.5.
     model, residual, parameters, torque_hold, mask_standstill
-        As for `identify`; only models with at most one shape parameter.
+        As for `identify`; only models with at most one shape parameter, and the gain by regression:
+        `residual` is "sensor" (default with a sensor) or "torque".
     windows : float, optional
         Duration of an integration window [s]; `window` must contain more than two per parameter.
         Default: from the noise of the samples.

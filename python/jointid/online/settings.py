@@ -68,6 +68,13 @@ class Settings:
                 "true or false is expected", argument="mask_standstill", value=self.mask_standstill
             )
         check_torque_hold(self.torque_hold)
+        if self.request.residual == "instruments":
+            raise InputError(
+                "instruments need the whole recording; on line the gain is found by regression",
+                argument="residual",
+                value="instruments",
+                remedy=Action("call", {"residual": "sensor"}),
+            )
         self._check_terms()
 
     def problem(self, recording: Recording, choice: TermChoice) -> Problem:

@@ -17,8 +17,13 @@ Array = NDArray[np.float64]
 # Largest share of the intervals that may be gaps: above it the median interval is not the sample period.
 _MOST_GAPS = 0.1
 
+# Sample period [s] of stamps that count something shorter than seconds; nothing is identified from such samples.
+_SLOWEST = 50.0
+
 # Largest magnitudes of signals: their squares, and sums of these, are floats.
 _SMALLEST, _LARGEST = 1e-100, 1e100
+
+_FEW = 0.01  # share of samples that are single faults, not a wrong scale
 
 _RECORDING_EXPECTED = "a Recording is expected, or several; load reads one from a file"
 
@@ -43,6 +48,14 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
         place = f"recording {number}"
         if not isinstance(run, Recording):
             raise InputError(_RECORDING_EXPECTED, argument="recordings", value=run, place=place)
+        if run.sample_period >= _SLOWEST:
+            unit = time_unit(run.sample_period)
+            raise InputError(
+                f"the samples are {run.sample_period:.3g} s apart: {TIME_UNITS[unit]} seem to be taken for seconds",
+                argument="time",
+                place=place,
+                remedy=Action("call", {"units": {"time": unit}}, function="load"),
+            )
         if len(run.gaps) > _MOST_GAPS * len(run):
             raise InputError(
                 f"{100 * len(run.gaps) / len(run):.0f} % of its sample intervals are gaps, as when a bus delivers "
@@ -63,10 +76,32 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
     return runs
 
 
+TIME_UNITS = {"ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds"}
+_USUAL = 0.05  # [s]: the longest period that a unit is guessed for
+
+
+def time_unit(period: float) -> str:
+    """Return the unit in which stamps that are `period` apart give a usual sample period."""
+    factors = {"ms": 1e-3, "us": 1e-6}
+    return next((unit for unit, factor in factors.items() if period * factor <= _USUAL), "ns")
+
+
 def _check_magnitudes(run: Recording, place: str) -> None:
     for name in run.signals:
         values = getattr(run, name)
         largest = max(float(values.max()), -float(values.min()))
+        beyond = np.flatnonzero(np.abs(values) > _LARGEST)
+        if name != "time" and 0 < len(beyond) <= _FEW * len(values):
+            index = int(beyond[0])
+            rest = float(np.abs(np.delete(values, beyond)).max())
+            raise InputError(
+                f"{len(beyond)} sample(s) of this size, the first at {float(run.time[index]):.6g} s, while all others "
+                f"stay within {rest:.3g}: no measurement",
+                argument=name,
+                value=float(values[index]),
+                place=place,
+                remedy="cut such samples out, and check the logger",
+            )
         if name != "time" and largest != 0.0 and not _SMALLEST <= largest <= _LARGEST:
             raise InputError(
                 "no measured signal has this as its largest magnitude",

@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from jointid.base.errors import InputError
 from jointid.recording.attributes import check_kind, check_torque_hold, json_mapping
-from jointid.recording.gaps import Gap, derived_velocity, find_gaps
+from jointid.recording.derived import DerivedVelocity, derived_velocity
+from jointid.recording.gaps import Gap, find_gaps
 from jointid.recording.resampling import resampled
 from jointid.recording.signals import (
     SIGNALS,
@@ -40,9 +41,11 @@ class Recording:
     position : array_like, shape (n,)
         Joint angle [rad] or travel [m].
     velocity : array_like, shape (n,), optional
-        [rad/s] or [m/s]. Default: derived from position by second-order differences on the true
-        time stamps, never across a gap (`velocity_derived` is then True). A single sample between
-        two gaps has no difference to take and gets 0; no window includes it.
+        [rad/s] or [m/s]. Default: derived from position (`velocity_derived` is then True), never
+        across a gap: by second-order differences on the true time stamps, or, where these are too
+        noisy, by cubics over 5 to 101 samples, as many at each sample as the noise asks for and
+        the motion allows. A single sample between two gaps has no difference to take and gets 0;
+        no window includes it.
     torque : array_like, shape (n,), optional
         Torque of the actuator at the output, commanded or from the motor [N·m], or force [N].
     sensor : array_like, shape (n,), optional
@@ -154,7 +157,7 @@ class Recording:
             truth=None if truth is None else json_mapping("truth", truth),
         )
         if velocity is None:
-            vars(self)["velocity"] = derived_velocity(self.time, self.position, self.gaps)
+            vars(self)["velocity"] = self.derived.velocity
 
     @classmethod
     def from_dataframe(
@@ -213,6 +216,11 @@ class Recording:
     def gaps(self) -> tuple[Gap, ...]:
         """Intervals longer than 3.5 median sample periods, in order of time."""
         return find_gaps(self.time)
+
+    @functools.cached_property
+    def derived(self) -> DerivedVelocity:
+        """The velocity that the position gives, and its noise, whether or not one is recorded."""
+        return derived_velocity(self.time, self.position, self.gaps, self.sample_period)
 
     @functools.cached_property
     def fingerprint(self) -> str:
@@ -276,6 +284,12 @@ class Recording:
         return tuple(
             self._part(part, name=f"{self.name} {number}/{len(slices)}".lstrip())
             for number, part in enumerate(slices, start=1)
+        )
+
+    def with_velocity(self, velocity: npt.ArrayLike | None = None) -> Self:
+        """Return the recording with another velocity [rad/s], which counts as derived; default: derive it."""
+        return type(self)(
+            **{**self._fields(), "velocity": velocity, "velocity_derived": velocity is not None}
         )
 
     def resample(self, *, period: float | None = None, rate: float | None = None) -> Self:

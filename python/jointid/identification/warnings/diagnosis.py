@@ -6,6 +6,7 @@ from jointid.estimate.findings import Finding, Severity
 from jointid.identification.warnings import registry
 from jointid.identification.warnings.evidence import Evidence
 
+_OF_THE_FILE = ("hardly_moves", "implausible_units", "gaps", "assumed_units", "stopped")
 _ORDER: tuple[Severity, ...] = ("blocking", "warning", "info")
 
 
@@ -16,6 +17,10 @@ def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
     # With degrees the motor's angle is wrong, too: a residual that oscillates with it is not ripple.
     spurious = [found for found in kept if units and found.code == "ripple"]
     left = [found for found in kept if found not in (*units[1:], *spurious)]
+    if any(
+        found.code == "hardly_moves" for found in left
+    ):  # no motion, no answer: what concerns the values follows from it
+        left = [found for found in left if found.code in _OF_THE_FILE]
     if any(found.severity == "blocking" for found in left):
         left = [_without_other_fits(found) for found in left]
     return tuple(sorted(left, key=lambda found: _ORDER.index(found.severity)))

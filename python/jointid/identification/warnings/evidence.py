@@ -13,6 +13,7 @@ from jointid.estimate.delays import Delay
 from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.identification.inference.covariance import Triangle
+from jointid.identification.inference.velocity_noise import VelocityEffect
 from jointid.identification.warnings.inspection import Inspected
 from jointid.joint.joint import Joint
 from jointid.problem.constant_torque import Undivided, undivided
@@ -71,6 +72,8 @@ class Evidence:
         Properties of the signals of each recording.
     at_best : Regressor
         At the estimated shape parameters.
+    velocity_effect : VelocityEffect or None
+        What the velocity's noise does to the parameters; None where it is harmless.
     correlations : mapping
         Of each pair of free parameters, offsets centred.
     delays : mapping of str to Delay
@@ -97,6 +100,7 @@ class Evidence:
     correlations: Mapping[tuple[str, str], float]
     delays: Mapping[str, Delay]
     slow_motion: SlowMotion | None
+    velocity_effect: VelocityEffect | None = None
 
     @property
     def recordings(self) -> tuple[Recording, ...]:

@@ -1,33 +1,103 @@
-"""A velocity whose noise hides how it changes."""
+"""A velocity whose noise hides how it changes, or blurs friction at low speed."""
+
+from __future__ import annotations
 
 from collections.abc import Iterator
+
+import numpy as np
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.recording.velocity_noise import velocity_noise
 
 NOISY_VELOCITY = FindingType(
     code="noisy_velocity",
-    meaning="noise in the velocity is not small against its change over any admissible window: the "
-    "estimated inertia is too small",
-    advice="record the position with a finer resolution, or for longer",
+    meaning="noise in the velocity moves parameters by more than 1.5 %, or is not small against the "
+    "velocity's change over any admissible window: the estimated inertia is then too small",
+    advice="record the position with a finer resolution, or for longer; leave out a velocity column that is "
+    "noisier than the position's rate",
+)
+_MOVED = 0.015  # of the value
+_OF_TORQUE = 0.05  # of the torque's level: the least that a constant torque is held against
+_QUIETER = 0.5  # of the recorded velocity's noise
+_FINER = Action("record", text="the position with a finer resolution, or for longer")
+_DERIVED = Action(
+    "call",
+    {"columns": {"velocity": None}},
+    text="the position's rate is less noisy",
+    function="load",
 )
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
+    moved = _moved(evidence)
     # Running integrals have no edges whose noise would count.
-    if evidence.penalty.noise_limited and not evidence.penalty.cumulative:
-        inertia = evidence.parameters.get("inertia")
+    limited = evidence.penalty.noise_limited and not evidence.penalty.cumulative
+    if not (limited or moved):
+        return
+    causes, measured = [], {}
+    named = list(moved)
+    if limited:
         share = evidence.residuals.noise_share
-        yield NOISY_VELOCITY.finding(
+        causes.append(
             f"noise makes up {percent(share)} of the change of the velocity over a window, and no window is long "
-            "enough: the estimated inertia is too small",
-            Action("record", text="the position with a finer resolution, or for longer"),
-            evidence={"noise_share": Measured(share)},
-            parameters=("inertia",) if inertia is not None and inertia.vary else (),
+            "enough: the estimated inertia is too small"
         )
+        measured["noise_share"] = Measured(share)
+        inertia = evidence.parameters.get("inertia")
+        if inertia is not None and inertia.vary and "inertia" not in named:
+            named.insert(0, "inertia")
+    if moved:
+        sizes = ", ".join(f"{name} by {percent(share)}" for name, share in moved.items())
+        causes.append(
+            f"noise of the velocity moves {sizes}, found by adding as much again"
+            + _resolution(evidence)
+        )
+        measured |= {f"{name}.moved": Measured(share) for name, share in moved.items()}
+    quieter = any(
+        _derived_is_quieter(evidence, number) for number in range(len(evidence.recordings))
+    )
+    yield NOISY_VELOCITY.finding(
+        "; ".join(causes),
+        *((_DERIVED,) if quieter else ()),
+        _FINER,
+        evidence=measured,
+        parameters=tuple(named),
+    )
+
+
+def _moved(evidence: Evidence) -> dict[str, float]:
+    """Return how far, relative to its value, the velocity's noise moves each parameter; only the large ones."""
+    effect = evidence.velocity_effect
+    if effect is None:
+        return {}
+    parameters = [evidence.parameters[name] for name in evidence.penalty.names]
+    shares = {}
+    for parameter, size in zip(parameters, effect.size.tolist(), strict=True):
+        level = abs(parameter.value)
+        if parameter.name.endswith("_offset") or parameter.name.startswith("gravity"):
+            level = max(level, _OF_TORQUE * evidence.torque_level)
+        if parameter.vary and size > _MOVED * level > 0.0:
+            shares[parameter.name] = size / level
+    return shares
+
+
+def _resolution(evidence: Evidence) -> str:
+    run = evidence.recordings[0]
+    step = run.derived.position_noise.quantum
+    if not (run.velocity_derived and step > 0.0):
+        return ""
+    return f" (the position has steps of {step:.3g} {run.unit('position')})"
+
+
+def _derived_is_quieter(evidence: Evidence, number: int) -> bool:
+    run = evidence.recordings[number]
+    if run.velocity_derived:
+        return False
+    return float(np.median(run.derived.noise)) < _QUIETER * velocity_noise(run)
 
 
 CHECK = Check(_find, (NOISY_VELOCITY,))

@@ -1,4 +1,4 @@
-"""Motion that is too fast or too wide for a joint: probably degrees taken for radians."""
+"""Motion that is too fast, too wide or too slow for a joint: probably degrees for radians, or another unit of time."""
 
 from __future__ import annotations
 
@@ -12,8 +12,11 @@ from jointid.identification.warnings.check import Check
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_advice
 from jointid.identification.warnings.velocity import MISMATCH
+from jointid.problem.recordings import TIME_UNITS, time_unit
+from jointid.recording.recording import Recording
 
 _MOTOR_SPEED = 2000.0  # [rad/s]: beyond any geared servo motor
+_SLOW = 0.5  # [s]: a sample period in which friction's events are over
 _SWING = 25.0  # [rad] back and forth: four turns
 
 
@@ -21,6 +24,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     gear = abs(evidence.joint.gear_ratio) if evidence.joint is not None else 1.0
     for inspected in evidence.inspections:
         recording, peak = inspected.recording, inspected.found.peak_speed
+        if recording.sample_period >= _SLOW:
+            yield _slow_stamps(recording)
+            continue
         agreement = inspected.found.agreement
         if recording.kind == "prismatic" or (
             agreement is not None and abs(agreement.scale - 1.0) > MISMATCH
@@ -47,6 +53,16 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             Action("inspect", text="the gear ratio"),
             evidence=measured,
         )
+
+
+def _slow_stamps(recording: Recording) -> Finding:
+    period = recording.sample_period
+    unit = time_unit(period)
+    return IMPLAUSIBLE_UNITS.finding(
+        f"the samples are {period:.3g} s apart: the time stamps may be in {TIME_UNITS[unit]}",
+        Action("call", {"units": {"time": unit}}, function="load"),
+        evidence={"sample_period": Measured(period, "s")},
+    )
 
 
 CHECK = Check(_find, (IMPLAUSIBLE_UNITS,))

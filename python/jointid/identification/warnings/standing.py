@@ -1,4 +1,4 @@
-"""A joint that stands still for too much of the recording."""
+"""A joint that stands still for too much of the recording, or hardly moves."""
 
 from collections.abc import Iterator
 
@@ -6,16 +6,38 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.recording.motion import WIDER, small_motion
 
 STANDING = FindingType(
     code="standing",
     meaning="the joint stands still or sticks in more than 35 % of the samples",
     advice="record more motion",
 )
+HARDLY_MOVES = FindingType(
+    code="hardly_moves",
+    severity="blocking",
+    meaning="the whole motion is less than 50 steps of the encoder: what else would be found follows from that",
+    advice="record a wider motion",
+)
 _MUCH = 0.35
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
+    for recording in evidence.recordings:
+        small = small_motion(recording)
+        if small is not None:
+            unit = recording.unit("position")
+            yield HARDLY_MOVES.finding(
+                small.text,
+                Action("record", text=WIDER),
+                evidence={
+                    "travel": Measured(small.travel, unit),
+                    "step": Measured(small.step, unit),
+                    "steps": Measured(small.steps),
+                    "unchanged": Measured(small.unchanged),
+                },
+                parameters=tuple(name for name, each in evidence.parameters.items() if each.vary),
+            )
     share = evidence.residuals.standing
     if share > _MUCH:
         yield STANDING.finding(
@@ -26,4 +48,4 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         )
 
 
-CHECK = Check(_find, (STANDING,))
+CHECK = Check(_find, (STANDING, HARDLY_MOVES))

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
+from jointid import _core
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.repeated import REPEATED
+from jointid.recording.copies import fresh_rows
+from jointid.recording.recording import Recording
 
 TIME_JITTER = FindingType(
     code="time_jitter",
     meaning="position and time stamps disagree by more than 2 % of a sample period",
-    advice="stamp samples where they are taken; give even time stamps if the samples are even",
+    advice="stamp samples where they are taken; give even time stamps if the samples are even and none is a copy",
 )
 _JITTER = 0.02  # sample periods
 
@@ -22,14 +27,17 @@ _JITTER = 0.02  # sample periods
 def _find(evidence: Evidence) -> Iterator[Finding]:
     for inspected in evidence.inspections:
         recording = inspected.recording
-        if inspected.stale_share("position") > REPEATED:
-            continue  # copies have no time of their own, and that is reported already
         as_stamped, as_uniform = inspected.found.timing_errors
         period = recording.sample_period
+        copies = inspected.stale_share("position") > REPEATED
+        if copies:  # they have no time of their own
+            as_stamped, period = _without_copies(recording)
         if as_stamped < _JITTER * period:
             continue
-        even = as_uniform < 0.3 * as_stamped
+        # Rows that merely repeat make even stamps wrong, however even they look.
+        even = not copies and as_uniform < 0.3 * as_stamped
         seen = "; the samples themselves look evenly spaced" if even else ""
+        seen = ", copies apart" if copies else seen
         advice = "even time stamps" if even else "time stamps where the samples are taken"
         yield TIME_JITTER.finding(
             f"position and time stamps disagree by {1e6 * as_stamped:.3g} µs a sample ({percent(as_stamped / period)} "
@@ -41,6 +49,15 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
                 "share_of_period": Measured(as_stamped / period),
             },
         )
+
+
+def _without_copies(recording: Recording) -> tuple[float, float]:
+    """Return the scatter of the stamps and the median period [s] of the rows that hold a new position."""
+    time, position = fresh_rows(recording.time, recording.position)
+    if len(time) < 3:
+        return 0.0, recording.sample_period
+    period = float(np.median(np.diff(time)))
+    return _core.timing_errors(time, position, period)[0], period
 
 
 CHECK = Check(_find, (TIME_JITTER,))

@@ -12,8 +12,8 @@ IMPLAUSIBLE_UNITS = FindingType(
     code="implausible_units",
     severity="blocking",
     meaning="degrees taken for radians: position and velocity differ by 57.3, a known inertia is contradicted by "
-    "as much, or the motion would be impossibly fast or wide",
-    advice="state the unit of position and velocity when loading, or convert the values",
+    "as much, or the motion would be impossibly fast or wide; or other stamps than seconds",
+    advice="state the unit of position, velocity and time when loading, or convert the values",
 )
 _DEGREES = {"position": "deg", "velocity": "deg/s"}
 

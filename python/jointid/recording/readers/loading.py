@@ -11,6 +11,7 @@ from jointid.base.errors import InputError
 from jointid.base.file_endings import ending_of
 from jointid.recording.column_lookup import column_index
 from jointid.recording.contents import read_contents
+from jointid.recording.copies import without_copies
 from jointid.recording.readers.registry import endings, reader_of
 from jointid.recording.recording import Recording
 from jointid.recording.runs import one_run
@@ -28,6 +29,7 @@ def load(
     where: Mapping[str, float | str] | None = None,
     kind: str | None = None,
     torque_hold: str | None = None,
+    drop_copies: bool = False,
     name: str | None = None,
 ) -> Recording:
     """Return the recording that a file holds.
@@ -63,6 +65,10 @@ def load(
     torque_hold : {"zoh", "linear"}, optional
         How the torque varies between samples: held (zero-order hold) or linearly.
         Default: as saved, else not known.
+    drop_copies : bool
+        Whether rows that repeat all measured signals of the row before are left out, as a logger makes
+        them that is faster than the drive's bus. A standstill of more than ten rows stays. Default
+        False.
     name : str, optional
         Default: as saved, else the file's name without its ending.
 
@@ -89,6 +95,11 @@ def load(
         fields = contents.fields(contents.rows_where(where))
     else:
         fields = contents.fields(time_remedy=lambda: one_run(contents))
+    if drop_copies:
+        try:
+            fields = without_copies(fields)
+        except InputError as error:
+            raise error.at(str(file)) from None
     return _recording(file, fields, name)
 
 

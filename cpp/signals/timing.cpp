@@ -1,12 +1,13 @@
+#include "signals/timing.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "base/quantile.hpp"
-#include "diagnose/consistency.hpp"
 
-namespace jointid::diagnose {
+namespace jointid::signals {
 
 namespace {
 
@@ -122,4 +123,4 @@ TimingErrors timing_errors(const Signal& time, const Signal& position, double pe
   return {stamped, stamped > 0.0 ? error_of(0.0) : 0.0};
 }
 
-}  // namespace jointid::diagnose
+}  // namespace jointid::signals

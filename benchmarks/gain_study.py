@@ -1,0 +1,88 @@
+"""The sensor's gain by instruments, by the sensor's and by the torque's residual, where each can fail.
+
+    python benchmarks/gain_study.py [runs]
+
+Prints one row a condition and residual: relative error of the gain [%] as mean, standard deviation and worst,
+share of 95 % intervals that hold the truth, and the mean error of Coulomb and viscous friction.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+import jointid as jid
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
+from plants import Bench, Law, Log, Plant, simulate, thesis
+
+RESIDUALS = (None, "sensor", "torque")
+NOISE = Log(sensor_noise=0.5)
+HELD = Law(inertia=2.5, stiffness=80.0, feedback=1.5)
+
+CONDITIONS: dict[str, dict[str, object]] = {
+    "no noise": {"log": Log(sensor_noise=0.0)},
+    "noise 0.2 N·m": {"log": Log(sensor_noise=0.2)},
+    "noise 0.5 N·m": {"log": NOISE},
+    "noise 3 N·m": {"log": Log(sensor_noise=3.0)},
+    "noise 5 N·m": {"log": Log(sensor_noise=5.0)},
+    "100,000 counts a turn": {"log": Log(sensor_noise=0.5, counts=1e5, velocity=0.0)},
+    "viscous −10 %": {"log": NOISE, "plant": Plant(viscous_drift=-0.1)},
+    "viscous −30 %": {"log": NOISE, "plant": Plant(viscous_drift=-0.3)},
+    "viscous −30 %, noise 5 N·m": {
+        "log": Log(sensor_noise=5.0),
+        "plant": Plant(viscous_drift=-0.3),
+    },
+    "Coulomb −20 %": {"log": NOISE, "plant": Plant(coulomb_drift=-0.2)},
+    "LuGre, 1e5 N·m/rad": {"log": NOISE, "plant": Plant(bristle_stiffness=1e5)},
+    "Stribeck exponent 1": {"log": NOISE, "plant": Plant(exponent=1.0)},
+    "load friction 0.1": {"log": NOISE, "plant": Plant(load_friction=0.1)},
+    "0.3 N·m sin 3q": {"log": NOISE, "plant": Plant(harmonic_torque=0.3, harmonic_order=3.0)},
+    "ripple 2.6 N·m, not modelled": {"log": Log(sensor_noise=0.5, ripple=2.6)},
+    "ripple 2.6 N·m, modelled": {"log": Log(sensor_noise=0.5, ripple=2.6), "model": ":ripple=2"},
+    "gear of 300 N·m/mrad": {"log": NOISE, "plant": Plant(gear_stiffness=3e5)},
+    "viscous −30 %, law at rest": {
+        "log": NOISE,
+        "plant": Plant(viscous_drift=-0.3),
+        "law": Law(inertia=2.5, stiffness=80.0, feedback=0.0),
+    },
+}
+
+
+def main(runs: int) -> None:
+    rng = np.random.default_rng(11)
+    joint = jid.thesis_joint()
+    motion = thesis(np.radians(rng.uniform(50.0, 70.0, runs)))
+    print("| condition | residual | gain: mean ± sd (worst) [%] | held | Coulomb | viscous |")
+    print("|---|---|---|---|---|---|")
+    for number, (name, given) in enumerate(CONDITIONS.items()):
+        model = given.get("model")
+        parts = {key: value for key, value in given.items() if key != "model"}
+        bench = Bench(motion=motion, **({"law": HELD} | parts))
+        recordings = simulate(Bench.stack([bench]), duration=12.0, seed=number)
+        for residual in RESIDUALS:
+            gains, held, others = [], 0, []
+            for recording in recordings:
+                found = jid.identify(
+                    recording, joint, residual=residual, model=model, search="separable"
+                ).parameters
+                gain = found["sensor_gain"]
+                gains.append(100.0 * (gain.value / 2.4 - 1.0))
+                held += gain.interval is not None and gain.interval[0] <= 2.4 <= gain.interval[1]
+                truth = recording.truth
+                others.append(
+                    [100.0 * (found[n].value / truth[n] - 1.0) for n in ("coulomb", "viscous")]
+                )
+            coulomb, viscous = np.mean(others, axis=0)
+            worst = np.max(np.abs(gains))
+            print(
+                f"| {name} | {residual or 'default'} | {np.mean(gains):+.2f} ± {np.std(gains, ddof=1):.2f} "
+                f"({worst:.2f}) | {held} of {runs} | {coulomb:+.2f} | {viscous:+.2f} |",
+                flush=True,
+            )
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 50)

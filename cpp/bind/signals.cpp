@@ -1,0 +1,82 @@
+#include "bind/recording.hpp"
+#include "identify/penalty/penalty_parts.hpp"
+#include "signals/local_velocity.hpp"
+#include "signals/timing.hpp"
+
+namespace jointid::bind {
+
+using signals::LocalVelocity;
+using signals::PositionNoise;
+
+namespace {
+
+using Array = SharedRecording::Array;
+
+signals::Signal signal(const Array& array) {
+  return {array.data(), static_cast<Eigen::Index>(array.size())};
+}
+
+PositionNoise noise_of(const Array& time, const Array& position,
+                       const std::vector<signals::Stretch>& stretches, double period,
+                       base::Pool* pool) {
+  return signals::position_noise(signal(time), signal(position), stretches, period,
+                                 pool != nullptr ? &pool->cancel() : nullptr);
+}
+
+}  // namespace
+
+void bind_signals(py::module_& m) {
+  py::class_<PositionNoise>(m, "PositionNoise", "Noise of a position signal.")
+      .def_readonly("quantum", &PositionNoise::quantum,
+                    "The encoder's step [rad or m]; 0: positions lie on no grid.")
+      .def_readonly("sigma", &PositionNoise::sigma,
+                    "Standard deviation at a sample, apart from that of the stamps [rad or m].")
+      .def_readonly("timing", &PositionNoise::timing, "Scatter of the time stamps [s].");
+  py::class_<LocalVelocity>(m, "LocalVelocity", "Velocity derived from position.")
+      .def_readonly("velocity", &LocalVelocity::velocity)
+      .def_readonly("noise", &LocalVelocity::noise, "Its standard deviation at each sample.")
+      .def_readonly("refined", &LocalVelocity::refined,
+                    "False: the noise is harmless, every velocity is the difference.");
+  m.def(
+      "position_noise",
+      [](const Array& time, const Array& position, const std::vector<std::int64_t>& gap_after,
+         double period) {
+        const py::gil_scoped_release nogil;
+        const auto stretches = signals::stretches_between(time.size(), gap_after);
+        return with_pool(time.size(), 1, [&](base::Pool* pool) {
+          PositionNoise noise;
+          identify::for_each(1, pool, [&](std::size_t) {
+            noise = noise_of(time, position, stretches, period, pool);
+          });
+          return noise;
+        });
+      },
+      py::arg("time"), py::arg("position"), py::arg("gap_after"), py::arg("period"),
+      "Noise of a position: the encoder's step, white noise, errors of the stamps.");
+  m.def(
+      "timing_errors",
+      [](const Array& time, const Array& position, double period) {
+        const py::gil_scoped_release nogil;
+        const auto errors = signals::timing_errors(signal(time), signal(position), period, nullptr);
+        return std::make_pair(errors.as_stamped, errors.as_uniform);
+      },
+      py::arg("time"), py::arg("position"), py::arg("period"),
+      "Scatter of the samples' times about the stamps and about an even grid [s].");
+  m.def(
+      "local_velocity",
+      [](const Array& time, const Array& position, const Array& difference,
+         const std::vector<std::int64_t>& gap_after, const PositionNoise& noise, int threads) {
+        const py::gil_scoped_release nogil;
+        const auto stretches = signals::stretches_between(time.size(), gap_after);
+        return with_pool(time.size(), threads, [&](base::Pool* pool) {
+          return signals::local_velocity(signal(time), signal(position), signal(difference),
+                                         stretches, noise, pool);
+        });
+      },
+      py::arg("time"), py::arg("position"), py::arg("difference"), py::arg("gap_after"),
+      py::arg("noise"), py::arg("threads") = 0,
+      "Velocity by local cubics whose length follows the noise; the differences where they are "
+      "fine.");
+}
+
+}  // namespace jointid::bind

@@ -1,0 +1,10 @@
+#pragma once
+// A signal as the core sees it: a view of an array that its owner keeps.
+
+#include <Eigen/Core>
+
+namespace jointid::signals {
+
+using Signal = Eigen::Map<const Eigen::VectorXd>;
+
+}  // namespace jointid::signals

@@ -1,0 +1,131 @@
+"""What the noise of the velocity does to each parameter, found by adding as much again."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.base.errors import InputError
+from jointid.problem.problem import Problem
+from jointid.recording.recording import Recording
+from jointid.recording.velocity_noise import follows_position, velocity_noise
+
+Array = NDArray[np.float64]
+
+REPEATS = 4
+_HARMLESS = 3e-4  # of the peak speed, as where the velocity is derived
+_SHARE = 1e-3  # of the velocity's change over a window: below, the windows were chosen for it
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VelocityEffect:
+    """Change of the parameters when the velocity becomes as noisy again.
+
+    Attributes
+    ----------
+    shift : ndarray, shape (p,)
+        Its median over some draws: a systematic part of about this size is in the estimate, because
+        friction is not linear in the velocity.
+    spread : ndarray, shape (p,)
+        Standard deviation over the draws.
+    noise : float
+        Standard deviation of the velocity that was added: the noisiest recording's, a median over its
+        samples [rad/s or m/s].
+    draws : int
+    """
+
+    shift: Array
+    spread: Array
+    noise: float
+    draws: int
+
+    @property
+    def systematic(self) -> Array:
+        """Size of the shift without what chance adds to it."""
+        chance = np.square(self.spread) / self.draws
+        return np.asarray(np.sqrt(np.maximum(0.0, np.square(self.shift) - chance)))
+
+    @property
+    def size(self) -> Array:
+        """Root of the sum of both squares."""
+        return np.asarray(np.hypot(self.shift, self.spread))
+
+
+def velocity_systematic(
+    problem: Problem,
+    penalty: _core.Penalty,
+    best: Array,
+    lower: Array,
+    upper: Array,
+    *,
+    repeats: int = REPEATS,
+) -> VelocityEffect | None:
+    """Return the effect of the velocity's noise, or None where that noise is harmless.
+
+    A derived velocity is derived again from a position with as much noise as it has, so that its
+    smoothing is part of what is tried; a recorded one gets noise of its own size. The parameters are
+    then fitted again over the same windows (simulation and extrapolation, Cook and Stefanski 1994).
+
+    Parameters
+    ----------
+    problem : Problem
+    penalty : Penalty
+        Over the windows used.
+    best, lower, upper : ndarray, shape (p,)
+        The parameters found and their bounds.
+    repeats : int
+        Draws. Default 4.
+    """
+    noisy = [_is_noisy(run, penalty.noise_share) for run in problem.recordings]
+    if not any(noisy):
+        return None
+    options = _core.WindowOptions(
+        duration=penalty.window_duration, cumulative=bool(penalty.cumulative)
+    )
+    moved = []
+    for draw in range(repeats):
+        runs = tuple(
+            _noisier(run, draw, number) if too else run
+            for number, (run, too) in enumerate(zip(problem.recordings, noisy, strict=True))
+        )
+        other = dataclasses.replace(problem, recordings=runs)
+        try:
+            found = other.parts(options).refit(lower, upper, best, threads=problem.threads)
+        except InputError:  # with this noise the joint seems to stand still
+            continue
+        moved.append(found - best)
+    if len(moved) < 2:
+        return None
+    return VelocityEffect(
+        shift=np.median(moved, axis=0),
+        spread=np.std(moved, axis=0, ddof=1),
+        draws=len(moved),
+        noise=max(
+            velocity_noise(run) for run, too in zip(problem.recordings, noisy, strict=True) if too
+        ),
+    )
+
+
+def _is_noisy(run: Recording, share: float) -> bool:
+    if follows_position(run):
+        return run.derived.refined
+    peak = float(np.abs(run.velocity).max())
+    return share > _SHARE and velocity_noise(run) > _HARMLESS * peak
+
+
+def _noisier(run: Recording, draw: int, number: int) -> Recording:
+    """Return a recording with as much noise again in its velocity."""
+    # Uniform noise: the generator's bits are the same on every host.
+    unit = np.sqrt(3.0) * (2.0 * np.random.default_rng((draw, number)).random(len(run)) - 1.0)
+    if follows_position(run):
+        noise = run.derived.position_noise
+        scale = np.hypot(noise.sigma, noise.timing * run.velocity)
+        moved = Recording(time=run.time, position=run.position + scale * unit, kind=run.kind)
+        velocity = moved.velocity
+    else:
+        velocity = run.velocity + velocity_noise(run) * unit
+    return run.with_velocity(velocity)

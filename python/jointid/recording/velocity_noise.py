@@ -1,0 +1,29 @@
+"""Noise of a recording's velocity, derived or recorded."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jointid import _core
+from jointid.recording.recording import Recording
+
+
+def follows_position(recording: Recording) -> bool:
+    """Whether the velocity is the one that the position gives."""
+    return recording.velocity_derived and np.array_equal(
+        recording.velocity, recording.derived.velocity
+    )
+
+
+def velocity_noise(recording: Recording) -> float:
+    """Return the standard deviation of the velocity's noise, a median over the samples [rad/s or m/s].
+
+    Of a derived velocity it follows from the position's noise; of a recorded one from its own steps and
+    differences, which show neither a delay nor a filter.
+    """
+    if follows_position(recording):
+        return float(np.median(recording.derived.noise))
+    after = [gap.index for gap in recording.gaps]
+    return _core.position_noise(
+        recording.time, recording.velocity, after, recording.sample_period
+    ).sigma

@@ -1,0 +1,128 @@
+"""The sensor's gain by instruments: free of the bias that either side of a regression has."""
+
+import numpy as np
+import pytest
+from simulated_joint import TRUTH, simulate
+
+import jointid as jid
+from jointid.estimate.tables import quality
+from jointid.identification.prepared import prepare
+from jointid.identification.search.residual_sides import by_either_side
+
+
+def gain_error(estimate: jid.Estimate) -> float:
+    return estimate.parameters["sensor_gain"].value / TRUTH["sensor_gain"] - 1.0
+
+
+def with_torque(recording: jid.Recording, extra: np.ndarray) -> jid.Recording:
+    signals = {
+        name: getattr(recording, name) for name in ("time", "position", "velocity", "sensor")
+    }
+    return jid.Recording(**signals, torque=recording.torque + extra, torque_hold="zoh")
+
+
+def found(recording: jid.Recording, **options: object) -> jid.Estimate:
+    return jid.identify(recording, jid.thesis_joint(), search="separable", **options)
+
+
+@pytest.fixture(scope="module")
+def noisy() -> list[jid.Recording]:
+    return simulate(4, duration=12.0, seed=3, noise=3.0)
+
+
+@pytest.fixture(scope="module")
+def clean() -> jid.Recording:
+    return simulate(1, duration=12.0, seed=4)[0]
+
+
+def test_noise_of_the_reading_does_not_shrink_the_gain(noisy: list[jid.Recording]) -> None:
+    errors = [gain_error(found(run)) for run in noisy]
+    assert abs(np.mean(errors)) < 0.01
+    assert np.mean([gain_error(found(run, residual="torque")) for run in noisy]) < -0.05
+
+
+def test_friction_that_drifts_does_not_inflate_the_gain(clean: jid.Recording) -> None:
+    share = clean.time / clean.time[-1]
+    # Viscous friction falls by 30 % during the run.
+    drifting = with_torque(clean, -0.3 * TRUTH["viscous"] * share * clean.velocity)
+    assert gain_error(found(drifting, residual="sensor")) > 0.5
+    assert abs(gain_error(found(drifting))) < 0.1
+
+
+def test_a_clean_recording_keeps_its_accuracy(clean: jid.Recording) -> None:
+    ours, thesis = found(clean), found(clean, residual="sensor")
+    for name, p in thesis.parameters.items():
+        if p.vary:
+            assert p.stderr is not None
+            assert abs(ours.parameters[name].value - p.value) < p.stderr, name
+            assert ours.parameters[name].stderr == pytest.approx(p.stderr, rel=0.25), name
+    # The table of windows is in terms of the reading, as with the sensor's residual.
+    assert ours.residuals.r_squared == pytest.approx(thesis.residuals.r_squared, abs=1e-4)
+
+
+def test_the_settings_say_how_the_gain_was_found(clean: jid.Recording) -> None:
+    estimate = found(clean)
+    assert estimate.settings["residual"] == "instruments"
+    assert estimate.settings["instruments"]["strength"] > 100.0
+    assert not estimate.settings["instruments"]["acceleration"]  # gravity says enough
+    assert "gain by instruments" in dict(quality(estimate))["model"]
+
+
+def test_weak_instruments_are_replaced_with_a_reason(clean: jid.Recording) -> None:
+    """A reading that has nothing of the link's gravity or inertia."""
+    reading = np.random.default_rng(0).normal(size=len(clean))
+    signals = {name: getattr(clean, name) for name in ("time", "position", "velocity")}
+    joint = jid.thesis_joint()
+    run = jid.Recording(**signals, torque=clean.torque + reading, sensor=reading, torque_hold="zoh")
+    estimate = found(run)
+    assert estimate.settings["residual"] == "sensor"
+    assert "explains too little" in estimate.settings["residual_reason"]
+    assert estimate.settings["residual_reason"] in dict(quality(estimate))["model"]
+    assert (
+        jid.identify(run, joint, residual="instruments", search="separable").settings["residual"]
+        == "instruments"
+    )
+
+
+def test_running_integrals_stay_the_thesiss(clean: jid.Recording) -> None:
+    estimate = found(clean, windows="cumulative")
+    assert estimate.settings["residual"] == "sensor"
+    assert "thesis" in estimate.settings["residual_reason"]
+
+
+def test_several_recordings_with_links_of_their_own() -> None:
+    runs = simulate(2, duration=6.0, seed=5, noise=1.0)
+    estimate = found(runs[0]), jid.identify(runs, jid.thesis_joint(), search="separable")
+    assert abs(gain_error(estimate[1])) < 0.01
+    assert (
+        estimate[1].parameters["sensor_gain"].stderr < estimate[0].parameters["sensor_gain"].stderr
+    )
+
+
+def test_the_estimate_of_one_or_more_threads_is_the_same(clean: jid.Recording) -> None:
+    one, more = (
+        jid.identify(clean, jid.thesis_joint(), search=jid.Search(method="separable", threads=n))
+        for n in (1, 2)
+    )
+    assert {n: p.value for n, p in one.parameters.items()} == {
+        n: p.value for n, p in more.parameters.items()
+    }
+
+
+def test_either_side_of_the_regression(noisy: list[jid.Recording]) -> None:
+    """At the shapes found they are what the residuals themselves give."""
+    prepared = prepare(noisy[0], jid.thesis_joint())
+    estimate = found(noisy[0])
+    names = list(prepared.penalty.names)
+    best = np.array([estimate.parameters[name].value for name in names])
+    free = [names.index(name) for name in estimate.free]
+    sides = by_either_side(prepared.penalty, best, free)
+    for side, values in sides.items():
+        shape = {"stribeck": estimate.parameters["stribeck"].value}
+        other = found(noisy[0], residual=side, parameters=shape)
+        for name in ("sensor_gain", "coulomb", "viscous"):
+            assert values[names.index(name)] == pytest.approx(
+                other.parameters[name].value, rel=1e-6
+            ), (side, name)
+    gain = names.index("sensor_gain")
+    assert sides["torque"][gain] < best[gain] - 0.05

@@ -1,0 +1,157 @@
+"""Faults of signals that are named for what they are: coarse velocity, no motion, wrong stamps, one wild sample."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from simulated_joint import INERTIA, LINK_INERTIA, TRUTH, simulate
+
+import jointid as jid
+from jointid.cli.demo import data_folder
+
+
+@pytest.fixture(scope="module")
+def well() -> jid.Recording:
+    return jid.load(data_folder() / "well_excited.csv.gz")
+
+
+def seen(run: jid.Recording, counts: int) -> jid.Recording:
+    """The same run with a coarse encoder, and no velocity."""
+    step = 2.0 * np.pi / counts
+    return jid.Recording(
+        time=run.time,
+        position=np.floor(run.position / step) * step,
+        torque=run.torque,
+        sensor=run.sensor,
+        torque_hold=run.torque_hold,
+    )
+
+
+def codes(estimate: jid.Estimate) -> set[str]:
+    return {finding.code for finding in estimate.warnings}
+
+
+def test_a_coarse_encoder_costs_little_and_what_it_costs_is_named() -> None:
+    runs = simulate(4, duration=12.0, seed=5)
+    for run in runs:
+        estimate = jid.identify(seen(run, 100_000), jid.thesis_joint(), search="separable")
+        assert estimate.parameters["static"].value == pytest.approx(TRUTH["static"], rel=0.05)
+        coarse = jid.identify(seen(run, 20_000), jid.thesis_joint(), search="separable")
+        named = {name for finding in coarse.warnings for name in finding.parameters}
+        (finding,) = [each for each in coarse.findings if each.code == "noisy_velocity"]
+        assert "static.moved" in finding.evidence
+        for name, true in TRUTH.items():
+            value = coarse.parameters[name].value
+            assert name in named or value == pytest.approx(true, rel=0.05), name
+
+
+def test_a_fine_encoder_has_no_such_finding(well: jid.Recording) -> None:
+    assert "noisy_velocity" not in codes(jid.identify(well, jid.thesis_joint(), search="separable"))
+
+
+def test_leaving_a_noisy_velocity_out_helps(shared_data: Path) -> None:
+    # A pendulum of 0.676 kg at 0.45 m: 2.98 N·m, 0.137 kg·m².
+    path = shared_data / "ak80" / "ak80_swing_up.csv"
+    before = jid.identify(jid.load(path), model="coulomb_viscous:gravity=free", search="separable")
+    finding = next(each for each in before.findings if each.code == "noisy_velocity")
+    (call,) = [action for action in finding.advice if action.kind == "call"]
+    after = jid.identify(
+        jid.load(path, **dict(call.arguments)),
+        model="coulomb_viscous:gravity=free",
+        search="separable",
+    )
+    assert before.parameters["gravity_sin"].value < 2.0
+    assert after.parameters["gravity_sin"].value == pytest.approx(2.98, rel=0.05)
+    assert after.parameters["inertia"].value == pytest.approx(0.137, rel=0.2)
+
+
+def hardly_moving(rate: float, step: float) -> jid.Recording:
+    time = np.arange(0.0, 6.0, 1e-3)
+    position = np.round(1e-3 * np.sin(rate * time) / step) * step
+    noise = np.random.default_rng(1).normal(0.0, 0.5, time.size)
+    torque = 25.0 * np.sign(np.cos(rate * time)) + noise
+    return jid.Recording(time=time, position=position, torque=torque)
+
+
+def test_a_joint_that_hardly_moves_is_named_and_nothing_else() -> None:
+    estimate = jid.identify(hardly_moving(20.0, 1e-4))
+    assert codes(estimate) == {"hardly_moves"}
+    (finding,) = estimate.warnings
+    assert finding.severity == "blocking"
+    assert finding.evidence["steps"].value == pytest.approx(20.0)
+    assert "0.0001 rad" in finding.cause
+
+
+def test_a_joint_that_hardly_moves_and_shows_nothing_is_refused_for_that() -> None:
+    with pytest.raises(jid.InputError, match=r"hardly moves: 0\.0018 rad in all, 6 steps"):
+        jid.identify(hardly_moving(2.0, 3e-4))
+
+
+@pytest.mark.parametrize(("factor", "unit"), [(1e9, "nanoseconds"), (1e6, "microseconds")])
+def test_stamps_in_another_unit_are_told(well: jid.Recording, factor: float, unit: str) -> None:
+    wrong = jid.Recording(time=well.time * factor, position=well.position, torque=well.torque)
+    with pytest.raises(jid.InputError, match=unit):
+        jid.identify(wrong)
+
+
+def test_stamps_in_milliseconds_are_told(well: jid.Recording) -> None:
+    wrong = jid.Recording(time=well.time * 1e3, position=well.position, torque=well.torque)
+    estimate = jid.identify(wrong, search="separable")
+    finding = next(each for each in estimate.findings if each.code == "implausible_units")
+    assert "milliseconds" in finding.cause
+    assert dict(finding.advice[0].arguments) == {"units": {"time": "ms"}}
+
+
+def test_one_wild_sample_is_told_as_one(well: jid.Recording) -> None:
+    assert well.torque is not None
+    torque = well.torque.copy()
+    torque[777] = 1e300
+    wrong = jid.Recording(time=well.time, position=well.position, torque=torque)
+    with pytest.raises(jid.InputError, match=r"1 sample\(s\) of this size, the first at 0\.777 s"):
+        jid.identify(wrong)
+
+
+def compensated(seed: int) -> jid.Recording:
+    """A clean sensorless run whose controller compensates friction by the sign of the velocity: it chatters."""
+    rng = np.random.default_rng(seed)
+    (run,) = simulate(1, duration=6.0, seed=seed)
+    assert run.torque is not None
+    torque = run.torque + 40.0 * (rng.random(len(run)) < 0.3) * np.sign(run.velocity) * (
+        np.abs(run.velocity) < 0.02
+    )
+    return jid.Recording(time=run.time, position=run.position, velocity=run.velocity, torque=torque)
+
+
+JOINT = jid.Joint(inertia=INERTIA + LINK_INERTIA, sensor=False, model="stribeck:gravity=free")
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_steps_of_the_torque_at_reversals_are_no_spikes(seed: int) -> None:
+    assert "spikes" not in codes(jid.identify(compensated(seed), JOINT, search="separable"))
+
+
+@pytest.mark.parametrize("height", [150.0, 300.0, 1000.0])
+@pytest.mark.parametrize("seed", range(2))
+def test_real_spikes_are_found(height: float, seed: int) -> None:
+    run = compensated(seed)
+    assert run.torque is not None
+    fast = np.flatnonzero(np.abs(run.velocity) > 0.3)
+    torque = run.torque.copy()
+    torque[fast[len(fast) // 2]] += height
+    hit = jid.Recording(time=run.time, position=run.position, velocity=run.velocity, torque=torque)
+    finding = next(
+        each
+        for each in jid.identify(hit, JOINT, search="separable").findings
+        if each.code == "spikes"
+    )
+    assert finding.evidence["height"].value == pytest.approx(height, rel=0.2)
+
+
+def test_a_spike_beyond_the_range_is_found_at_a_reversal_too() -> None:
+    run = compensated(0)
+    assert run.torque is not None
+    turn = int(np.flatnonzero(np.diff(np.sign(run.velocity)))[5])
+    torque = run.torque.copy()
+    torque[turn] += 1000.0
+    hit = jid.Recording(time=run.time, position=run.position, velocity=run.velocity, torque=torque)
+    assert "spikes" in codes(jid.identify(hit, JOINT, search="separable"))
