@@ -21,6 +21,7 @@ from jointid.identification.conclusion import infer
 from jointid.identification.follow_up import EstimateSource
 from jointid.identification.gain import penalty_as_fitted, with_instruments
 from jointid.identification.inference.given import of_given_facts
+from jointid.identification.inference.residual_side import of_residual_side
 from jointid.identification.refinements.refinements import (
     Refinements,
     without_creep,
@@ -92,7 +93,10 @@ class Prepared:
             domain=domain,
             best=best,
             shifts=self._window_shifts(best),
-            given=of_given_facts(self.problem, self.windows, domain, best),
+            beside={
+                "residual_side": of_residual_side(self.problem, self.windows, domain, best),
+                "given": of_given_facts(self.problem, self.windows, domain, best),
+            },
             convergence=outcome.convergence,
             status=outcome.status,
             message=outcome.message,
