@@ -17,7 +17,7 @@ from jointid.problem.terms import TermChoice
 Array = NDArray[np.float64]
 
 # Shapes between the bounds, in equal ratios, and then between the neighbours of the best of them.
-_COARSE, _FINE = 10, 8
+_COARSE, _FINE = 12, 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
