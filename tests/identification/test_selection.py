@@ -2,6 +2,7 @@
 
 import json
 import re
+import re
 from pathlib import Path
 
 import numpy as np

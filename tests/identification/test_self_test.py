@@ -70,7 +70,7 @@ def test_what_a_good_log_determines_comes_back(home: jid.Estimate) -> None:
 @pytest.mark.parametrize(
     ("log", "lost"),
     [
-        ({"sensor": True, "size": 0.12}, {"sensor_offset"}),
+        ({"sensor": True, "size": 0.12}, {"static"}),
         ({"counts": 1000}, {"static"}),
     ],
 )

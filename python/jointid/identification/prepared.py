@@ -231,12 +231,13 @@ def prepare(
         mask_standstill=mask_standstill,
         threads=whole_number("threads", threads, 0, 1024),
     )
-    problem, delays = without_delays(problem, shift)
     speed = checked_speed(min_speed)
     selection = None
     try:
         if choose and not merged.named:
+            # First: with the wrong model, delays of a fraction of a sample are lost in its misfit.
             problem, selection = select_model(problem, request, parameters, windows)
+        problem, delays = without_delays(problem, shift)
         problem, penalty, slow_motion = without_creep(problem, windows, speed)
         domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
     except InputError as error:
