@@ -137,6 +137,8 @@ def compare_models(
     if isinstance(folds, bool) or not isinstance(folds, int | np.integer) or folds < 2:
         raise InputError("a whole number of 2 or more is expected", argument="folds", value=folds)
     parts = int(folds) if len(runs) == 1 else min(int(folds), len(runs))
+    if residual is None and any(spec.load_friction for spec in specs):
+        residual = "torque"  # the one that all of them have: fits by different residuals are not comparable
     chosen = Search.of(search, method="separable")
     fitter = _Fitter(
         joint=joint,

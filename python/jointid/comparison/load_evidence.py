@@ -27,6 +27,7 @@ _NAME = "load_friction"
 _NEAR_ONE = 0.9
 _BLOCKS = 10
 _SURE = 4.0  # standard errors
+_SMALLEST = 0.01  # below it noise of the reading, taken for the load, does the same
 _KEPT = 0.6  # of the coefficient, beside the other causes
 _RIDGE = 1e-11
 # Decays of friction with the speed, and with the way since a reversal, as shares of peak speed and range.
@@ -41,6 +42,8 @@ def load_refusal(estimate: Estimate) -> str | None:
         return None  # a bound is refused as such
     if found.value > _NEAR_ONE:
         return f"{_NAME} is {found.value:.3g}: near 1 it explains any torque"
+    if found.value < _SMALLEST:
+        return f"{_NAME} is {found.value:.2g}, less than a recording tells from noise"
     source = estimate.follow_up
     if not isinstance(source, EstimateSource):
         return None
@@ -51,7 +54,7 @@ def load_refusal(estimate: Estimate) -> str | None:
             "one it cannot be told from the scale of the other terms"
         )
     value, error = _beside_other_causes(estimate, source.problem)
-    if not value > _SURE * error or value < _KEPT * found.value:
+    if not value > _SURE * error or not _KEPT < value / found.value < 1.0 / _KEPT:
         return (
             f"{_NAME} is {found.value:.2g} alone and {value:.2g} ± {error:.1g} where other causes are allowed for "
             "(drift, torque over the angle, delay, slow motion): the motion does not tell it from these"
