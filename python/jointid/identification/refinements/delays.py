@@ -100,7 +100,7 @@ def _velocity(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
             SmoothWindows(
                 stretch=piece.stretch,
                 half=half,
-                stride=max(1, half // 2),
+                stride=half,
                 margin=_margin(piece),
                 usable_only=False,
             )
@@ -134,7 +134,7 @@ def _sensor(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
                 SmoothWindows(
                     stretch=piece.stretch,
                     half=half,
-                    stride=max(1, half // 2),
+                    stride=half,
                     margin=_margin(piece),
                     clear=half + _CLEAR,
                     usable_only=False,
@@ -184,7 +184,7 @@ def _torque(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
                 SmoothWindows(
                     stretch=piece.stretch,
                     half=half,
-                    stride=max(1, half // 2),
+                    stride=half,
                     margin=margin,
                     clear=half + margin if clear else 0,
                 )

@@ -12,10 +12,10 @@ from jointid.identification.refinements.smooth_windows import SmoothWindows
 
 Array = NDArray[np.float64]
 
-_NEAR = 2e-6  # [s], the last step of the iteration
+_NEAR = 1e-5  # [s], the last step of the iteration
 _LONGEST_STEP = 1e-3  # [s]
 _STEPS = 6
-_ROUNDS = 3  # of weights
+_ROUNDS = 2  # of weights
 _CLIPPED = 4.0  # medians of the residual's size: a window that misses by more counts for less
 _CLUSTER = 0.3  # [s] of motion that counts as one observation
 _SINGULAR = 1e-11  # of the largest eigenvalue of the scaled normal equations
