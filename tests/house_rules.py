@@ -67,9 +67,11 @@ FOLDERS: dict[str, Folder] = {
             *_SOUGHT,
             *("identification/selection", "identification/inference", "identification/warnings"),
             *("identification/self_test", "identification/refinements"),
+            "identification/causes",
         },
         packages={"numpy"},
     ),
+    "identification/causes": Folder(may_use=_FOUND - {"joint"}, packages={"numpy"}),
     "identification/refinements": Folder(may_use=_FOUND - {"joint"}, packages={"numpy"}),
     "identification/search": Folder(may_use=_FOUND - {"recording"}, packages={"numpy", "scipy"}),
     "identification/selection": Folder(
@@ -81,7 +83,7 @@ FOLDERS: dict[str, Folder] = {
         packages={"numpy"},
     ),
     "identification/inference": Folder(
-        may_use={*_FOUND, "identification/search"} - {"base"}, packages={"numpy", "scipy"}
+        may_use={*_FOUND, "identification/search"}, packages={"numpy", "scipy"}
     ),
     "identification/warnings": Folder(
         may_use={*_FOUND, "identification/inference"}, packages={"numpy"}
