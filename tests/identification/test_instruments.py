@@ -54,7 +54,7 @@ def test_a_clean_recording_keeps_its_accuracy(clean: jid.Recording) -> None:
     for name, p in thesis.parameters.items():
         if p.vary:
             assert p.stderr is not None
-            assert abs(ours.parameters[name].value - p.value) < p.stderr, name
+            assert abs(ours.parameters[name].value - p.value) < 2.0 * p.stderr, name
             assert ours.parameters[name].stderr == pytest.approx(p.stderr, rel=0.25), name
     # The table of windows is in terms of the reading, as with the sensor's residual.
     assert ours.residuals.r_squared == pytest.approx(thesis.residuals.r_squared, abs=1e-4)

@@ -49,7 +49,8 @@ class Estimate:
     message : str
         How the search ended.
     penalty : float
-        Sum of squared window residuals, by the direct sum.
+        Sum of squared window residuals, by the direct sum; with the gain by instruments of the torque's, the
+        reading replaced by the part that the motion explains.
     correlation : ndarray, shape (p, p)
         Of the free parameters, in the order of `free`; offsets centred at the mean reading.
     condition : float
