@@ -83,7 +83,7 @@ FOLDERS: dict[str, Folder] = {
         packages={"numpy"},
     ),
     "identification/inference": Folder(
-        may_use={*_FOUND, "identification/search"} - {"base"}, packages={"numpy", "scipy"}
+        may_use={*_FOUND, "identification/search"}, packages={"numpy", "scipy"}
     ),
     "identification/warnings": Folder(
         may_use={*_FOUND, "identification/inference"}, packages={"numpy"}

@@ -112,14 +112,14 @@ def test_a_once_too_often_multiplied_torque_names_the_gear_ratio(
 
 
 def test_the_lag_is_measured(well_excited: jid.Recording) -> None:
-    found = warned(separable(late_velocity(well_excited)), "signal_lag").message
-    assert "velocity lags the position by 3 ms" in found
-    assert well_excited.sensor is not None
-    late = np.interp(well_excited.time - 5e-3, well_excited.time, well_excited.sensor)
-    before, _ = inspect(well_excited).found.sensor_lag
-    lag, error = inspect(changed(well_excited, sensor=late)).found.sensor_lag
-    assert lag - before == pytest.approx(5e-3, rel=0.3)
-    assert lag > 20 * error
+    late = separable(late_velocity(well_excited))
+    assert "velocity is late by 3.01" in warned(late, "delay_removed").message
+    assert late.delays["velocity"].applied == pytest.approx(3e-3, abs=2e-5)
+    make, _ = DEFECTS["sensor 3 ms late"]
+    before = separable(well_excited).delays["sensor"]
+    after = separable(make(well_excited)).delays["sensor"]
+    assert after.value - before.value == pytest.approx(3e-3, abs=3e-5)
+    assert after.value > 10 * after.stderr
 
 
 def test_the_jitter_is_measured(well_excited: jid.Recording) -> None:
@@ -239,8 +239,8 @@ def test_ripple_at_another_multiple(well_excited: jid.Recording, multiple: int) 
 
 def test_a_backward_difference_is_noticed(shared_data: Path) -> None:
     recording = simulated(shared_data, "realistic")
-    assert "0.5 sample periods" in warned(separable(recording), "signal_lag").message
-    assert "signal_lag" not in codes(separable(changed(recording, velocity=None)))
+    assert "0.5 sample periods" in warned(separable(recording), "delay_removed").message
+    assert "delay_removed" not in codes(separable(changed(recording, velocity=None)))
 
 
 def test_emps_is_not_alarmed_without_need(shared_data: Path) -> None:

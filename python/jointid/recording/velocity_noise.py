@@ -15,7 +15,7 @@ def follows_position(recording: Recording) -> bool:
     )
 
 
-def velocity_noise(recording: Recording) -> float:
+def noise_of_velocity(recording: Recording) -> float:
     """Return the standard deviation of the velocity's noise, a median over the samples [rad/s or m/s].
 
     Of a derived velocity it follows from the position's noise; of a recorded one from its own steps and

@@ -12,7 +12,7 @@ from jointid import _core
 from jointid.base.errors import InputError
 from jointid.problem.problem import Problem
 from jointid.recording.recording import Recording
-from jointid.recording.velocity_noise import follows_position, velocity_noise
+from jointid.recording.velocity_noise import follows_position, noise_of_velocity
 
 Array = NDArray[np.float64]
 
@@ -105,7 +105,9 @@ def velocity_systematic(
         spread=np.std(moved, axis=0, ddof=1),
         draws=len(moved),
         noise=max(
-            velocity_noise(run) for run, too in zip(problem.recordings, noisy, strict=True) if too
+            noise_of_velocity(run)
+            for run, too in zip(problem.recordings, noisy, strict=True)
+            if too
         ),
     )
 
@@ -114,7 +116,7 @@ def _is_noisy(run: Recording, share: float) -> bool:
     if follows_position(run):
         return run.derived.refined
     peak = float(np.abs(run.velocity).max())
-    return share > _SHARE and velocity_noise(run) > _HARMLESS * peak
+    return share > _SHARE and noise_of_velocity(run) > _HARMLESS * peak
 
 
 def _noisier(run: Recording, draw: int, number: int) -> Recording:
@@ -127,5 +129,5 @@ def _noisier(run: Recording, draw: int, number: int) -> Recording:
         moved = Recording(time=run.time, position=run.position + scale * unit, kind=run.kind)
         velocity = moved.velocity
     else:
-        velocity = run.velocity + velocity_noise(run) * unit
+        velocity = run.velocity + noise_of_velocity(run) * unit
     return run.with_velocity(velocity)

@@ -11,7 +11,7 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
-from jointid.recording.velocity_noise import velocity_noise
+from jointid.recording.velocity_noise import noise_of_velocity
 
 NOISY_VELOCITY = FindingType(
     code="noisy_velocity",
@@ -97,7 +97,7 @@ def _derived_is_quieter(evidence: Evidence, number: int) -> bool:
     run = evidence.recordings[number]
     if run.velocity_derived:
         return False
-    return float(np.median(run.derived.noise)) < _QUIETER * velocity_noise(run)
+    return float(np.median(run.derived.noise)) < _QUIETER * noise_of_velocity(run)
 
 
 CHECK = Check(_find, (NOISY_VELOCITY,))

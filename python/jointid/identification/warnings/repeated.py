@@ -9,7 +9,7 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
-from jointid.recording.copies import fresh_rows, taken_evenly
+from jointid.recording.copies import taken_evenly
 
 REPEATED_SAMPLES = FindingType(
     code="repeated_samples",
@@ -35,9 +35,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         if stale:
             # Without their copies, rows whose stamps are the logger's are worse than with them.
             recording = inspected.recording
-            helps = "position" in stale and taken_evenly(
-                *fresh_rows(recording.time, recording.position)
-            )
+            helps = "position" in stale and taken_evenly(recording.time, recording.position)
             yield REPEATED_SAMPLES.finding(
                 f"{' and '.join(stale)} repeat the sample before in {percent(max(stale.values()))} of the samples "
                 "though the joint moves: the logger was faster than the drive's bus",
