@@ -55,7 +55,9 @@ def listed_candidates(fit: Fitted) -> list[Candidate]:
 
 
 def _gravity(fit: Fitted) -> Iterator[Candidate]:
-    if _revolute(fit) and "gravity_cos" not in fit.names and not _has_order(fit, "position", 1.0):
+    """Without a sensor, which feels the link's: beside one it would take the place of a wrong gain."""
+    known = {"gravity_cos", "sensor_gain"} & set(fit.names)
+    if _revolute(fit) and not known and not _has_order(fit, "position", 1.0):
         yield Candidate(name="gravity", columns=_angle(fit, 1.0))
 
 

@@ -1,0 +1,116 @@
+"""Causes of a misfit: each broken assumption is named, what it moves is moved to the truth, clean joints have none."""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+from plants import Bench, Law, Log, Plant, simulate, thesis
+
+import jointid as jid
+from jointid.estimate.causes import MEANINGS
+from jointid.identification.causes.folds import Folds, summed
+from jointid.identification.causes.suspicion import suspicious
+
+_SLOW = {"slow_motion", "presliding", "stribeck_exponent"}
+_BROKEN: Mapping[str, tuple[dict[str, float], set[str]]] = {
+    "clean": ({}, set()),
+    "viscous drift": ({"viscous_drift": -0.3}, {"drift"}),
+    "load friction": ({"load_friction": 0.15}, {"load_friction"}),
+    "harmonic": ({"harmonic_torque": 1.5}, {"harmonic"}),
+    "bump": ({"bump": 10.0, "bump_time": 4.0, "bump_width": 0.3}, {"disturbance"}),
+    "bristles": ({"bristle_stiffness": 1e5, "bristle_damping": 200.0}, _SLOW),
+    "exponent": ({"exponent": 1.0}, _SLOW),
+    "other axis": ({"coupling": 4.0}, {"other_signal"}),
+}
+
+
+@pytest.fixture(scope="module")
+def estimates() -> dict[str, jid.Estimate]:
+    """One joint for each broken assumption, moved alike."""
+    law = Law(inertia=2.5, stiffness=40.0, feedback=1.5, on_reference=1.0)
+    benches = [
+        Bench(motion=thesis(np.radians([60.0])), law=law, plant=Plant(**changes), log=Log())
+        for changes, _ in _BROKEN.values()
+    ]
+    runs = simulate(Bench.stack(benches), duration=9.0, seed=3)
+    joint = jid.thesis_joint()
+    return {
+        name: jid.identify(run, joint, search="separable")
+        for name, run in zip(_BROKEN, runs, strict=True)
+    }
+
+
+def _named(estimate: jid.Estimate) -> list[str]:
+    return [found.code for found in estimate.findings if found.code in MEANINGS]
+
+
+@pytest.mark.parametrize("name", [name for name in _BROKEN if name != "other axis"])
+def test_a_broken_assumption_is_named(estimates: dict[str, jid.Estimate], name: str) -> None:
+    wanted = _BROKEN[name][1]
+    named = _named(estimates[name])
+    assert wanted & set(named) if wanted else named == []
+    codes = {found.code for found in estimates[name].findings}
+    assert not {"structured_residual", "poor_fit"} & codes
+
+
+def test_a_cause_says_what_it_moves(estimates: dict[str, jid.Estimate]) -> None:
+    estimate = estimates["load friction"]
+    (cause, *_) = estimate.causes().found
+    assert cause.name == "load_friction"
+    assert cause.share > 0.8
+    assert cause.numbers["coefficient"].value == pytest.approx(0.15, abs=0.03)
+    moved = estimate.parameters["coulomb"].value + cause.shifts["coulomb"]
+    assert moved == pytest.approx(25.0, rel=0.01)
+    assert pickle.loads(pickle.dumps(cause)) == cause
+
+
+def test_a_signal_of_the_log_is_named_only_if_given(estimates: dict[str, jid.Estimate]) -> None:
+    estimate = estimates["other axis"]
+    assert "other_signal" not in {cause.name for cause in estimate.causes().found}
+    source = estimate.follow_up
+    assert source is not None
+    time = source.problem.recordings[0].time  # type: ignore[attr-defined]
+    axis = np.sin(5.3 * time + 0.7)
+    causes = estimate.causes({"axis 2": axis})
+    assert "axis 2" in {cause.detail for cause in causes.found}
+    assert "axis 2" in causes.report()
+    with pytest.raises(jid.InputError, match="samples"):
+        estimate.causes({"axis 2": axis[1:]})
+
+
+def test_a_read_estimate_has_no_recordings(estimates: dict[str, jid.Estimate]) -> None:
+    read = jid.Estimate.from_json(estimates["clean"].to_json())
+    with pytest.raises(jid.InputError, match="recordings"):
+        read.causes()
+
+
+def test_a_column_is_judged_where_it_was_not_fitted() -> None:
+    rng = np.random.default_rng(0)
+    known = np.sin(np.linspace(0.0, 60.0, 400))
+    residual = known + rng.normal(0.0, 0.5, 400)
+    noise = rng.normal(size=(400, 30))
+    folds = Folds.of(np.column_stack([known, noise]), residual)
+    assert folds is not None
+    nothing, right = folds.misfit([]).sum(), folds.misfit([0]).sum()
+    assert right < 0.5 * nothing
+    assert (
+        folds.misfit(list(range(1, 31))).sum() > nothing
+    )  # 30 columns of noise fit, and predict nothing
+    one = np.zeros(400, dtype=np.int64)
+    rows, run = summed(residual[:, None], one, 4)
+    assert (len(rows), len(run)) == (100, 100)
+    assert rows[0, 0] == pytest.approx(residual[:4].sum())
+
+
+def test_noise_is_not_suspicious_and_slow_structure_is() -> None:
+    rng = np.random.default_rng(1)
+    run, ones = np.zeros(1200, dtype=np.int64), np.ones(1200)
+    velocity = np.sin(np.linspace(0.0, 40.0, 1200))
+    alarms = sum(suspicious(rng.normal(size=1200), run, ones, velocity) for _ in range(200))
+    assert alarms <= 2
+    # Silent from one window to the next, loud over sixteen.
+    slow = rng.normal(size=1200) + 0.5 * np.sin(np.linspace(0.0, 30.0, 1200))
+    assert suspicious(slow, run, ones, velocity)
