@@ -127,7 +127,6 @@ def test_advice_is_given_and_helps(cases: dict[str, Case]) -> None:
         "no sensor: position in degrees": "implausible_units",
         "sensor: velocity scaled": "velocity_mismatch",
         "sensor: velocity late": "delay_removed",
-        "no sensor: filtered": "delay_removed",
         "sensor: rippled": "ripple",
         "no sensor: no Stribeck effect": "model_too_rich",
     }
