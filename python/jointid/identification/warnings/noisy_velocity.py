@@ -11,6 +11,7 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import Inspected
 from jointid.recording.velocity_noise import noise_of_velocity
 
 NOISY_VELOCITY = FindingType(
@@ -23,6 +24,7 @@ NOISY_VELOCITY = FindingType(
 _MOVED = 0.015  # of the value
 _OF_TORQUE = 0.05  # of the torque's level: the least that a constant torque is held against
 _QUIETER = 0.5  # of the recorded velocity's noise
+_JITTER = 0.02  # sample periods between position and stamps
 _FINER = Action("record", text="the position with a finer resolution, or for longer")
 _DERIVED = Action(
     "call",
@@ -57,7 +59,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             + _resolution(evidence)
         )
         measured |= {f"{name}.moved": Measured(share) for name, share in moved.items()}
-    quieter = any(
+    # By the stamps of a busy computer the position's rate is wrong, however quiet it looks.
+    stamped = all(_are_stamps_right(inspected) for inspected in evidence.inspections)
+    quieter = stamped and any(
         _derived_is_quieter(evidence, number) for number in range(len(evidence.recordings))
     )
     yield NOISY_VELOCITY.finding(
@@ -67,6 +71,10 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         evidence=measured,
         parameters=tuple(named),
     )
+
+
+def _are_stamps_right(inspected: Inspected) -> bool:
+    return inspected.found.timing_errors[0] < _JITTER * inspected.recording.sample_period
 
 
 def _moved(evidence: Evidence) -> dict[str, float]:
