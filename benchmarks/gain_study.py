@@ -9,6 +9,7 @@ share of 95 % intervals that hold the truth, and the mean error of Coulomb and v
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -22,56 +23,63 @@ RESIDUALS = (None, "sensor", "torque")
 NOISE = Log(sensor_noise=0.5)
 HELD = Law(inertia=2.5, stiffness=80.0, feedback=1.5)
 
-CONDITIONS: dict[str, dict[str, object]] = {
-    "no noise": {"log": Log(sensor_noise=0.0)},
-    "noise 0.2 N·m": {"log": Log(sensor_noise=0.2)},
-    "noise 0.5 N·m": {"log": NOISE},
-    "noise 3 N·m": {"log": Log(sensor_noise=3.0)},
-    "noise 5 N·m": {"log": Log(sensor_noise=5.0)},
-    "100,000 counts a turn": {"log": Log(sensor_noise=0.5, counts=1e5, velocity=0.0)},
-    "viscous −10 %": {"log": NOISE, "plant": Plant(viscous_drift=-0.1)},
-    "viscous −30 %": {"log": NOISE, "plant": Plant(viscous_drift=-0.3)},
-    "viscous −30 %, noise 5 N·m": {
-        "log": Log(sensor_noise=5.0),
-        "plant": Plant(viscous_drift=-0.3),
-    },
-    "Coulomb −20 %": {"log": NOISE, "plant": Plant(coulomb_drift=-0.2)},
-    "LuGre, 1e5 N·m/rad": {"log": NOISE, "plant": Plant(bristle_stiffness=1e5)},
-    "Stribeck exponent 1": {"log": NOISE, "plant": Plant(exponent=1.0)},
-    "load friction 0.1": {"log": NOISE, "plant": Plant(load_friction=0.1)},
-    "0.3 N·m sin 3q": {"log": NOISE, "plant": Plant(harmonic_torque=0.3, harmonic_order=3.0)},
-    "ripple 2.6 N·m, not modelled": {"log": Log(sensor_noise=0.5, ripple=2.6)},
-    "ripple 2.6 N·m, modelled": {"log": Log(sensor_noise=0.5, ripple=2.6), "model": ":ripple=2"},
-    "gear of 300 N·m/mrad": {"log": NOISE, "plant": Plant(gear_stiffness=3e5)},
-    "viscous −30 %, law at rest": {
-        "log": NOISE,
-        "plant": Plant(viscous_drift=-0.3),
-        "law": Law(inertia=2.5, stiffness=80.0, feedback=0.0),
-    },
+
+@dataclass(frozen=True, kw_only=True)
+class Condition:
+    """A joint, its log and its controller; the model that is identified."""
+
+    log: Log = NOISE
+    plant: Plant = field(default_factory=Plant)
+    law: Law = HELD
+    model: str | None = None
+
+
+CONDITIONS = {
+    "no noise": Condition(log=Log(sensor_noise=0.0)),
+    "noise 0.2 N·m": Condition(log=Log(sensor_noise=0.2)),
+    "noise 0.5 N·m": Condition(),
+    "noise 3 N·m": Condition(log=Log(sensor_noise=3.0)),
+    "noise 5 N·m": Condition(log=Log(sensor_noise=5.0)),
+    "100,000 counts a turn": Condition(log=Log(sensor_noise=0.5, counts=1e5, velocity=0.0)),
+    "viscous −10 %": Condition(plant=Plant(viscous_drift=-0.1)),
+    "viscous −30 %": Condition(plant=Plant(viscous_drift=-0.3)),
+    "viscous −30 %, noise 5 N·m": Condition(
+        log=Log(sensor_noise=5.0), plant=Plant(viscous_drift=-0.3)
+    ),
+    "Coulomb −20 %": Condition(plant=Plant(coulomb_drift=-0.2)),
+    "LuGre, 1e5 N·m/rad": Condition(plant=Plant(bristle_stiffness=1e5)),
+    "Stribeck exponent 1": Condition(plant=Plant(exponent=1.0)),
+    "load friction 0.1": Condition(plant=Plant(load_friction=0.1)),
+    "0.3 N·m sin 3q": Condition(plant=Plant(harmonic_torque=0.3, harmonic_order=3.0)),
+    "ripple 2.6 N·m, not modelled": Condition(log=Log(sensor_noise=0.5, ripple=2.6)),
+    "ripple 2.6 N·m, modelled": Condition(log=Log(sensor_noise=0.5, ripple=2.6), model=":ripple=2"),
+    "gear of 300 N·m/mrad": Condition(plant=Plant(gear_stiffness=3e5)),
+    "viscous −30 %, no torque feedback": Condition(
+        plant=Plant(viscous_drift=-0.3), law=Law(inertia=2.5, stiffness=80.0, feedback=0.0)
+    ),
 }
 
 
 def main(runs: int) -> None:
+    """Print the table."""
     rng = np.random.default_rng(11)
     joint = jid.thesis_joint()
     motion = thesis(np.radians(rng.uniform(50.0, 70.0, runs)))
     print("| condition | residual | gain: mean ± sd (worst) [%] | held | Coulomb | viscous |")
     print("|---|---|---|---|---|---|")
-    for number, (name, given) in enumerate(CONDITIONS.items()):
-        model = given.get("model")
-        parts = {key: value for key, value in given.items() if key != "model"}
-        bench = Bench(motion=motion, **({"law": HELD} | parts))
+    for number, (name, case) in enumerate(CONDITIONS.items()):
+        bench = Bench(motion=motion, plant=case.plant, law=case.law, log=case.log)
         recordings = simulate(Bench.stack([bench]), duration=12.0, seed=number)
         for residual in RESIDUALS:
             gains, held, others = [], 0, []
             for recording in recordings:
                 found = jid.identify(
-                    recording, joint, residual=residual, model=model, search="separable"
+                    recording, joint, residual=residual, model=case.model, search="separable"
                 ).parameters
                 gain = found["sensor_gain"]
                 gains.append(100.0 * (gain.value / 2.4 - 1.0))
                 held += gain.interval is not None and gain.interval[0] <= 2.4 <= gain.interval[1]
-                truth = recording.truth
+                truth = recording.truth or {}
                 others.append(
                     [100.0 * (found[n].value / truth[n] - 1.0) for n in ("coulomb", "viscous")]
                 )

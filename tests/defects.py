@@ -121,8 +121,8 @@ def constant_sensor(r: jid.Recording) -> jid.Recording:
 
 # The defect, and the code that must name it.
 DEFECTS: Mapping[str, tuple[Callable[[jid.Recording], jid.Recording], str]] = {
-    "velocity 3 ms late": (late_velocity, "signal_lag"),
-    "sensor 3 ms late": (late_sensor, "signal_lag"),
+    "velocity 3 ms late": (late_velocity, "delay_removed"),
+    "sensor 3 ms late": (late_sensor, "delay_removed"),
     "torque saturated in 10 %": (saturated_torque, "torque_saturated"),
     "stuck for 40 %": (stuck, "standing"),
     "torque reversed": (reversed_torque, "reversed_sign"),

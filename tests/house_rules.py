@@ -67,9 +67,11 @@ FOLDERS: dict[str, Folder] = {
             *_SOUGHT,
             *("identification/selection", "identification/inference", "identification/warnings"),
             *("identification/self_test", "identification/refinements"),
+            "identification/causes",
         },
         packages={"numpy"},
     ),
+    "identification/causes": Folder(may_use=_FOUND - {"joint"}, packages={"numpy"}),
     "identification/refinements": Folder(may_use=_FOUND - {"joint"}, packages={"numpy"}),
     "identification/search": Folder(may_use=_FOUND - {"recording"}, packages={"numpy", "scipy"}),
     "identification/selection": Folder(

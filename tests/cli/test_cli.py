@@ -115,7 +115,7 @@ def test_report_draws_a_saved_estimate(tmp_path: Path, capsys: pytest.CaptureFix
     assert main(["report", str(saved), "--output", str(page), "--json"]) == 0
     printed = json.loads(capsys.readouterr().out)
     assert printed["report"] == str(page)
-    assert "structured_residual" in printed["warnings"]
+    assert "inertia_varies" in printed["warnings"]
 
 
 def test_report_is_written_beside_by_default(

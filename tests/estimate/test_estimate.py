@@ -67,7 +67,7 @@ def test_report_shows_values_and_warnings(estimate: jid.Estimate, robot: jid.Est
     for name in estimate.parameters:
         assert name in text
     assert "no warnings" in text
-    assert "structured_residual" in robot.report()
+    assert "inertia_varies" in robot.report()
     assert "coulomb" in robot._repr_html_()
 
 

@@ -117,7 +117,7 @@ def same(r: jid.Recording) -> jid.Recording:
 
 
 CALLS: Mapping[str, tuple[Callable[[jid.Recording], jid.Recording], Mapping[str, Any]]] = {
-    "signal_lag": (late_velocity, {}),
+    "signal_lag": (late_velocity, {"shift": {}}),
     "velocity_mismatch": (lambda r: changed(r, velocity=0.5 * r.velocity), {}),
     "reversed_sign": (reversed_sensor, {}),
     "ripple": (rippled, {}),
@@ -252,25 +252,11 @@ def test_a_guessed_sign_is_stated() -> None:
 
 
 def test_findings_are_values(well_excited: jid.Recording) -> None:
-    found = found_in(separable(late_velocity(well_excited)), "signal_lag")
+    found = found_in(separable(late_velocity(well_excited), shift={}), "signal_lag")
     assert pickle.loads(pickle.dumps(found)) == found
     assert len({found, found}) == 1
     assert str(found) == found.message == f"{found.cause}; {found.advice[0]}"
     assert found.worded(lambda action: action.kind) == f"{found.cause}; call"
-
-
-def test_a_lag_of_the_sensor_is_not_reported_beside_ripple(well_excited: jid.Recording) -> None:
-    make, code = DEFECTS["sensor 3 ms late"]
-    late = make(well_excited)
-    assert code in {found.code for found in separable(late).findings}
-    modelled = separable(late, model="stribeck:ripple=2")
-    assert code not in {found.code for found in modelled.findings}
-    # A lag of the velocity is another matter.
-    velocity = separable(late_velocity(well_excited), model="stribeck:ripple=2")
-    assert code in {found.code for found in velocity.findings}
-
-
-# --- Severity ---
 
 
 def test_information_is_no_warning(well_excited: jid.Recording) -> None:

@@ -126,3 +126,13 @@ def test_either_side_of_the_regression(noisy: list[jid.Recording]) -> None:
             ), (side, name)
     gain = names.index("sensor_gain")
     assert sides["torque"][gain] < best[gain] - 0.05
+
+
+def test_the_bootstrap_draws_the_estimate_that_was_made(noisy: list[jid.Recording]) -> None:
+    """It needs the reading's projection for the slope and the reading itself for the scatter."""
+    estimate = found(noisy[0])
+    drawn = estimate.bootstrap(n=300).parameters["sensor_gain"]
+    chance = estimate.parameters["sensor_gain"].stderr
+    assert chance is not None
+    assert 0.5 * chance < drawn.stderr < 1.6 * chance
+    assert drawn.interval[0] < estimate.parameters["sensor_gain"].value < drawn.interval[1]

@@ -27,9 +27,9 @@ def test_every_picture_named_by_a_check_is_in_the_page(robot: jid.Estimate) -> N
 
 
 def test_a_finding_links_to_its_picture(robot: jid.Estimate) -> None:
-    assert {"structured_residual"} <= {found.code for found in robot.findings}
+    assert {"inertia_varies"} <= {found.code for found in robot.findings}
     page = html_report(robot)
-    assert '<li class="warning"><b>structured_residual</b> (warning): the residuals are' in page
+    assert '<li class="warning"><b>inertia_varies</b> (warning): an inertia that varies' in page
     assert '<a href="#windows">picture</a>' in page
 
 
@@ -47,7 +47,7 @@ def test_no_link_leads_to_a_picture_that_is_not_there() -> None:
 
 def test_another_interface_words_the_advice(robot: jid.Estimate) -> None:
     page = html_report(robot, lambda action: f"<{action.kind}>")
-    assert "a bias may remain; &lt;inspect&gt; <a href" in page
+    assert "; &lt;record&gt;; or &lt;inspect&gt; <a href" in page
 
 
 def test_the_page_is_written_whole(robot: jid.Estimate, tmp_path: Path) -> None:

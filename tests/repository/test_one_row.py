@@ -40,6 +40,7 @@ ALLOWED: list[tuple[str, str, str]] = [
     ("*", "python/jointid/simulation/plant.py", "values for both"),
     # Judgements about one friction model.
     ("*", "python/jointid/identification/warnings/", "whether the data support static friction"),
+    ("*", "python/jointid/identification/causes/", "causes of a misfit, some named like a term"),
     ("coulomb*", "python/jointid/problem/constant_torque.py", "collinear with an offset"),
     ("*", "python/jointid/joint/thesis.py", "the thesis's joint, with its bounds"),
     ("coulomb", "python/jointid/simulation/scenario.py", "a controller with friction estimates"),

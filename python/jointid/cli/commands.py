@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +19,7 @@ from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
     from jointid.estimate.bootstrap import Bootstrap
+    from jointid.estimate.causes import Causes
     from jointid.estimate.estimate import Estimate
     from jointid.estimate.self_test import SelfTest
     from jointid.joint.joint import Joint
@@ -92,20 +93,24 @@ def identify(arguments: argparse.Namespace) -> int:
     tested = estimate.selftest(seed=arguments.seed) if arguments.selftest else None
     draws = arguments.bootstrap
     drawn = estimate.bootstrap(draws, arguments.seed) if draws is not None else None
+    causes = estimate.causes() if arguments.causes else None
     refused = _write(estimate, arguments)
     if arguments.json:
-        print(_with_checks(estimate, tested, drawn))
+        print(_with_checks(estimate, {"selftest": tested, "bootstrap": drawn, "causes": causes}))
     else:
         print(Wording.of(arguments).of_report(estimate))
         for check in (tested, drawn):
             if check is not None:
                 print(f"\n{check.report()}")
+        if causes is not None:
+            print(f"\n{causes.report(Wording.of(arguments).of_action)}")
     return _exit_code(refused, arguments)
 
 
-def _with_checks(estimate: Estimate, tested: SelfTest | None, drawn: Bootstrap | None) -> str:
-    """The estimate as JSON, with the results of its self-test and its bootstrap if there were any."""
-    checks = {"selftest": tested, "bootstrap": drawn}
+def _with_checks(
+    estimate: Estimate, checks: Mapping[str, SelfTest | Bootstrap | Causes | None]
+) -> str:
+    """The estimate as JSON, with the results of what else was asked."""
     done = {name: check.document() for name, check in checks.items() if check is not None}
     if not done:
         return estimate.to_json()

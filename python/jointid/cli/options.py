@@ -44,6 +44,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "ga.population": "--population",
         "ga.generations": "--generations",
         "selftest": "--selftest",
+        "causes": "--causes",
         "checkpoint": "--checkpoint",
         "resume": "--resume",
         "n": "--bootstrap",
@@ -111,7 +112,7 @@ FILES: Mapping[str, str] = {
 FLAGS = frozenset(
     {
         *("--drop-copies", "--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run"),
-        "--selftest",
+        *("--selftest", "--causes"),
     }
 )
 """Options that may stand without a value."""

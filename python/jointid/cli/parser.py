@@ -129,6 +129,11 @@ def _add_identify(commands: Any) -> None:
         action="store_true",
         help="inject the result into the recorded motion, with noise as recorded, and identify it again",
     )
+    identify.add_argument(
+        "--causes",
+        action="store_true",
+        help="say why the model does not fit: causes by name, what they explain and what they move",
+    )
     identify.add_argument("--population", type=whole, help="individuals of the genetic algorithm")
     identify.add_argument("--generations", type=whole, help="generations of the genetic algorithm")
     identify.add_argument(

@@ -10,6 +10,7 @@ from typing import Any
 
 from jointid.base.error_text import printable
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.settings import residual_text
 from jointid.joint.model import Model
 
 SCHEMA = 1
@@ -140,7 +141,7 @@ class Comparison:
         if settings["held_out"] == "recordings":
             unit = "group of recordings"
         return (
-            f"{settings['folds']} folds, one {unit} held out in each; residual of the {settings['residual']}, "
+            f"{settings['folds']} folds, one {unit} held out in each; {residual_text(settings['residual'])}, "
             "relative to the measured signal"
         )
 

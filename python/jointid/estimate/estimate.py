@@ -26,6 +26,7 @@ from jointid.problem.window_table import Prediction, WindowTable
 
 if TYPE_CHECKING:
     from jointid.estimate.bootstrap import Bootstrap
+    from jointid.estimate.causes import Causes
     from jointid.estimate.derived import DerivedValue
     from jointid.estimate.follow_up import FollowUp
     from jointid.estimate.self_test import SelfTest
@@ -251,6 +252,36 @@ class Estimate:
         n = whole_number("n", n, 20, 1_000_000)
         seed = whole_number("seed", seed, 0, 2**64 - 1)
         return self._with_recordings("bootstrap").bootstrap(self, n, seed)
+
+    def causes(self, signals: Mapping[str, ArrayLike] | None = None) -> Causes:
+        """Say why the model does not fit: causes by name, what they explain, what they move, what to do.
+
+        Each candidate is fitted together with the model to part of the recording and judged on the rest,
+        at windows of 1, 4, 16 and 64 times the length used. `identify` does so by itself where the
+        residuals are more than noise, and reports the causes as findings.
+
+        Parameters
+        ----------
+        signals : mapping of str to array_like, optional
+            Further signals of the recording that may act on the joint, by name, one value a sample:
+            another joint's velocity, a temperature. Default: none.
+
+        Returns
+        -------
+        Causes
+
+        Raises
+        ------
+        InputError
+            The estimate was read from a file, which does not hold the recordings; or a signal that does
+            not fit the recording.
+
+        Examples
+        --------
+        >>> [cause.name for cause in estimate.causes().found]  # doctest: +SKIP
+        ['drift']
+        """
+        return self._with_recordings("causes").causes(self, signals or {})
 
     def _with_recordings(self, question: str) -> FollowUp:
         """Return what answers questions that need the recordings."""

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from jointid.estimate.bootstrap import Bootstrap
+    from jointid.estimate.causes import Causes
     from jointid.estimate.estimate import Estimate
     from jointid.estimate.self_test import SelfTest
 
@@ -19,4 +23,8 @@ class FollowUp(Protocol):
 
     def bootstrap(self, estimate: Estimate, n: int, seed: int) -> Bootstrap:
         """Answer `Estimate.bootstrap`."""
+        ...
+
+    def causes(self, estimate: Estimate, signals: Mapping[str, ArrayLike]) -> Causes:
+        """Answer `Estimate.causes`."""
         ...

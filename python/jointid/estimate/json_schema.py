@@ -130,9 +130,9 @@ ESTIMATE: dict[int, Kind] = {
             "derived": Plain(),
             "selection": OrNull(SELECTION),
             "selftest": Plain(),
+            "bootstrap": Plain(),
             "delays": TableOf(_DELAY),
             "slow_motion": OrNull(_SLOW_MOTION),
-            "bootstrap": Plain(),
         },
     ),
 }

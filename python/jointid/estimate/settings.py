@@ -52,13 +52,15 @@ def model_of(settings: Mapping[str, Any]) -> Model:
 
 def model_description(settings: Mapping[str, Any]) -> str:
     """The model and the residual, for people, e.g. "stribeck:ripple=2, residual of the sensor"."""
-    if settings["residual"] == "instruments":
-        text = f"{model_of(settings).resolved}, gain by instruments"
-    else:
-        text = f"{model_of(settings).resolved}, residual of the {settings['residual']}"
+    text = f"{model_of(settings).resolved}, {residual_text(settings['residual'])}"
     if settings.get("residual_reason"):
         text = f"{text} ({settings['residual_reason']})"
     return f"{text} (without {settings['dropped']})" if settings.get("dropped") else text
+
+
+def residual_text(residual: str) -> str:
+    """What is compared, for people, e.g. "residual of the torque"."""
+    return "gain by instruments" if residual == "instruments" else f"residual of the {residual}"
 
 
 def torque_unit(settings: Mapping[str, Any]) -> str:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence
+from jointid.identification.causes.causes import find_causes
+from jointid.identification.causes.suspicion import suspicious
 from jointid.identification.inference.covariance import parameter_covariance
 from jointid.identification.inference.inference import (
     freedom_of,
@@ -17,6 +21,7 @@ from jointid.identification.inference.inference import (
     parameters_of,
     statistics_of,
 )
+from jointid.identification.inference.lag import of_lags
 from jointid.identification.inference.segments import Motion, motion_segments
 from jointid.identification.inference.systematic import systematic_errors
 from jointid.identification.inference.undivided import divided, with_undivided
@@ -26,6 +31,7 @@ from jointid.identification.search.domain import SearchDomain
 from jointid.identification.warnings.diagnosis import diagnose
 from jointid.identification.warnings.evidence import Evidence, regressor
 from jointid.identification.warnings.inspection import inspect
+from jointid.identification.warnings.poor_fit import POORLY_EXPLAINED
 from jointid.problem.constant_torque import undivided
 from jointid.problem.inner_products import columns_with, size
 from jointid.problem.problem import Problem
@@ -43,7 +49,7 @@ def infer(
     domain: SearchDomain,
     best: Array,
     shifts: tuple[Array | None, Array | None],
-    given: Array | None,
+    beside: Mapping[str, Array | None],
     convergence: Convergence | None,
     status: str,
     message: str,
@@ -59,8 +65,8 @@ def infer(
         Change of each parameter when the windows are halved and doubled.
     refinements : Refinements
         What was done to the data before the search.
-    given : ndarray or None
-        Change of each parameter when the given facts are at the limits of their tolerances.
+    beside : mapping of str to ndarray or None
+        Change of each parameter by causes that the intervals do not contain.
     """
     threads = problem.threads
     # First, before arrays of one value per window are allocated, and these are freed early: a recording
@@ -88,11 +94,14 @@ def infer(
     )
     spread = with_undivided(spread, kept, free, names, groups)
     parts = systematic_errors(problem, penalty, best, kept, free_jacobian, columns, shifts)
+    lags = {each.signal: _unknown(each) for each in refinements.delays.values() if each.certain}
+    if lags:
+        parts["lag"] = np.zeros(len(best))
+        parts["lag"][kept] = of_lags(problem, penalty, best, free_jacobian, lags)
     effect = velocity_systematic(problem, penalty, best, domain.lower, domain.upper)
     if effect is not None:
         parts["velocity"] = np.where(np.isin(np.arange(len(best)), free), effect.systematic, 0.0)
-    if given is not None:
-        parts["given"] = given
+    parts |= {name: moved for name, moved in beside.items() if moved is not None}
     del free_jacobian
     if not penalty.is_linear:
         columns = penalty.linear_columns(best)
@@ -103,6 +112,19 @@ def infer(
     named = sorted(zip(free, np.abs(spread.weakest), strict=True), key=lambda pair: -pair[1])
     weakest = tuple(domain.names[i] for i, share in named if share > _NAMED)
     torque_level = float(np.sqrt(np.mean((penalty.target / penalty.usable_duration) ** 2)))
+    causes = None
+    run = table.recording
+    if (
+        statistics.r_squared < POORLY_EXPLAINED
+        or suspicious(table.residual, run, table.duration, table.velocity)
+    ) and not (penalty.cumulative or not free):
+        causes = find_causes(
+            problem,
+            penalty,
+            parameters,
+            torque_level=torque_level,
+            r_squared=statistics.r_squared,
+        )
     findings = diagnose(
         Evidence(
             problem=problem,
@@ -120,6 +142,7 @@ def infer(
             guessed_sign=domain.guessed_sign,
             inspections=inspections,
             at_best=at_best,
+            causes=causes,
             velocity_effect=effect,
             correlations={
                 (domain.names[free[i]], domain.names[free[j]]): float(spread.correlation[i, j])
@@ -150,6 +173,11 @@ def infer(
         delays=refinements.delays,
         slow_motion=refinements.slow_motion,
     )
+
+
+def _unknown(delay: Delay) -> float:
+    """What is not known of a delay, or was left in the signals [s]."""
+    return delay.stderr if delay.applied else float(np.hypot(delay.value, delay.stderr))
 
 
 def _centre(

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from jointid.identification.gain import with_instruments
+from jointid.identification.causes.causes import attributed
+from jointid.identification.gain import penalty_as_fitted
 from jointid.identification.inference.bootstrap import block_bootstrap
 from jointid.identification.self_test.testing import self_test
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from jointid.estimate.bootstrap import Bootstrap
+    from jointid.estimate.causes import Causes
     from jointid.estimate.estimate import Estimate
     from jointid.estimate.self_test import SelfTest
     from jointid.identification.search.domain import SearchDomain
@@ -50,11 +54,13 @@ class EstimateSource:
 
     def bootstrap(self, estimate: Estimate, n: int, seed: int) -> Bootstrap:
         """Draw stretches of the recordings anew, and refit the parameters to each draw."""
-        penalty = self.problem.penalty(self.windows)
-        problem, penalty = with_instruments(
-            self.problem, penalty, self.domain, self.windows, stated=True
-        )
-        return block_bootstrap(problem, penalty, self.domain, estimate, n, seed)
+        penalty = penalty_as_fitted(self.problem, self.windows, self.domain)
+        return block_bootstrap(self.problem, penalty, self.domain, estimate, n, seed)
+
+    def causes(self, estimate: Estimate, signals: Mapping[str, ArrayLike]) -> Causes:
+        """Attribute the misfit to what the model lacks."""
+        penalty = penalty_as_fitted(self.problem, self.windows, self.domain)
+        return attributed(self.problem, penalty, estimate, signals)
 
     def __reduce__(self) -> tuple[Callable[[], None], tuple[()]]:
         """Leave the recordings out of a pickled estimate."""

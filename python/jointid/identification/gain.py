@@ -55,12 +55,7 @@ def with_instruments(
                 remedy=Action("call", {"residual": "sensor"}),
             )
     if stated or not reason:
-        free = [
-            index
-            for index, (low, high) in enumerate(zip(domain.lower, domain.upper, strict=True))
-            if low < high
-        ]
-        penalty.project_reading(free, threads=problem.threads)
+        _project(penalty, domain, problem.threads)
         stage = penalty.first_stage
         reason = _WEAK if stage is not None and stage.weak else ""
     if stated or not reason:
@@ -68,3 +63,29 @@ def with_instruments(
     choice = replace(problem.choice, residual="sensor", residual_reason=reason)
     problem = replace(problem, choice=choice)
     return problem, problem.penalty(windows)
+
+
+def penalty_as_fitted(problem: Problem, windows: Windows, domain: SearchDomain) -> _core.Penalty:
+    """Return the penalty of a problem whose residual is settled, as a search or a refit needs it.
+
+    Parameters
+    ----------
+    problem : Problem
+    windows : int, float, str, WindowOptions or None
+    domain : SearchDomain
+
+    Raises
+    ------
+    InputError
+        Windows that cannot be cut.
+    """
+    penalty = problem.penalty(windows)
+    if penalty.residual == _core.Residual.instruments:
+        _project(penalty, domain, problem.threads)
+    return penalty
+
+
+def _project(penalty: _core.Penalty, domain: SearchDomain, threads: int) -> None:
+    bounds = zip(domain.lower, domain.upper, strict=True)
+    free = [index for index, (low, high) in enumerate(bounds) if low < high]
+    penalty.project_reading(free, threads=threads)

@@ -109,6 +109,8 @@ def identify(
                 windows=windows,
                 torque_hold=torque_hold,
                 mask_standstill=mask_standstill,
+                shift=shift,
+                min_speed=min_speed,
             )
             for each in either
         ]

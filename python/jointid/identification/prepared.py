@@ -19,8 +19,9 @@ from jointid.estimate.estimate import Estimate
 from jointid.estimate.selection import Selection
 from jointid.identification.conclusion import infer
 from jointid.identification.follow_up import EstimateSource
-from jointid.identification.gain import with_instruments
+from jointid.identification.gain import penalty_as_fitted, with_instruments
 from jointid.identification.inference.given import of_given_facts
+from jointid.identification.inference.residual_side import of_residual_side
 from jointid.identification.refinements.refinements import (
     Refinements,
     without_creep,
@@ -92,7 +93,10 @@ class Prepared:
             domain=domain,
             best=best,
             shifts=self._window_shifts(best),
-            given=of_given_facts(self.problem, self.windows, domain, best),
+            beside={
+                "residual_side": of_residual_side(self.problem, self.windows, domain, best),
+                "given": of_given_facts(self.problem, self.windows, domain, best),
+            },
             convergence=outcome.convergence,
             status=outcome.status,
             message=outcome.message,
@@ -113,7 +117,8 @@ class Prepared:
         """Return the estimate from other recordings with the same terms, windows and domain."""
         started = time.perf_counter()
         problem = replace(self.problem, recordings=recordings)
-        other = replace(self, problem=problem, penalty=problem.penalty(self.windows))
+        penalty = penalty_as_fitted(problem, self.windows, self.domain)
+        other = replace(self, problem=problem, penalty=penalty)
         quick = Search("separable", seed=search.seed, threads=search.threads)
         return other.estimate(quick, run_search(quick, other.penalty, other.domain), started)
 

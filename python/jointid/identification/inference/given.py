@@ -59,8 +59,9 @@ def of_given_facts(
     if joint is None or not joint.tolerances.given:
         return None
     parts = problem.parts(windows)
-    shapes = {shape.name for shape in _core.shapes()}
-    linear = np.array([name not in shapes for name in domain.names])
+    # Shapes do not grow with the torque, nor does friction as a share of the load.
+    scaled = {term.name for term in map(_core.term, problem.choice.terms) if not term.needs_load}
+    linear = np.array([name.split("[")[0] in scaled for name in domain.names])
 
     low, high = with_fixed_offset(domain.names, domain.lower, domain.upper, best)
 

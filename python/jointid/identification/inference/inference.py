@@ -22,6 +22,8 @@ from jointid.problem.window_table import WindowTable, r_squared, relative_residu
 
 Array = NDArray[np.float64]
 
+# Not in the intervals: what another choice would give, and what the recording knows nothing of.
+_BESIDE = ("residual_side", "given")
 _NORMAL = 1.959964  # standard errors of a 95 % interval
 
 
@@ -143,7 +145,7 @@ def parameters_of(
 
 def _half_width(chance: float, systematic: Mapping[str, float]) -> float:
     """Half of the 95 % interval: chance, already at its quantile, and what the recording shows besides."""
-    shown = math.hypot(*(size for part, size in systematic.items() if part != "given"))
+    shown = math.hypot(*(size for part, size in systematic.items() if part not in _BESIDE))
     return math.hypot(chance, _NORMAL * shown)
 
 

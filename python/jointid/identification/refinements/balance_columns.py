@@ -12,7 +12,6 @@ from jointid.identification.refinements.smooth_windows import SmoothWindows
 Array = NDArray[np.float64]
 
 _DECAYS = (0.012, 0.025, 0.05, 0.1, 0.2, 0.45)  # Stribeck speeds, of the peak speed
-_BRISTLES = (1e-4, 5e-4, 2.5e-3)  # distances of pre-sliding after a reversal, of the travel
 
 
 def conservative(
@@ -33,7 +32,7 @@ def conservative(
     return columns
 
 
-def friction(windows: SmoothWindows, angle: Array, *, bristles: bool = False) -> list[Array]:
+def friction(windows: SmoothWindows, angle: Array) -> list[Array]:
     """Friction as any smooth function of the speed, that may depend on direction, angle and time."""
     v = windows.stretch.velocity
     sign, speed = np.sign(v), np.abs(v)
@@ -46,18 +45,7 @@ def friction(windows: SmoothWindows, angle: Array, *, bristles: bool = False) ->
     signals += [sign * np.exp(-((smooth / (share * peak)) ** 2)) for share in _DECAYS]
     signals += [sign * np.cos(angle), sign * np.sin(angle), v * np.cos(angle), v * np.sin(angle)]
     signals += [sign * time, v * time]
-    if bristles:
-        signals += _bristles(windows.stretch.position, sign)
     return [windows.mean(each) for each in signals]
-
-
-def _bristles(position: Array, sign: Array) -> list[Array]:
-    """Friction that builds up over a distance after each reversal."""
-    turned = np.concatenate([[True], sign[1:] != sign[:-1]])
-    last = np.maximum.accumulate(np.where(turned, np.arange(len(sign)), 0))
-    distance = np.abs(position - position[last])
-    travel = max(float(np.ptp(position)), 1e-300)
-    return [sign * np.exp(-distance / (share * travel)) for share in _BRISTLES]
 
 
 def stacked(columns: Sequence[Sequence[Array]]) -> Array:

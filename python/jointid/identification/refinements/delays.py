@@ -52,22 +52,26 @@ def refined_delays(
     if shift:
         problem = _shifted(problem, shift)
     found: dict[str, Delay] = {}
-    pieces = pieces_of(problem)
+    mended = (
+        problem  # also without what the call leaves: the next signal is held against true motion
+    )
+    pieces = pieces_of(mended)
     for signal, measure in (("velocity", _velocity), ("sensor", _sensor), ("torque", _torque)):
         measured = measure(pieces)
         if measured is None:
             continue
         left, certain = measured
-        taken = shift.get(signal, 0.0)
-        value, fits = taken + left.value, False
+        taken, fits = shift.get(signal, 0.0), False
+        value = taken + left.value
         if certain:
-            without = _shifted(problem, {signal: left.value})
-            fits = fits_better(problem, without, _LEAST_GAIN[signal])
-            # Friction that the model lacks may look like a late torque; the others are measured without friction.
+            without = _shifted(mended, {signal: left.value})
+            fits = fits_better(mended, without, _LEAST_GAIN[signal])
+            # Friction that the model lacks may look like a late torque; the others are measured without it.
             certain = fits or signal != "torque"
+            if fits:
+                mended, pieces = without, pieces_of(without)
             if fits and choose:
                 shift[signal] = taken = left.value
-                problem, pieces = without, pieces_of(without)
         found[signal] = Delay(
             signal=signal,
             value=value,
@@ -76,6 +80,8 @@ def refined_delays(
             fits=fits,
             applied=taken,
         )
+    if choose:
+        problem = mended
     return replace(problem, shift=shift) if shift else problem, found
 
 
@@ -123,7 +129,7 @@ def _sensor(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
     def balance(factor: int) -> Balance:
         windows = []
         for piece in pieces:
-            half = factor * half_length(piece.stretch, 3)
+            half = factor * half_length(piece.stretch)
             windows.append(
                 SmoothWindows(
                     stretch=piece.stretch,
@@ -158,7 +164,7 @@ def _sensor(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
     least = _SMALL if found.value > 0.0 or not pieces[0].held else _SMALL + 0.6 * period
     if not _is_long(found, least):
         return found, False
-    smoother = _searched(balance(4), period, 0.0)
+    smoother = _searched(balance(3), period, 0.0)
     return found, smoother is not None and found.agrees(smoother, _ALIKE)
 
 
@@ -166,8 +172,8 @@ def _torque(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
     """The torque's delay, and whether it is certain.
 
     Certain is what conservative torque and friction ask for alike, with and without an inertia that
-    varies, with and without the reversals, and beside pre-sliding friction: the last two fake a delay at
-    the reversals, the first away from them.
+    varies, and with and without the reversals: pre-sliding fakes a delay at the reversals only, a varying
+    inertia away from them.
     """
 
     def windows(clear: bool) -> list[SmoothWindows]:
@@ -185,10 +191,10 @@ def _torque(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
             )
         return result
 
-    def balance(clear: bool = False, varying: bool = False, bristles: bool = False) -> Balance:
+    def balance(clear: bool = False, varying: bool = False) -> Balance:
         each = list(zip(windows(clear), pieces, strict=True))
         first = [conservative(w, piece.angle, varying=varying) for w, piece in each]
-        rest = [friction(w, piece.angle, bristles=bristles) for w, piece in each]
+        rest = [friction(w, piece.angle) for w, piece in each]
         return Balance(
             windows=[w for w, _ in each],
             signals=[piece.torque for piece in pieces],
@@ -208,7 +214,6 @@ def _torque(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
     others: tuple[tuple[Callable[[], Balance], float], ...] = (
         (lambda: balance(varying=True), _ALIKE),
         (lambda: balance(clear=True), _ALIKE),
-        (lambda: balance(bristles=True), _BARELY_ALIKE),
     )
     for other, share in others:
         compared = _searched(other(), period, 0.0)

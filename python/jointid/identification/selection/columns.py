@@ -17,7 +17,7 @@ from jointid.problem.terms import TermChoice
 Array = NDArray[np.float64]
 
 # Shapes between the bounds, in equal ratios, and then between the neighbours of the best of them.
-_COARSE, _FINE = 10, 8
+_COARSE, _FINE = 12, 8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,23 +66,24 @@ class ShapedColumns:
         stated = known[count:]
         low, high = shape_range(stated[0], peak_speed) if stated else (1.0, 1.0)
         coarse = np.geomspace(max(low, 1e-300), high, _COARSE) if low < high else np.array([low])
-        blocks = [_at(penalty, shape) for shape in coarse]
-        made = cls._joined(penalty, blocks, coarse, known)
+        fixed, *blocks = _at(penalty, coarse)
+        made = cls._joined(penalty, fixed, blocks, coarse, known)
         if not made.free_shape:
             return made
         whole = BlockSums.of(made.matrix, [np.arange(len(made.matrix))], threads)
         best = int(np.argmin(whole.fitted(made.combined(None)).penalty))
         near = coarse[max(best - 1, 0)], coarse[min(best + 1, len(coarse) - 1)]
         fine = np.geomspace(*near, _FINE + 2)[1:-1]
-        blocks += [_at(penalty, shape) for shape in fine]
+        blocks += _at(penalty, fine)[1:]
         order = np.argsort(np.concatenate([coarse, fine]), kind="stable")
         shapes = np.concatenate([coarse, fine])[order]
-        return cls._joined(penalty, [blocks[i] for i in order], shapes, known)
+        return cls._joined(penalty, fixed, [blocks[i] for i in order], shapes, known)
 
     @classmethod
     def _joined(
         cls,
         penalty: _core.Penalty,
+        fixed: Array,
         blocks: Sequence[Array],
         shapes: Array,
         known: Sequence[Parameter],
@@ -93,7 +94,11 @@ class ShapedColumns:
         first: list[int] = []
         for index in range(count):
             first.append(len(parts))
-            parts += [block[:, index] for block in (blocks if shaped[index] else blocks[:1])]
+            place = sum(shaped[:index])
+            if shaped[index]:
+                parts += [block[:, place] for block in blocks]
+            else:
+                parts.append(fixed[:, index - place])
         parts.append(np.asarray(penalty.target))
         return cls(
             matrix=np.asfortranarray(np.column_stack(parts)),
@@ -143,6 +148,14 @@ class ShapedColumns:
         return made
 
 
-def _at(penalty: _core.Penalty, shape: float) -> Array:
+def _at(penalty: _core.Penalty, shapes: Array) -> list[Array]:
+    """Return the columns without a shape, and those that have one at each shape."""
+    shaped = [bool(term.shapes) for term in penalty.terms[: penalty.coefficients]]
     count = len(penalty.names) - penalty.coefficients
-    return np.asarray(penalty.columns(np.full(count, shape)))
+    made: list[Array] = []
+    for shape in shapes:
+        columns = penalty.columns(np.full(count, shape))
+        if not made:
+            made.append(columns[:, np.logical_not(shaped)])
+        made.append(columns[:, shaped])
+    return made

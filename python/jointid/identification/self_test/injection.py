@@ -110,7 +110,7 @@ class Injection:
         )
         residual = table.residual[mine]
         gain = self._value("sensor_gain", number) if sensor is not None else 1.0
-        if self._problem.choice.residual == "sensor":
+        if self._problem.choice.residual != "torque":  # the table is in terms of the reading
             residual = residual * gain
         return _Run(
             true=true,

@@ -12,11 +12,19 @@ _ORDER: tuple[Severity, ...] = ("blocking", "warning", "info")
 
 def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
     """All findings, the most severe first; those of one severity in the order of the checks."""
-    kept = [found for check in registry.CHECKS for found in check.find(evidence)]
+    kept = []
+    for check in registry.CHECKS:
+        raised = list(check.find(evidence))
+        kept += raised
+        if any(found.severity == "blocking" for found in raised):
+            # A signal that cannot be right explains the misfit; what else does is no cause.
+            evidence = replace(evidence, causes=None)
     units = [found for found in kept if found.code == "implausible_units"]
     # With degrees the motor's angle is wrong, too: a residual that oscillates with it is not ripple.
-    spurious = [found for found in kept if units and found.code == "ripple"]
+    other = _another_cause(evidence)
+    spurious = [found for found in kept if found.code == "ripple" and (units or other)]
     left = [found for found in kept if found not in (*units[1:], *spurious)]
+    left = [found for place, found in enumerate(left) if not _again(found, left[:place])]
     if any(
         found.code == "hardly_moves" for found in left
     ):  # no motion, no answer: what concerns the values follows from it
@@ -24,6 +32,17 @@ def diagnose(evidence: Evidence) -> tuple[Finding, ...]:
     if any(found.severity == "blocking" for found in left):
         left = [_without_other_fits(found) for found in left]
     return tuple(sorted(left, key=lambda found: _ORDER.index(found.severity)))
+
+
+def _another_cause(evidence: Evidence) -> bool:
+    """Whether most of the misfit has another cause: events have all multiples of the motor's angle."""
+    causes = evidence.causes.found if evidence.causes is not None else ()
+    return bool(causes) and causes[0].share > 0.5 and all(each.name != "ripple" for each in causes)
+
+
+def _again(found: Finding, before: list[Finding]) -> bool:
+    """Whether a check of its own has already raised what the attribution names, too."""
+    return "share" in found.evidence and found.code in {each.code for each in before}
 
 
 def _without_other_fits(found: Finding) -> Finding:

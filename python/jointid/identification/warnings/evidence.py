@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.estimate.causes import Causes
 from jointid.estimate.delays import Delay
 from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
@@ -80,6 +81,8 @@ class Evidence:
         Of the signals against the position.
     slow_motion : SlowMotion or None
         How slow windows disagree with faster ones.
+    causes : Causes or None
+        Why the model does not fit; None where the residuals are noise.
     """
 
     problem: Problem
@@ -101,6 +104,7 @@ class Evidence:
     delays: Mapping[str, Delay]
     slow_motion: SlowMotion | None
     velocity_effect: VelocityEffect | None = None
+    causes: Causes | None = None
 
     @property
     def recordings(self) -> tuple[Recording, ...]:

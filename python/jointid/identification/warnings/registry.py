@@ -24,6 +24,7 @@ FILES = (
     "undetermined",
     "undivided_offset",
     "ripple",
+    "causes",
     "poor_fit",
     "structured_residual",
     "standing",

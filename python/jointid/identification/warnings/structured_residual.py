@@ -1,4 +1,4 @@
-"""Residuals that are not noise."""
+"""Residuals that are not noise, where no cause has a name."""
 
 from collections.abc import Iterator
 
@@ -6,27 +6,52 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.undetermined import wide
 
 STRUCTURED_RESIDUAL = FindingType(
     code="structured_residual",
-    meaning="the residuals of neighbouring windows are correlated by more than 0.5: the model misses a "
-    "systematic effect",
+    meaning="the residuals of neighbouring windows are correlated by more than 0.5, or by less and a parameter is not "
+    "well determined; and no cause with a name explains that: the model misses a systematic effect",
     advice="look at the picture of the residuals; the standard errors allow for the correlation, a bias may remain",
     picture="windows",
 )
 _CORRELATED = 0.5
+_SHOWN = 3  # parameters in the sentence
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
     # Running integrals of white noise are correlated by themselves.
+    if evidence.penalty.cumulative or named(evidence):
+        return
     correlation = evidence.residuals.autocorrelation
-    if correlation > _CORRELATED and not evidence.penalty.cumulative:
-        yield STRUCTURED_RESIDUAL.finding(
-            f"the residuals are autocorrelated (r = {correlation:.2f}): the model misses a systematic effect; the "
-            "standard errors allow for it, a bias may remain",
-            Action("inspect", text="the residuals over time and over velocity"),
-            evidence={"autocorrelation": Measured(correlation)},
-        )
+    uncertain = wide(evidence) if evidence.causes is not None else ()
+    if correlation <= _CORRELATED and not uncertain:
+        return
+    makes = ""
+    if uncertain:
+        shown = ", ".join(uncertain[:_SHOWN]) + " and others" * (len(uncertain) > _SHOWN)
+        makes = f", which makes {shown} uncertain"
+    yield STRUCTURED_RESIDUAL.finding(
+        f"the residuals are autocorrelated (r = {correlation:.2f}): the model misses a systematic effect{makes}; the "
+        f"standard errors allow for it, a bias may remain{excluded(evidence)}",
+        Action("inspect", text="the residuals over time and over velocity"),
+        evidence={"autocorrelation": Measured(correlation)},
+        parameters=uncertain,
+    )
+
+
+def named(evidence: Evidence) -> bool:
+    """Whether a cause of the misfit is found."""
+    causes = evidence.causes.found if evidence.causes is not None else ()
+    return any(cause.name != "wrong_scale" for cause in causes)
+
+
+def excluded(evidence: Evidence) -> str:
+    """What was looked for and not found, as the end of a sentence."""
+    if evidence.causes is None or not evidence.causes.excluded:
+        return ""
+    names = [name.replace("_", " ") for name in evidence.causes.excluded]
+    return f"; it is not {', '.join(names[:-1])} or {names[-1]}" if len(names) > 1 else ""
 
 
 CHECK = Check(_find, (STRUCTURED_RESIDUAL,))

@@ -1,4 +1,4 @@
-"""Values that the recording does not determine: large errors, or a strong dependence on windows or noise."""
+"""Values that the recording does not determine, with what it lacks: speeds, reversals, loads, acceleration, travel."""
 
 from __future__ import annotations
 
@@ -6,32 +6,30 @@ import math
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
-from jointid import _core
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import percent, two_digits
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
-from jointid.problem.inner_products import inner
+from jointid.identification.warnings.excitation import Excitation, Lack
 
 UNDETERMINED = FindingType(
     code="undetermined",
-    meaning="a standard error above 5 %; or a value that moves by more than three times its error by chance when "
-    "the windows are halved or doubled; or a gain that differs by more than 0.75 % depending on whether the noise "
-    "is in the sensor or in the torque; or a gain of the other sign that fits as well; or an inertia that is hidden "
-    "by a noisy velocity",
-    advice="excite what is missing (the finding says how), or fix the parameter",
+    meaning="a standard error above 5 %, or a value that moves by more than three times its error by chance when the "
+    "windows are halved or doubled, and the recording has too little of what this parameter needs: a range of speeds, "
+    "slow motion, reversals, load, acceleration, travel, or only time; or a gain of the other sign that fits as well; "
+    "or an inertia that is hidden by a noisy velocity. Where the recording has enough, the cause is another: a misfit "
+    "of the model, which has its own finding",
+    advice="record what is missing (the finding says how much there is), or fix the parameter",
 )
 
-# A parameter is undetermined above this relative standard error, or when other windows move it by so many.
+# A parameter is not well determined above this relative standard error, or when other windows move it by so many.
 _LARGE_ERROR = 0.05
 _LARGE_SHIFT = 3.0
 _NOTICEABLE_SHIFT = 0.01
 _INSEPARABLE = 0.98
 _PAIRS = 5
-# Width between the regressions with the noise in the sensor and with the noise in the torque, over the gain.
-_WIDE = 0.0075
 
 _SHOWN = 4  # reasons, and pairs, in the sentence; the evidence has all
 
@@ -43,14 +41,7 @@ class _Reason:
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
-    told = {name for each in evidence.undivided for name in each.change}  # by a finding of its own
-    reasons: dict[str, list[_Reason]] = {
-        p.name: found
-        for p in evidence.parameters.values()
-        if p.name not in told and (found := _why_undetermined(p, evidence))
-    }
-    for name, reason in _between_the_regressions(evidence):
-        reasons.setdefault(name, [reason])
+    reasons, lacks = _reasons(evidence)
     guessed = _guessed_sign(evidence)
     if guessed is not None:
         reasons.setdefault("sensor_gain", []).append(guessed)
@@ -73,12 +64,54 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     for (first, second), correlation in _worst_pairs(evidence.correlations, reasons):
         cause += f"; {first} and {second} are indistinguishable (correlation {correlation:.3f})"
         measured[f"{first}.{second}.correlation"] = Measured(correlation)
+    for lack in lacks.values():
+        cause += f"; {lack.text}"
+        measured |= lack.measured
     yield UNDETERMINED.finding(
         cause,
-        *_advice(evidence, reasons, guessed is not None),
+        *_advice(evidence, reasons, lacks, guessed is not None),
         evidence=measured,
         parameters=tuple(name for name in evidence.parameters if name in reasons),
     )
+
+
+def _reasons(evidence: Evidence) -> tuple[dict[str, list[_Reason]], dict[str, Lack]]:
+    """Why parameters are not well determined, of those for which the recording lacks something, and what it lacks."""
+    excitation = Excitation(evidence)
+    told = {name for each in evidence.undivided for name in each.change}  # by a finding of its own
+    reasons: dict[str, list[_Reason]] = {}
+    lacks: dict[str, Lack] = {}
+    for p in evidence.parameters.values():
+        found = _why_undetermined(p, evidence)
+        if not found or p.name in told:
+            continue
+        lack = _lack(p, evidence, excitation)
+        if lack is None:
+            continue
+        reasons[p.name] = found
+        known = lacks.get(lack.quantity)
+        # Of two figures for the same quantity the one that asks for more.
+        if known is None or lack.wanted > known.wanted:
+            lacks[lack.quantity] = lack
+    return reasons, lacks
+
+
+def _lack(p: ParameterEstimate, evidence: Evidence, excitation: Excitation) -> Lack | None:
+    """What the recording lacks for a parameter; None where the model's misfit makes its error large."""
+    if _hidden(p, evidence):
+        return excitation.noise()
+    lack = excitation.lack(p)
+    if lack is not None or evidence.causes is not None:
+        return lack
+    error, wanted = p.stderr or 0.0, _LARGE_ERROR * scale_of(p, evidence)
+    if math.isinf(error) or error <= wanted or wanted == 0.0:
+        return None
+    return excitation.longer(error, wanted)
+
+
+def wide(evidence: Evidence) -> tuple[str, ...]:
+    """Parameters that are not well determined, whatever the reason."""
+    return tuple(p.name for p in evidence.parameters.values() if _why_undetermined(p, evidence))
 
 
 def _worst_pairs(
@@ -94,13 +127,15 @@ def _worst_pairs(
 
 
 def _advice(
-    evidence: Evidence, reasons: Mapping[str, list[_Reason]], sign_was_guessed: bool
+    evidence: Evidence,
+    reasons: Mapping[str, list[_Reason]],
+    lacks: Mapping[str, Lack],
+    sign_was_guessed: bool,
 ) -> Iterator[Action]:
-    kinds = [_kind(name) for name in reasons]
-    motions = dict.fromkeys(filter(None, map(_motion, reasons)))
+    motions = dict.fromkeys(lack.motion for lack in lacks.values())
     if motions:
         yield Action("record", text="; ".join(motions))
-    if "inertia" in kinds:
+    if "inertia" in map(_kind, reasons):
         text = "the drive's data sheet: an inertia that is known need not be identified"
         yield Action("inspect", text=text)
     if sign_was_guessed:
@@ -110,21 +145,12 @@ def _advice(
         yield Action("call", {"parameters": bound}, text="if that is its sign")
 
 
-def _motion(name: str) -> str:
-    """Which motion determines a parameter, whatever its order or recording; from the terms' table."""
-    base = name.split("[")[0]
-    for term in _core.terms():
-        if base == term.name or (term.family and base.startswith(f"{term.name}_")):
-            return term.advice
-    return next((shape.advice for shape in _core.shapes() if shape.name == base), "")
-
-
 def _kind(name: str) -> str:
     """A parameter's name without direction and recording."""
     return name.split("[")[0].removesuffix("_positive").removesuffix("_negative")
 
 
-def _scale(p: ParameterEstimate, evidence: Evidence) -> float:
+def scale_of(p: ParameterEstimate, evidence: Evidence) -> float:
     """Reference of the 5 %: an offset, or one phase of a harmonic, may be zero."""
     if "offset" in p.name:
         return max(abs(p.value), evidence.torque_level)
@@ -141,11 +167,11 @@ def _scale(p: ParameterEstimate, evidence: Evidence) -> float:
 
 
 def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]:
-    if p.name == "inertia" and p.vary and evidence.penalty.noise_limited:
+    if _hidden(p, evidence):
         return [_Reason("inertia is hidden by the noise of the velocity, whatever the windows", {})]
     if p.stderr is None:
         return []
-    scale = _scale(p, evidence)
+    scale = scale_of(p, evidence)
     reasons = []
     if p.stderr > _LARGE_ERROR * scale:
         relative = scale == abs(p.value) and scale > 0.0
@@ -171,6 +197,10 @@ def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]
     return reasons
 
 
+def _hidden(p: ParameterEstimate, evidence: Evidence) -> bool:
+    return p.name == "inertia" and p.vary and evidence.penalty.noise_limited
+
+
 def _with_unit(p: ParameterEstimate) -> str:
     """The standard error as the table has it."""
     return f"{two_digits(p.stderr or 0.0)} {p.unit}".rstrip()
@@ -182,50 +212,6 @@ def _guessed_sign(evidence: Evidence) -> _Reason | None:
         return None
     sign = "negative" if gain.value > 0.0 else "positive"
     return _Reason(f"a {sign} sensor_gain fits almost as well", {})
-
-
-def _between_the_regressions(evidence: Evidence) -> Iterator[tuple[str, _Reason]]:
-    """Gain and offset, where the sensor's own noise is not small against its signal.
-
-    With the noise in the sensor the gain is the value of one regression, with the noise in the torque
-    that of the reverse one; the truth lies between (Frisch's bounds). Their distance is the noise that
-    the windows leave, over the part of the reading that no other term explains: it grows as windows
-    shrink, where the standard error, which takes the place of the noise for granted, shows nothing.
-    """
-    width = noise_width(evidence)
-    if width <= _WIDE:
-        return
-    text = (
-        f"sensor_gain differs by {percent(width)} depending on whether the noise is in the sensor or in the torque, "
-        "and more with shorter windows, because the sensed torque hardly varies"
-    )
-    reason = _Reason(text, {"sensor_gain.noise_width": Measured(width)})
-    for name in ("sensor_gain", "sensor_offset"):
-        if name in evidence.parameters and evidence.parameters[name].vary:
-            yield name, reason
-
-
-def noise_width(evidence: Evidence) -> float:
-    """Distance of the two regressions of the gain, over the gain; 0 without a free gain."""
-    gain = evidence.parameters.get("sensor_gain")
-    if gain is None or not gain.vary:
-        return 0.0
-    regressor = evidence.at_best
-    free = [
-        regressor.names.index(name)
-        for name, p in evidence.parameters.items()
-        if name in regressor.names and p.vary and p.at_bound is None and name != "sensor_gain"
-    ]
-    own = regressor.norm("sensor_gain")
-    if free:
-        reading = regressor.names.index("sensor_gain")
-        own = regressor.triangle.solve(free, reading, rcond=1e-10)[1]
-    residual = evidence.residual
-    if evidence.penalty.residual != _core.Residual.sensor:
-        residual = residual / (gain.value or 1e-300)
-    freedom = max(1, residual.size - len(free) - 1)
-    noise = inner(residual, residual) * residual.size / freedom
-    return noise / max(own**2, 1e-300)
 
 
 CHECK = Check(_find, (UNDETERMINED,))

@@ -1,0 +1,181 @@
+"""Why a model does not fit: causes by name, with what they explain and which values they move."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Measured
+from jointid.estimate.wording import percent
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cause:
+    """Something that the model lacks, and that the recordings show.
+
+    Attributes
+    ----------
+    name : str
+        E.g. "gravity", "load_friction", "drift"; the guide lists them.
+    detail : str
+        Which of its kind: the coefficient that drifts, the order of a harmonic, the signal that is late.
+    share : float
+        Share of the misfit that it explains, in stretches of time that it was not fitted to.
+    scale : float
+        Length of the windows at which that share was taken [s].
+    size : str
+        How large it is, with its unit; empty where one number does not say it.
+    numbers : mapping of str to Measured
+        The numbers in `detail` and `size`.
+    shifts : mapping of str to float
+        How much each parameter would change if the model had it, in the parameter's unit.
+    relative : mapping of str to float
+        The same as shares of the values, of those that change noticeably.
+    alike : tuple of str
+        Other causes that these recordings hardly tell from it.
+    advice : tuple of Action
+        What to do about it.
+    """
+
+    name: str
+    detail: str = ""
+    share: float
+    scale: float
+    size: str = ""
+    numbers: Mapping[str, Measured] = field(default_factory=dict, hash=False)
+    shifts: Mapping[str, float] = field(default_factory=dict, hash=False)
+    relative: Mapping[str, float] = field(default_factory=dict, hash=False)
+    alike: tuple[str, ...] = ()
+    advice: tuple[Action, ...] = field(default=(), hash=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "numbers", MappingProxyType(dict(self.numbers)))
+        object.__setattr__(self, "shifts", MappingProxyType(dict(self.shifts)))
+        object.__setattr__(self, "relative", MappingProxyType(dict(self.relative)))
+
+    def __str__(self) -> str:
+        """The cause in a sentence without its advice."""
+        text = MEANINGS[self.name]
+        inside = ", ".join(part for part in (self.detail, self.size) if part)
+        text += f" ({inside})" if inside else ""
+        text += (
+            f" explains {percent(self.share)} of the misfit over windows of {_seconds(self.scale)}"
+        )
+        if self.relative:
+            moved = sorted(self.relative.items(), key=lambda entry: -abs(entry[1]))[:3]
+            changes = ", ".join(f"{name} by {_signed(change)}" for name, change in moved)
+            text += f"; with it in the model, {changes}"
+        if self.alike:
+            text += f"; this recording hardly tells it from {' and '.join(self.alike)}"
+        return text
+
+    def __reduce__(self) -> tuple[object, ...]:
+        # A read-only mapping cannot be pickled.
+        values: dict[str, Any] = {name: getattr(self, name) for name in self.__slots__}
+        for name in ("numbers", "shifts", "relative"):
+            values[name] = dict(values[name])
+        return _rebuilt, (values,)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Causes:
+    """What an attribution found.
+
+    Attributes
+    ----------
+    found : tuple of Cause
+        Causes that matter: certain, and they move a parameter. The one that explains most comes first.
+    harmless : tuple of Cause
+        Causes that are certain and move no parameter noticeably.
+    tried : tuple of str
+        Names of all causes that were looked for.
+    """
+
+    found: tuple[Cause, ...]
+    harmless: tuple[Cause, ...] = ()
+    tried: tuple[str, ...] = ()
+
+    @property
+    def excluded(self) -> tuple[str, ...]:
+        """Causes that were looked for and not found."""
+        named = {cause.name for cause in (*self.found, *self.harmless)}
+        return tuple(name for name in self.tried if name not in named)
+
+    def report(self, action: Callable[[Action], str] = str) -> str:
+        """Return the causes as text, one a line, with their advice.
+
+        Parameters
+        ----------
+        action : callable
+            Words one action. Default: as at a Python prompt.
+        """
+        lines = [
+            f"{cause.name}: {cause}" + "".join(f"\n    {action(each)}" for each in cause.advice)
+            for cause in self.found
+        ]
+        lines += [f"{cause.name} (moves no parameter): {cause}" for cause in self.harmless]
+        if not lines:
+            lines = ["no cause of a misfit was found"]
+        if self.excluded:
+            lines.append(f"looked for and not found: {', '.join(self.excluded)}")
+        return "\n".join(lines)
+
+    def __str__(self) -> str:
+        return self.report()
+
+    def document(self) -> dict[str, Any]:
+        """Return the causes as values for JSON."""
+        return {
+            "found": [_document(cause) for cause in self.found],
+            "harmless": [_document(cause) for cause in self.harmless],
+            "tried": list(self.tried),
+        }
+
+
+def _document(cause: Cause) -> dict[str, Any]:
+    return {
+        "name": cause.name,
+        "detail": cause.detail,
+        "share": cause.share,
+        "scale": cause.scale,
+        "size": cause.size,
+        "shifts": dict(cause.shifts),
+        "relative": dict(cause.relative),
+        "alike": list(cause.alike),
+        "advice": [str(each) for each in cause.advice],
+    }
+
+
+def _rebuilt(values: dict[str, Any]) -> Cause:
+    return Cause(**values)
+
+
+def _seconds(value: float) -> str:
+    return f"{1e3 * value:.3g} ms" if value < 1.0 else f"{value:.3g} s"
+
+
+def _signed(share: float) -> str:
+    return ("+" if share >= 0.0 else "−") + percent(abs(share))
+
+
+MEANINGS = {
+    "gravity": "a torque of gravity that the model lacks",
+    "inertia_varies": "an inertia that varies with the angle",
+    "load_friction": "friction that grows with the load",
+    "slow_motion": "friction at low speed that the model lacks",
+    "presliding": "a friction that builds up over the first way after each reversal",
+    "stribeck_exponent": "another decay of the friction with speed",
+    "drift": "a coefficient that changes during the recording",
+    "harmonic": "a torque over the joint's angle",
+    "ripple": "a torque over the motor's angle",
+    "delay": "a signal that is late",
+    "other_signal": "another signal that acts on the joint",
+    "disturbance": "a disturbance that is local in time",
+    "asymmetry": "friction that differs between the two directions",
+    "offset": "a constant torque that the model lacks",
+    "wrong_scale": "a given inertia that does not fit the torque",
+}
+"""What each name means, as the beginning of a sentence."""

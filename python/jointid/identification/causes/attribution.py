@@ -1,0 +1,199 @@
+"""Attribution: which candidates explain the misfit of a fit, out of sample, and what they do to its values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.identification.causes.candidates import Candidate
+from jointid.identification.causes.events import LocalEvent, local_event
+from jointid.identification.causes.fitted import Fitted
+from jointid.identification.causes.folds import Folds, summed
+
+Array = NDArray[np.float64]
+
+SCALES = (1, 4, 16, 64)
+_MOST = 3  # causes, one after the other
+_SHARE = 0.12  # of the misfit, at least, at one scale
+_SHARE_OF_ALL = 0.05  # of the misfit before any cause was found
+_SURE = 3.0  # mean improvement of a block over its error
+_FEWEST = 5  # blocks that hold the misfit
+_ALIKE = 1.1  # ratio of misfits that blocks do not tell apart
+_HARDLY = 0.9  # a runner-up explains so much of what the winner does, in logarithms of the misfit
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Attributed:
+    """A candidate that explains part of the misfit.
+
+    Attributes
+    ----------
+    candidate : Candidate
+    share : float
+        Of the misfit at its best scale, out of sample.
+    factor : int
+        That scale: neighbouring windows summed.
+    coefficients : ndarray, shape (m,)
+        Of its columns.
+    shifts : ndarray
+        Change of the free parameters by this cause, after those found before it.
+    alike : tuple of str
+        Names of other families that explain nearly as much.
+    """
+
+    candidate: Candidate
+    share: float
+    factor: int
+    coefficients: Array
+    shifts: Array
+    alike: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Score:
+    total: float  # mean logarithm of the reduction of the misfit, over the scales
+    share: float
+    factor: int
+    sure: bool
+
+
+def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
+    """Return the candidates that explain the misfit, one after the other."""
+    count = fit.jacobian.shape[1]
+    places, at = [], count
+    for each in tried:
+        places.append(list(range(at, at + each.columns.shape[1])))
+        at += each.columns.shape[1]
+    matrix = np.column_stack([fit.jacobian, *(each.columns for each in tried), fit.residual])
+    scaled = _at_scales(fit, matrix)
+    base = list(range(count))
+    whole = {factor: folds.misfit(base).sum() for factor, folds in scaled}
+    found: list[Attributed] = []
+    taken: set[str] = set()
+    reached = np.zeros(count)
+    while len(found) < _MOST:
+        scores = {
+            index: _score(scaled[:1] if each.finest else scaled, base, places[index], whole)
+            for index, each in enumerate(tried)
+            if _family(each) not in taken
+        }
+        sure = {index: score for index, score in scores.items() if score.sure}
+        best = max((score.share for score in sure.values()), default=0.0)
+        event = None if "disturbance" in taken else local_event(fit, matrix[:, base], matrix[:, -1])
+        if event is not None and event.stands_out(best):
+            taken.add("disturbance")
+            matrix = np.where(event.rows[:, None], 0.0, matrix)
+            scaled = _at_scales(fit, matrix)
+            found.append(_of_event(fit, matrix, base, event, reached))
+            reached = reached + found[-1].shifts
+            continue
+        if not sure:
+            break
+        winner = _parsimonious(sure, tried)
+        base = base + places[winner]
+        taken.add(_family(tried[winner]))
+        found.append(_attributed(fit, matrix, base, tried, winner, scores, reached))
+        reached = reached + found[-1].shifts
+    return tuple(found)
+
+
+def _of_event(
+    fit: Fitted, matrix: Array, base: list[int], event: LocalEvent, reached: Array
+) -> Attributed:
+    """The shifts when the event is left out."""
+    steps = fit.solve(matrix[:, base], matrix[:, -1])
+    return Attributed(
+        candidate=Candidate(name="disturbance", columns=np.zeros((0, 1)), detail=event.text),
+        share=event.share,
+        factor=1,
+        coefficients=np.array([event.torque]),
+        shifts=steps[: len(reached)] - reached,
+    )
+
+
+def _family(candidate: Candidate) -> str:
+    return candidate.family or candidate.name
+
+
+def _at_scales(fit: Fitted, matrix: Array) -> list[tuple[int, Folds]]:
+    scaled = []
+    for factor in SCALES:
+        rows, _ = summed(matrix, fit.run, factor)
+        folds = Folds.of(rows[:, :-1], rows[:, -1])
+        if folds is not None and len(rows) > 3 * fit.jacobian.shape[1] + 20:
+            scaled.append((factor, folds))
+    return scaled
+
+
+def _score(
+    scaled: list[tuple[int, Folds]], base: list[int], columns: list[int], whole: dict[int, float]
+) -> _Score:
+    total, best, at, sure = 0.0, 0.0, 1, False
+    for factor, folds in scaled:
+        before, after = folds.misfit(base), folds.misfit([*base, *columns])
+        ratio = float(after.sum() / max(before.sum(), 1e-300))
+        total -= np.log(min(max(ratio, 1e-6), 1.5))
+        if 1.0 - ratio > best:
+            best, at = 1.0 - ratio, factor
+        enough = float((before - after).sum()) > _SHARE_OF_ALL * whole.get(factor, np.inf)
+        sure |= enough and 1.0 - ratio > _SHARE and _steady(before, after)
+    return _Score(float(total) / max(1, len(scaled)), best, at, sure)
+
+
+def _steady(before: Array, after: Array) -> bool:
+    """Whether the misfit falls in most blocks, not by luck in one.
+
+    The logarithms of the blocks' ratios count blocks alike, their differences count them by their
+    misfit. A cause at reversals is silent in the blocks without one: the loud blocks must then fall
+    together.
+    """
+    floor = 1e-12 * before.sum()
+    ratios = np.log((before + floor) / (after + floor))
+    differences = before - after
+    if max(_steadiness(ratios), _steadiness(differences)) > _SURE:
+        return True
+    loud = before > 0.2 * before.mean()
+    half = after.sum() < 0.5 * before.sum()
+    return bool(half and loud.sum() >= _FEWEST and np.mean(after[loud] < 0.7 * before[loud]) > 0.8)
+
+
+def _steadiness(values: Array) -> float:
+    error = float(values.std(ddof=1)) / np.sqrt(len(values))
+    return float(values.mean() / max(error, 1e-300))
+
+
+def _parsimonious(scores: dict[int, _Score], tried: list[Candidate]) -> int:
+    """The candidate with the fewest columns among those as good as the best."""
+    top = max(score.total for score in scores.values())
+    near = [index for index, score in scores.items() if score.total > top - np.log(_ALIKE)]
+    return min(near, key=lambda index: (tried[index].columns.shape[1], -scores[index].total))
+
+
+def _attributed(
+    fit: Fitted,
+    matrix: Array,
+    base: list[int],
+    tried: list[Candidate],
+    winner: int,
+    scores: dict[int, _Score],
+    reached: Array,
+) -> Attributed:
+    """The winner's coefficients, and the shifts of the parameters with all causes so far in the model."""
+    count, own = fit.jacobian.shape[1], tried[winner].columns.shape[1]
+    solution = fit.solve(matrix[:, base], matrix[:, -1])
+    score = scores[winner]
+    alike: dict[str, float] = {}
+    for index, other in scores.items():
+        family = _family(tried[index])
+        if family != _family(tried[winner]) and other.sure and other.total > _HARDLY * score.total:
+            alike[family] = max(alike.get(family, 0.0), other.total)
+    return Attributed(
+        candidate=tried[winner],
+        share=score.share,
+        factor=score.factor,
+        coefficients=-solution[-own:],
+        shifts=solution[:count] - reached,
+        alike=tuple(sorted(alike, key=lambda name: -alike[name]))[:2],
+    )

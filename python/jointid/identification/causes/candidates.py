@@ -1,0 +1,295 @@
+"""The table of candidates: what a model may lack, by name, as integrals over the windows.
+
+A new cause is a function here and a line in `FAMILIES`.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.identification.causes.fitted import Fitted
+from jointid.recording.recording import Recording
+
+Array = NDArray[np.float64]
+
+_PERIOD = np.pi  # [rad] of a harmonic that the motion covers, at least
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Candidate:
+    """One regressor or a few that belong together.
+
+    Attributes
+    ----------
+    name : str
+        Name of the cause.
+    columns : ndarray, shape (windows, m)
+        Integrals of torque for a coefficient of 1.
+    detail : str
+        Which of its kind, e.g. the order of a harmonic.
+    numbers : tuple
+        Name, value and unit behind the length of the numbers in `detail`, where @ is the unit of length.
+    family : str
+        Causes that a recording hardly separates share one.
+    finest : bool
+        Whether only the windows as they are can show it.
+    """
+
+    name: str
+    columns: Array
+    detail: str = ""
+    numbers: tuple[tuple[str, float, str], ...] = ()
+    family: str = ""
+    finest: bool = False
+
+
+def listed_candidates(fit: Fitted) -> list[Candidate]:
+    """Return all candidates that the model lacks and the recordings can show."""
+    return [each for family in FAMILIES for each in family(fit) if np.any(each.columns)]
+
+
+def _gravity(fit: Fitted) -> Iterator[Candidate]:
+    if _revolute(fit) and "gravity_cos" not in fit.names and not _has_order(fit, "position", 1.0):
+        yield Candidate(name="gravity", columns=_angle(fit, 1.0))
+
+
+def _inertia_varies(fit: Fitted) -> Iterator[Candidate]:
+    """From Lagrange's equation of an inertia M(q): M a + M' v² / 2, integrated without the acceleration."""
+    if not _revolute(fit):
+        return
+    for orders in ((1.0,), (2.0,), (1.0, 2.0)):
+        parts = []
+        for order in orders:
+            mean = inertia_basis(fit, order).mean(axis=0)
+            parts.append(
+                fit.rise(functools.partial(_momentum, order=order, mean=mean))
+                - 0.5 * fit.integral(functools.partial(_centrifugal, order=order))
+            )
+        detail = " and ".join(f"{order:g}" for order in orders)
+        yield Candidate(name="inertia_varies", columns=np.hstack(parts), detail=detail)
+
+
+def _momentum(_: int, run: Recording, order: float, mean: Array) -> Array:
+    return np.asarray((_pair(order * run.position) - mean) * run.velocity[:, None])
+
+
+def _centrifugal(_: int, run: Recording, order: float) -> Array:
+    return np.asarray(order * _slope(order * run.position) * run.velocity[:, None] ** 2)
+
+
+def inertia_basis(fit: Fitted, order: float) -> Array:
+    """Cosine and sine of a multiple of the angle at all samples, shape (samples, 2)."""
+    return np.concatenate([_pair(order * run.position) for run in fit.problem.recordings])
+
+
+def _load_friction(fit: Fitted) -> Iterator[Candidate]:
+    """With the load from the sensor, or from the model's gravity and inertia; never from the drive's torque."""
+    if "load_friction" in fit.names:
+        return
+    turned = fit.integral(lambda _, run: np.sign(run.velocity)) / fit.duration
+    for names in (
+        ("sensor_gain", "sensor_offset"),
+        ("gravity_cos", "gravity_sin"),
+        ("gravity_cos", "gravity_sin", "torque_offset"),
+        ("gravity_cos", "gravity_sin", "inertia"),
+        ("inertia",),
+    ):
+        if set(names) <= set(fit.names) and ("sensor_gain" in fit.names) == (
+            "sensor_gain" in names
+        ):
+            load = sum(fit.value(name) * fit.columns[:, fit.names.index(name)] for name in names)
+            columns = np.asarray(np.abs(load) * turned)[:, None]
+            yield Candidate(name="load_friction", columns=columns)
+
+
+def _slow(fit: Fitted) -> Iterator[Candidate]:
+    """Friction at low speed: another decay, or the position since the last reversal."""
+    fast = _typical_speed(fit)
+    reach = max(float(np.ptp(run.position)) for run in fit.problem.recordings)
+    speeds = fast * np.array([0.02, 0.05, 0.1, 0.2, 0.4])
+    ways = reach * np.array([1e-4, 1e-3, 1e-2])
+    linear = fit.integral(
+        lambda _, run: (
+            np.exp(-np.abs(run.velocity)[:, None] / speeds) * np.sign(run.velocity)[:, None]
+        )
+    )
+    since = fit.integral(
+        lambda _, run: (
+            np.exp(-_since_reversal(run)[:, None] / ways) * np.sign(run.velocity)[:, None]
+        )
+    )
+    family = "slow_motion"
+    known = "static" in fit.names or "static_positive" in fit.names
+    for k, speed in enumerate(speeds):
+        yield Candidate(
+            name="stribeck_exponent" if known else "slow_motion",
+            columns=linear[:, k : k + 1],
+            detail=f"below about {speed:.2g} @/s",
+            numbers=(("speed", float(speed), "/s"),),
+            family=family,
+        )
+    for k, way in enumerate(ways):
+        yield Candidate(
+            name="presliding",
+            columns=since[:, k : k + 1],
+            detail=f"within about {way:.2g} @ of a reversal",
+            numbers=(("way", float(way), ""),),
+            family=family,
+        )
+    yield Candidate(name="slow_motion", columns=np.hstack([linear[:, ::2], since]), family=family)
+
+
+def _drift(fit: Fitted) -> Iterator[Candidate]:
+    """Coefficients that change evenly with time."""
+    middle = fit.integral(lambda _, run: run.time - run.time[0]) / fit.duration
+    progress = middle - np.average(middle, weights=fit.duration)
+    for index, term in enumerate(fit.penalty.terms):
+        name = fit.names[index]
+        if index not in fit.free:
+            continue
+        if term.friction or name in ("torque_offset", "sensor_offset", "sensor_gain"):
+            column = progress * fit.columns[:, index]
+            yield Candidate(name="drift", columns=column[:, None], detail=name)
+
+
+def _harmonic(fit: Fitted) -> Iterator[Candidate]:
+    if not _revolute(fit):
+        return
+    reach = max(float(np.ptp(run.position)) for run in fit.problem.recordings)
+    for order in range(2, 7):
+        # Less than half a period is a slope, which other candidates are, too.
+        if order * reach > _PERIOD and not _has_order(fit, "position", float(order)):
+            yield Candidate(name="harmonic", columns=_angle(fit, float(order)), detail=str(order))
+
+
+def _ripple(fit: Fitted) -> Iterator[Candidate]:
+    """Over longer windows only the ripple at reversals is left, which any cause at reversals resembles."""
+    joint = fit.problem.joint
+    gear = abs(joint.gear_ratio) if joint is not None else 1.0
+    if gear == 1.0 or not _revolute(fit):
+        return
+    for order in (0.5, 1.0, 2.0, 3.0, 4.0):
+        if not _has_order(fit, "ripple", order):
+            columns = _angle(fit, order * gear)
+            yield Candidate(name="ripple", columns=columns, detail=f"{order:g}", finest=True)
+
+
+def _delay(fit: Fitted) -> Iterator[Candidate]:
+    """To first order, the integral of a signal that is late changes by its rise over the window."""
+    runs = fit.problem.in_core
+    late = np.asarray(fit.penalty.torque_steps(runs, fit.problem.mask_standstill))
+    yield Candidate(name="delay", columns=late[:, None], detail="torque")
+    if "sensor_gain" in fit.names:
+        gain = fit.value("sensor_gain")
+        rise = gain * fit.rise(lambda _, run: _present(run.sensor))
+        yield Candidate(name="delay", columns=rise[:, None], detail="sensor")
+    if not fit.problem.recordings[0].velocity_derived:
+        rise = -fit.rise(lambda _, run: _of_velocity(fit, run))
+        yield Candidate(name="delay", columns=rise[:, None], detail="velocity")
+
+
+def _of_velocity(fit: Fitted, run: Recording) -> Array:
+    """Torque of the terms that the velocity enters: inertia and friction, but for what the travel gives."""
+    total = fit.value("inertia") * np.gradient(run.velocity, run.time)
+    shapes = {shape: fit.value(shape) for term in fit.penalty.terms for shape in term.shapes}
+    for index, term in enumerate(fit.penalty.terms):
+        if term.friction and not term.needs_load:
+            values = np.array([shapes[shape] for shape in term.shapes])
+            total += fit.best[index] * _core.friction_basis(term.key, run.velocity, values)
+    return np.asarray(total - fit.value("viscous") * run.velocity)
+
+
+def _asymmetry(fit: Fitted) -> Iterator[Candidate]:
+    if any(name.endswith("_positive") for name in fit.names):
+        return
+    speed = fit.integral(lambda _, run: np.abs(run.velocity))
+    yield Candidate(name="asymmetry", columns=speed[:, None])
+
+
+def _offset(fit: Fitted) -> Iterator[Candidate]:
+    if not {"torque_offset", "sensor_offset"} & set(fit.names):
+        yield Candidate(name="offset", columns=fit.duration[:, None])
+
+
+def _scale(fit: Fitted) -> Iterator[Candidate]:
+    """A given inertia that does not fit the torque's scale."""
+    if "inertia" in fit.names and fit.names.index("inertia") not in fit.free:
+        column = fit.columns[:, fit.names.index("inertia")]
+        yield Candidate(name="wrong_scale", columns=column[:, None])
+
+
+def _other_signal(fit: Fitted) -> Iterator[Candidate]:
+    """Signals beside those of the model, and the friction's change with them."""
+    signals = dict(fit.signals)
+    first = fit.problem.recordings[0]
+    if len(fit.problem.recordings) == 1 and first.temperature is not None:
+        signals.setdefault("temperature", first.temperature)
+    for name, values in signals.items():
+        level = values - values.mean()
+        yield Candidate(
+            name="other_signal",
+            columns=fit.integral(lambda *_, x=level: x)[:, None],
+            detail=name,
+        )
+        yield Candidate(
+            name="other_signal",
+            columns=fit.rise(lambda *_, x=level: x)[:, None],
+            detail=f"the change of {name}",
+        )
+
+
+FAMILIES: tuple[Callable[[Fitted], Iterator[Candidate]], ...] = (
+    *(_gravity, _inertia_varies, _load_friction, _slow, _drift, _harmonic, _ripple),
+    *(_delay, _asymmetry, _offset, _scale, _other_signal),
+)
+
+
+def _revolute(fit: Fitted) -> bool:
+    return fit.problem.recordings[0].kind == "revolute"
+
+
+def _has_order(fit: Fitted, family: str, order: float) -> bool:
+    return f"{family}_cos_{order:g}" in fit.names
+
+
+def _pair(angle: Array) -> Array:
+    return np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+def _slope(angle: Array) -> Array:
+    return np.column_stack([-np.sin(angle), np.cos(angle)])
+
+
+def _angle(fit: Fitted, order: float) -> Array:
+    """Cosine and sine without their means, so that they leave an offset where it is."""
+    columns = fit.integral(lambda _, run: _pair(order * run.position))
+    if not {"torque_offset", "sensor_offset"} & set(fit.names):
+        return columns
+    mean = columns.sum(axis=0) / fit.duration.sum()
+    return np.asarray(columns - fit.duration[:, None] * mean)
+
+
+def _typical_speed(fit: Fitted) -> float:
+    return max(float(np.quantile(np.abs(run.velocity), 0.9)) for run in fit.problem.recordings)
+
+
+def _present(signal: Array | None) -> Array:
+    assert signal is not None
+    return signal
+
+
+def _since_reversal(run: Recording) -> Array:
+    """Way since the last change of direction."""
+    turned = np.sign(run.velocity)
+    moved = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(run.position)))])
+    change = np.concatenate([[True], turned[1:] * turned[:-1] < 0.0])
+    # A stop between two directions is a reversal, too, and so is one between two of the same.
+    change |= turned == 0.0
+    at_change = np.maximum.accumulate(np.where(change, np.arange(len(turned)), 0))
+    return np.asarray(moved - moved[at_change])

@@ -1,0 +1,105 @@
+"""A disturbance: a misfit that a few short stretches of time hold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.identification.causes.fitted import Fitted
+
+Array = NDArray[np.float64]
+
+_LENGTH = 0.03  # of the windows, a stretch
+_MOST = 3  # stretches
+_ALONE, _TOGETHER = 0.6, 0.8  # share of the misfit in one, or in several
+_OTHER, _MORE = 0.3, 0.3
+_ROUNDS = 3  # what a disturbance does to the fit hides part of it
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LocalEvent:
+    """Stretches of time that hold most of the misfit.
+
+    Attributes
+    ----------
+    rows : ndarray of bool, shape (windows,)
+    share : float
+        Of the misfit.
+    torque : float
+        Largest mean torque of a window there [N·m or N].
+    text : str
+        When.
+    """
+
+    rows: NDArray[np.bool_]
+    share: float
+    torque: float
+    text: str
+    stretches: int
+
+    def stands_out(self, share: float) -> bool:
+        """Whether it says more than a cause that explains this share of the misfit at other times, too."""
+        if self.stretches > 1:
+            return share < _OTHER
+        return self.share > share + _MORE * (1.0 - share)
+
+
+def local_event(fit: Fitted, base: Array, residual: Array) -> LocalEvent | None:
+    """Return the stretches that hold most of what is left of the residual; None where it is spread."""
+    length = max(3, round(_LENGTH * len(residual)))
+    if len(residual) < 20 * length:
+        return None
+    keep = np.ones(len(residual), dtype=bool)
+    left = residual
+    for _ in range(_ROUNDS):  # refit without what was found, look again
+        steps = fit.solve(np.where(keep[:, None], base, 0.0), np.where(keep, residual, 0.0))
+        steps[: len(fit.start)] -= fit.start
+        left = residual + base @ steps
+        stretches = _stretches(left**2, length)
+        keep = np.ones(len(residual), dtype=bool)
+        for low, high in stretches:
+            keep[low:high] = False
+    share = float(np.sum(left[~keep] ** 2) / max(np.sum(left**2), 1e-300))
+    if not stretches or share < (_ALONE if len(stretches) == 1 else _TOGETHER):
+        return None
+    means = left / fit.duration
+    highest = int(np.argmax(np.where(keep, 0.0, np.abs(means))))
+    return LocalEvent(
+        rows=~keep,
+        share=share,
+        torque=float(means[highest]),
+        text=_when(fit, stretches),
+        stretches=len(stretches),
+    )
+
+
+def _stretches(power: Array, length: int) -> list[tuple[int, int]]:
+    """The stretches with the most power: one if it holds enough, else a few."""
+    found: list[tuple[int, int]] = []
+    left = power.copy()
+    total = float(power.sum())
+    held = 0.0
+    while len(found) < _MOST:
+        run = np.concatenate([[0.0], np.cumsum(left)])
+        sums = run[length:] - run[:-length]
+        low = int(np.argmax(sums))
+        held += float(sums[low])
+        found.append((low, low + length))
+        left[low : low + length] = 0.0
+        if held > (_ALONE if len(found) == 1 else _TOGETHER) * total:
+            return found
+    return []
+
+
+def _when(fit: Fitted, stretches: list[tuple[int, int]]) -> str:
+    bounds = np.asarray(fit.penalty.windows)
+    texts = []
+    for low, high in sorted(stretches):
+        run = int(fit.run[low])
+        time = fit.problem.recordings[run].time
+        last = min(high - 1, int(np.searchsorted(fit.run, run + 1)) - 1)
+        place = f" of recording {run}" if len(fit.problem.recordings) > 1 else ""
+        texts.append(f"{time[bounds[low, 0]]:.4g} to {time[bounds[last, 1]]:.4g} s{place}")
+    return " and ".join(texts)

@@ -1,0 +1,191 @@
+"""A fit as the attribution sees it: residuals, derivatives, windows, and integrals of any signal over them."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.problem.problem import Problem
+from jointid.recording.recording import Recording
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fitted:
+    """A minimum of the penalty.
+
+    Attributes
+    ----------
+    problem : Problem
+    penalty : Penalty
+    best : ndarray
+        Parameters, in the order of `penalty.names`.
+    free : tuple of int
+        Those that vary and that no bound holds.
+    residual : ndarray, shape (windows,)
+        Torque that the model lacks, integrated [N·m·s].
+    jacobian : ndarray, shape (windows, free)
+        Derivatives of the residuals by the free parameters; the sensor's reading by what the motion
+        says of it, so that its noise counts for nothing.
+    start : ndarray, shape (free,)
+        What has been added to the parameters in `residual`.
+    signals : mapping of str to ndarray
+        Further signals of the first recording, one value a sample.
+    """
+
+    problem: Problem
+    penalty: _core.Penalty
+    best: Array
+    free: tuple[int, ...]
+    residual: Array
+    jacobian: Array
+    start: Array
+    signals: Mapping[str, Array] = field(default_factory=dict)
+
+    @functools.cached_property
+    def names(self) -> tuple[str, ...]:
+        """Names of all parameters."""
+        return tuple(self.penalty.names)
+
+    @functools.cached_property
+    def run(self) -> NDArray[np.int64]:
+        """Index of each window's recording."""
+        return np.asarray(self.penalty.recording_of, dtype=np.int64)
+
+    @functools.cached_property
+    def columns(self) -> Array:
+        """Integrals of the coefficients' terms, shape (windows, coefficients)."""
+        return np.asarray(self.penalty.columns(self.best[self.penalty.coefficients :]))
+
+    @functools.cached_property
+    def duration(self) -> Array:
+        """Integrated time of each window [s]."""
+        return np.asarray(self.penalty.usable_duration)
+
+    @functools.cached_property
+    def weights(self) -> list[Array]:
+        """Integration time of each sample interval of each recording, 0 where it is left out [s]."""
+        problem = self.problem
+        return [
+            np.diff(recording.time)
+            * np.asarray(_core.usable_intervals(core, problem.mask_standstill), dtype=np.float64)
+            for recording, core in zip(problem.recordings, problem.in_core, strict=True)
+        ]
+
+    def value(self, name: str) -> float:
+        """Value of a parameter; 0 without it."""
+        return float(self.best[self.names.index(name)]) if name in self.names else 0.0
+
+    def solve(self, columns: Array, residual: Array) -> Array:
+        """Return the least-squares steps along columns that take the residual away; the first are parameters."""
+        size = np.sqrt(np.einsum("ij,ij->j", columns, columns))
+        size = np.where(size > 0.0, size, 1.0)
+        scaled = columns / size
+        square = np.einsum("ni,nj->ij", scaled, scaled) + 1e-12 * np.eye(len(size))
+        found = np.linalg.solve(square, -np.einsum("ni,n->i", scaled, residual)) / size
+        found[: len(self.start)] += self.start
+        return np.asarray(found)
+
+    def integral(self, signal: Callable[[int, Recording], Array]) -> Array:
+        """Integral over each window of a signal of the samples, shape (samples,) or (samples, m)."""
+        return self._by_window(signal, self._summed)
+
+    def rise(self, signal: Callable[[int, Recording], Array]) -> Array:
+        """How far a signal rises over the integrated part of each window."""
+        return self._by_window(signal, self._risen)
+
+    @classmethod
+    def of(
+        cls,
+        problem: Problem,
+        penalty: _core.Penalty,
+        best: Array,
+        free: tuple[int, ...],
+        signals: Mapping[str, Array] | None = None,
+    ) -> Fitted:
+        """Return the fit at a minimum, on the torque's side whatever the penalty compares."""
+        _, residual, jacobian = penalty.linearised(best)
+        jacobian = np.array(jacobian[:, list(free)])
+        names = list(penalty.names)
+        start = np.zeros(len(free))
+        signals = signals or {}
+        if "sensor_gain" not in names:
+            return cls(
+                problem=problem,
+                penalty=penalty,
+                best=best,
+                free=free,
+                residual=residual,
+                jacobian=jacobian,
+                start=start,
+                signals=signals,
+            )
+        gain = names.index("sensor_gain")
+        reading = penalty.columns(best[penalty.coefficients :])[:, gain]
+        if penalty.residual == _core.Residual.sensor:
+            residual, jacobian = residual * best[gain], jacobian * best[gain]
+        fit = cls(
+            problem=problem,
+            penalty=penalty,
+            best=best,
+            free=free,
+            residual=residual,
+            jacobian=jacobian,
+            start=start,
+            signals=signals,
+        )
+        if gain not in free or "load_friction" in names:
+            return fit
+        place = free.index(gain)
+        # With the noise in the reading, the least squares of the torque would blame the motion for it.
+        jacobian[:, place] = -_explained(fit, reading)
+        start = fit.solve(jacobian, residual)
+        actual = jacobian.copy()
+        actual[:, place] = -reading
+        return replace(fit, residual=residual + actual @ start, start=start)
+
+    def _summed(self, number: int, values: Array) -> Array:
+        weight = self.weights[number]
+        middle = 0.5 * (values[1:] + values[:-1])
+        return middle * (weight if values.ndim == 1 else weight[:, np.newaxis])
+
+    def _risen(self, number: int, values: Array) -> Array:
+        used = self.weights[number] > 0.0
+        step = np.diff(values, axis=0)
+        return step * (used if values.ndim == 1 else used[:, np.newaxis])
+
+    def _by_window(
+        self,
+        signal: Callable[[int, Recording], Array],
+        steps: Callable[[int, Array], Array],
+    ) -> Array:
+        bounds = np.asarray(self.penalty.windows)
+        parts = []
+        for number, recording in enumerate(self.problem.recordings):
+            mine = slice(*np.searchsorted(self.run, (number, number + 1)))
+            each = steps(number, np.asarray(signal(number, recording), dtype=np.float64))
+            total = np.concatenate([np.zeros((1, *each.shape[1:])), np.cumsum(each, axis=0)])
+            parts.append(total[bounds[mine, 1]] - total[bounds[mine, 0]])
+        return np.concatenate(parts)
+
+
+def _explained(fit: Fitted, reading: Array) -> Array:
+    """The part of the reading that a rigid link's motion explains: its acceleration and its gravity."""
+    motion = [fit.rise(lambda _, run: run.velocity), fit.duration]
+    if fit.problem.recordings[0].kind == "revolute":
+        motion += [
+            fit.integral(lambda _, run: np.cos(run.position)),
+            fit.integral(lambda _, run: np.sin(run.position)),
+        ]
+    columns = np.column_stack(motion)
+    size = np.sqrt(np.einsum("ij,ij->j", columns, columns))
+    columns /= np.where(size > 0.0, size, 1.0)
+    square = np.einsum("ni,nj->ij", columns, columns) + 1e-12 * np.eye(columns.shape[1])
+    found = np.linalg.solve(square, np.einsum("ni,n->i", columns, reading))
+    return np.asarray(columns @ found)

@@ -1,0 +1,71 @@
+"""Out-of-sample misfit of the model with some further columns, over blocks of time, at several scales."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+BLOCKS = 20
+_FEWEST = 4  # sums of windows a block
+_RIDGE = 1e-9  # of columns of unit size
+
+
+def summed(values: Array, run: NDArray[np.int64], factor: int) -> tuple[Array, NDArray[np.int64]]:
+    """Return sums over `factor` neighbouring windows of one recording, and their recordings."""
+    if factor == 1:
+        return values, run
+    starts = [0]
+    for number in np.unique(run):
+        low, high = np.searchsorted(run, (number, number + 1))
+        starts += list(range(low, high, factor))
+    first = np.unique(starts)
+    return np.add.reduceat(values, first, axis=0), run[first]
+
+
+@dataclass(frozen=True, eq=False)
+class Folds:
+    """Inner products of all columns in each block of time.
+
+    Attributes
+    ----------
+    products : ndarray, shape (blocks, columns, columns)
+        The last column is the residual.
+    """
+
+    products: Array
+
+    @classmethod
+    def of(cls, columns: Array, residual: Array) -> Folds | None:
+        """Cut the rows into blocks; None with too few of them."""
+        rows = len(residual)
+        blocks = min(BLOCKS, rows // _FEWEST)
+        if blocks < 5:
+            return None
+        both = np.column_stack([columns, residual])
+        size = np.sqrt(np.einsum("ij,ij->j", both, both))
+        both = both / np.where(size > 0.0, size, 1.0)
+        edges = np.linspace(0, rows, blocks + 1).astype(int)
+        products = [
+            np.einsum("ni,nj->ij", both[low:high], both[low:high])
+            for low, high in itertools.pairwise(edges)
+        ]
+        return cls(np.array(products))
+
+    def misfit(self, columns: list[int]) -> Array:
+        """Sum of squares of the residual in each block, with these columns fitted to the other blocks."""
+        every = self.products
+        own = every[:, -1, -1].copy()
+        if not columns:
+            return own
+        train = every.sum(axis=0) - every
+        square = np.ix_(range(len(every)), columns, columns)
+        matrix = train[square] + _RIDGE * np.eye(len(columns))
+        found = np.linalg.solve(matrix, train[:, columns, -1][..., None])[..., 0]
+        own -= 2.0 * np.einsum("bi,bi->b", found, every[:, columns, -1])
+        own += np.einsum("bi,bij,bj->b", found, every[square], found)
+        return np.asarray(np.maximum(own, 0.0))

@@ -1,0 +1,74 @@
+"""What to do about each cause: an option of the model where there is one, else another recording or a look."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from jointid.base.advice import Action
+from jointid.identification.causes.attribution import Attributed
+from jointid.identification.causes.fitted import Fitted
+
+_OTHERWISE: dict[str, tuple[Action, ...]] = {
+    "inertia_varies": (
+        Action("record", text="motion about one pose, or with a gentler acceleration"),
+        Action("inspect", text="whether other joints change the inertia during the recording"),
+    ),
+    "presliding": (
+        Action("record", text="longer strokes with fewer reversals"),
+        Action("inspect", text="the friction just after each reversal"),
+    ),
+    "drift": (
+        Action("record", text="after warming up, or shorter, with the temperature"),
+        Action("inspect", text="the values of its first and its last part, identified apart"),
+    ),
+    "other_signal": (Action("record", text="with everything else at rest"),),
+    "disturbance": (
+        Action("record", text="without contact, or identify the parts before and after it"),
+        Action("inspect", text="what happened at that time"),
+    ),
+    "offset": (Action("call", {"torque_offset": True}, function="Joint"),),
+    "wrong_scale": (
+        Action("inspect", text="gear ratio, torque constant and inertia"),
+        Action("call", {"parameters": {"inertia": {"vary": True}}}, text="to free the inertia"),
+    ),
+}
+_SLOW = (Action("record", text="motion that passes zero speed faster, and slow motion by itself"),)
+
+
+def advice_against(fit: Fitted, cause: Attributed) -> tuple[Action, ...]:
+    """Return the actions against a cause."""
+    name, detail = cause.candidate.name, cause.candidate.detail
+    model = fit.problem.choice.model.resolved
+    if name in _OTHERWISE:
+        return _OTHERWISE[name]
+    if name == "gravity":
+        return (_model(fit, gravity="free"),)
+    if name == "load_friction":
+        return (_compared(fit, load_friction=True),)
+    if name == "asymmetry":
+        if "sensor_offset" in fit.names:
+            return (Action("inspect", text="the friction in each direction"),)
+        return (_compared(fit, asymmetric=True),)
+    if name == "harmonic":
+        return (_model(fit, harmonics=(*model.harmonics, float(detail))),)
+    if name == "ripple":
+        return (_model(fit, ripple=(*model.ripple, float(detail))),)
+    if name == "delay":
+        return (Action("inspect", text=f"when the {detail} is sampled and logged"),)
+    # Friction at low speed: the next richer law where there is one.
+    richer = {"coulomb_viscous": "stribeck", "stribeck": "stribeck_general"}.get(model.name)
+    if richer is None or (richer == "stribeck_general" and model.asymmetric):
+        return _SLOW
+    return (_compared(fit, name=richer), *_SLOW)
+
+
+def _model(fit: Fitted, **changes: Any) -> Action:
+    """Identify with more in the model; the text has every field that is stated."""
+    return Action("call", {"model": str(fit.problem.choice.model.replace(**changes))})
+
+
+def _compared(fit: Fitted, **changes: Any) -> Action:
+    """Compare with a richer law of friction, which the recording may not determine."""
+    model = fit.problem.choice.model
+    models = (str(model), str(model.replace(**changes)))
+    return Action("call", {"models": models}, function="compare_models")

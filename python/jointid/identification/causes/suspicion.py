@@ -1,0 +1,55 @@
+"""Whether residuals are more than noise: a cheap test at several scales, before any cause is looked for."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.identification.causes.folds import summed
+from jointid.problem.inner_products import inner
+
+Array = NDArray[np.float64]
+
+_SCALES = (1, 4, 16)
+_CORRELATED = 0.1
+_SURE = 4.0  # correlation over its error by chance
+_FEWEST = 40  # sums of windows
+_SLOW = 0.2  # share of the windows, the slowest
+_LOUD = 3.0  # misfit of the slow windows over that of the others
+
+
+def correlations(residual: Array, run: NDArray[np.int64]) -> dict[int, float]:
+    """Correlation of neighbours among sums of 1, 4 and 16 windows, where there are enough."""
+    found = {}
+    for factor in _SCALES:
+        series, of = summed(residual, run, factor)
+        if len(series) >= _FEWEST:
+            pairs = of[1:] == of[:-1]
+            power = max(inner(series, series), 1e-300)
+            found[factor] = inner(series[1:][pairs], series[:-1][pairs]) / power
+    return found
+
+
+def suspicious(residual: Array, run: NDArray[np.int64], duration: Array, velocity: Array) -> bool:
+    """Whether the residual has structure: neighbours alike at some scale, or a misfit of slow motion.
+
+    Parameters
+    ----------
+    velocity : ndarray
+        Mean velocity of each window.
+    """
+    for factor, correlation in correlations(residual, run).items():
+        error = 1.0 / np.sqrt(len(residual) / factor)
+        if correlation > max(_CORRELATED, _SURE * error):
+            return True
+    return slow_misfit(residual, duration, velocity) > _LOUD
+
+
+def slow_misfit(residual: Array, duration: Array, velocity: Array) -> float:
+    """Mean squared misfit of the slowest windows over that of the others."""
+    if len(residual) < 5 * _FEWEST:
+        return 1.0
+    slow = np.abs(velocity) < np.quantile(np.abs(velocity), _SLOW)
+    power = residual**2 / duration
+    others = float(power[~slow].mean())
+    return float(power[slow].mean()) / others if slow.any() and others > 0.0 else 1.0

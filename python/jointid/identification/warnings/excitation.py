@@ -1,0 +1,296 @@
+"""What a recording lacks for a parameter: speeds, reversals, loads, accelerations, travel; with its figures."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.estimate.findings import Measured
+from jointid.estimate.statistics import ParameterEstimate
+from jointid.estimate.wording import percent
+from jointid.identification.warnings.evidence import Evidence
+
+Array = NDArray[np.float64]
+
+# What is enough, of each quantity.
+_SPEEDS = 3.0  # fast over slow
+_FRICTION = 0.1  # of the torque, what a speed's range changes
+_SLOW = 0.03  # of the windows, slower than twice the Stribeck velocity
+_REVERSALS = 4
+_DIRECTION = 0.15  # of the time, in the rarer direction
+_LOAD = 0.03  # spread of the sensed torque over the torque of the drive
+_ACCELERATION = 0.1  # of the torque
+_TRAVEL = 0.75  # of a period of a torque over the angle
+_GRAVITY = 1.0  # [rad]
+
+
+@dataclass(frozen=True, slots=True)
+class Lack:
+    """A quantity that a recording has too little of.
+
+    Attributes
+    ----------
+    quantity : str
+        Its name: what is missing is the same for parameters with the same one.
+    text : str
+        What there is, in figures, and what is needed.
+    motion : str
+        What to record.
+    measured : mapping of str to Measured
+        The figures of the text.
+    wanted : float
+        How much of it would do.
+    """
+
+    quantity: str
+    text: str
+    motion: str
+    measured: Mapping[str, Measured]
+    wanted: float = 0.0
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """What the windows of an estimate contain."""
+
+    evidence: Evidence
+
+    @functools.cached_property
+    def _speed(self) -> Array:
+        return np.abs(self.evidence.table.velocity)
+
+    @functools.cached_property
+    def speeds(self) -> tuple[float, float]:
+        """Slow and fast: 10 % of the windows are slower, 5 % faster."""
+        slow, fast = np.quantile(self._speed, (0.1, 0.95))
+        return float(slow), float(fast)
+
+    @functools.cached_property
+    def reversals(self) -> int:
+        """Changes of direction."""
+        table = self.evidence.table
+        moving = np.abs(table.velocity) > 0.02 * self.speeds[1]
+        turned = np.sign(table.velocity[moving])
+        same = np.diff(table.recording[moving]) == 0
+        return int(np.count_nonzero((turned[1:] != turned[:-1]) & same))
+
+    @functools.cached_property
+    def rarer(self) -> float:
+        """Share of the time in the rarer direction."""
+        table = self.evidence.table
+        forward = float(table.duration[table.velocity > 0.0].sum() / table.duration.sum())
+        return min(forward, 1.0 - forward)
+
+    @functools.cached_property
+    def travel(self) -> float:
+        """Largest range of positions of a recording [rad or m]."""
+        return max(float(np.ptp(run.position)) for run in self.evidence.recordings)
+
+    def _unit(self, rate: bool = False) -> str:
+        length = "m" if self.evidence.recordings[0].kind == "prismatic" else "rad"
+        return f"{length}/s" if rate else length
+
+    def _torque(self) -> str:
+        return "N" if self.evidence.recordings[0].kind == "prismatic" else "N·m"
+
+    @functools.cached_property
+    def _few(self) -> Lack | None:
+        """Hardly more windows than parameters."""
+        windows, free = self.evidence.residuals.windows, len(self.evidence.chance)
+        if windows > 3 * free:
+            return None
+        text = f"the log has {windows} windows for {free} parameters"
+        return Lack(
+            "windows",
+            text,
+            "more motion",
+            {"windows": Measured(float(windows)), "free_parameters": Measured(float(free))},
+        )
+
+    def lack(self, p: ParameterEstimate) -> Lack | None:
+        """Return what the recordings lack for a parameter; None if they have enough of all it needs."""
+        if self._few is not None:
+            return self._few
+        name = p.name.partition("[")[0]
+        base = name.removesuffix("_positive").removesuffix("_negative")
+        if base == "inertia":
+            return self._acceleration(p)
+        if base == "viscous":
+            return self._both_ways(name) or self._speed_range() or self._viscous_share(p)
+        if base == "coulomb":
+            return self._both_ways(name) or self._speed_range()
+        if base in ("static", "stribeck", "stribeck_velocity", "stribeck_exponent"):
+            return self._both_ways(name) or self._slow_motion()
+        if base == "torque_offset":
+            return self._both_ways("")
+        if base in ("sensor_gain", "sensor_offset"):
+            return self._load("a sensor")
+        if base == "load_friction":
+            return self._load("friction of the load")
+        if base.startswith(("gravity", "position", "ripple")):
+            return self._angle(base)
+        return None
+
+    def longer(self, error: float, wanted: float) -> Lack:
+        """What is missing where only noise limits: time."""
+        duration = float(self.evidence.table.duration.sum())
+        needed = duration * min((error / wanted) ** 2, 1e6)
+        text = (
+            f"the noise needs a longer recording: the log has {_two(duration)} s of motion, and about "
+            f"{_two(needed)} s like it would do"
+        )
+        motion = f"about {_two(needed)} s of such motion"
+        measured = {"duration": Measured(duration, "s"), "duration.needed": Measured(needed, "s")}
+        return Lack("duration", text, motion, measured, needed)
+
+    def noise(self) -> Lack:
+        """What is missing where the velocity's noise hides the inertia: resolution."""
+        share = self.evidence.residuals.noise_share
+        text = f"noise makes up {percent(share)} of the change of the velocity over a window"
+        motion = "the position with a finer resolution"
+        return Lack("velocity_noise", text, motion, {"velocity_noise": Measured(share)})
+
+    def _both_ways(self, name: str) -> Lack | None:
+        if self.reversals < _REVERSALS and not name.endswith(("_positive", "_negative")):
+            count = self.reversals
+            return Lack(
+                "reversals",
+                f"the log has {count} reversal{'s' * (count != 1)}, and {_REVERSALS} or more are needed",
+                "motion in both directions, with several reversals",
+                {
+                    "reversals": Measured(float(count)),
+                    "reversals.needed": Measured(float(_REVERSALS)),
+                },
+            )
+        if self.rarer < _DIRECTION:
+            return Lack(
+                "direction",
+                f"the log moves in one direction during {100.0 * (1.0 - self.rarer):.0f} % of the time",
+                "as much motion in one direction as in the other",
+                {"direction": Measured(1.0 - self.rarer)},
+            )
+        return None
+
+    def _speed_range(self) -> Lack | None:
+        slow, fast = self.speeds
+        if fast >= _SPEEDS * slow:
+            return None
+        unit = self._unit(rate=True)
+        return Lack(
+            "speed_range",
+            f"the log's speeds are {_two(slow)} to {_two(fast)} {unit}, and a wider range is needed, e.g. "
+            f"{_two(0.2 * fast)} to {_two(fast)}",
+            f"motion at several speeds, e.g. {_two(0.2 * fast)} to {_two(fast)} {unit}",
+            {
+                "speed.slow": Measured(slow, unit),
+                "speed.fast": Measured(fast, unit),
+                "speed.needed": Measured(0.2 * fast, unit),
+            },
+        )
+
+    def _viscous_share(self, p: ParameterEstimate) -> Lack | None:
+        fast = self.speeds[1]
+        share = abs(p.value) * fast / max(self.evidence.torque_level, 1e-300)
+        if share >= _FRICTION:
+            return None
+        unit = self._unit(rate=True)
+        return Lack(
+            "top_speed",
+            f"at the log's top speed, {_two(fast)} {unit}, viscous friction is {percent(share)} of the torque: faster "
+            "motion is needed",
+            f"faster motion than {_two(fast)} {unit}",
+            {"speed.fast": Measured(fast, unit), "viscous.share": Measured(share)},
+        )
+
+    def _slow_motion(self) -> Lack | None:
+        slow, fast = self._stribeck_velocity(), self.speeds[1]
+        if slow is None:
+            return None
+        unit = self._unit(rate=True)
+        share = float(np.mean(self._speed < 2.0 * slow))
+        if share < _SLOW:
+            return Lack(
+                "slow_motion",
+                f"{percent(share)} of the windows are slower than {_two(2.0 * slow)} {unit}, where static friction "
+                "shows",
+                f"slow motion through zero speed, below {_two(2.0 * slow)} {unit}",
+                {"slow_windows": Measured(share), "speed.slow": Measured(2.0 * slow, unit)},
+            )
+        if fast < 2.0 * slow:
+            return Lack(
+                "top_speed",
+                f"the log's top speed is {_two(fast)} {unit}, and static friction decays at {_two(slow)}",
+                f"faster motion, above {_two(2.0 * slow)} {unit}",
+                {"speed.fast": Measured(fast, unit), "speed.decay": Measured(slow, unit)},
+            )
+        return None
+
+    def _stribeck_velocity(self) -> float | None:
+        found = self.evidence.parameters
+        if "stribeck" in found and found["stribeck"].value > 0.0:
+            return 1.0 / math.sqrt(found["stribeck"].value)
+        return found["stribeck_velocity"].value if "stribeck_velocity" in found else None
+
+    def _acceleration(self, p: ParameterEstimate) -> Lack | None:
+        evidence = self.evidence
+        column = evidence.at_best.norm(p.name) * abs(p.value)
+        share = column / max(evidence.at_best.target, 1e-300)
+        if share >= _ACCELERATION:
+            return None
+        return Lack(
+            "acceleration",
+            f"acceleration takes {percent(share)} of the log's torque, and {percent(_ACCELERATION)} is needed",
+            "harder acceleration",
+            {"acceleration": Measured(share), "acceleration.needed": Measured(_ACCELERATION)},
+        )
+
+    def _load(self, of: str) -> Lack | None:
+        evidence = self.evidence
+        if "sensor_gain" not in evidence.parameters:
+            return None
+        reading = np.concatenate(
+            [run.sensor for run in evidence.recordings if run.sensor is not None]
+        )
+        spread = abs(evidence.parameters["sensor_gain"].value) * float(reading.std())
+        share = spread / max(evidence.torque_level, 1e-300)
+        if share >= _LOAD:
+            return None
+        unit = self._torque()
+        return Lack(
+            "load_range",
+            f"the sensed torque varies by {_two(spread)} {unit}, {percent(share)} of the drive's torque, and {of} "
+            f"needs {percent(_LOAD)}",
+            "motion of the link through a wider range of gravity torque",
+            {
+                "load_range": Measured(spread, unit),
+                "load_range.share": Measured(share),
+                "load_range.needed": Measured(_LOAD),
+            },
+        )
+
+    def _angle(self, base: str) -> Lack | None:
+        order = base.rpartition("_")[2]
+        if base.startswith("gravity"):
+            needed = _GRAVITY
+        else:
+            joint = self.evidence.joint
+            gear = abs(joint.gear_ratio) if joint is not None and base[0] == "r" else 1.0
+            needed = _TRAVEL * 2.0 * math.pi / (float(order) * gear)
+        if self.travel >= needed:
+            return None
+        return Lack(
+            "travel",
+            f"the log's angles cover {_two(self.travel)} rad, and {_two(needed)} are needed",
+            f"motion through {_two(needed)} rad or more",
+            {"travel": Measured(self.travel, "rad"), "travel.needed": Measured(needed, "rad")},
+            needed,
+        )
+
+
+def _two(value: float) -> str:
+    return f"{value:.2g}"

@@ -1,0 +1,129 @@
+"""Delays between signals, and motion that is too slow to be believed."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.simulated_joint import TRUTH, simulate
+
+import jointid as jid
+from jointid.recording.shifting import shifted
+
+
+def late(run: jid.Recording, signal: str, delay: float) -> jid.Recording:
+    """The recording with a signal that is late by a part of a sample or more."""
+    fields = {name: getattr(run, name) for name in run.signals}
+    fields[signal] = np.interp(run.time - delay, run.time, fields[signal])
+    return jid.Recording(**fields, torque_hold=run.torque_hold)
+
+
+def identified(run: jid.Recording, **options: object) -> jid.Estimate:
+    return jid.identify(run, jid.thesis_joint(), search="separable", **options)  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="module")
+def run() -> jid.Recording:
+    return simulate(1, duration=9.0, seed=5)[0]
+
+
+@pytest.mark.parametrize(("signal", "delay"), [("torque", 0.0013), ("velocity", 0.0021)])
+def test_a_late_signal_is_named_and_shifted_back(
+    run: jid.Recording, signal: str, delay: float
+) -> None:
+    estimate = identified(late(run, signal, delay))
+    found = estimate.delays[signal]
+    assert found.certain
+    assert found.applied == found.value == pytest.approx(delay, abs=2e-4)
+    assert {name for name, each in estimate.delays.items() if each.applied} == {signal}
+    for name, value in TRUTH.items():
+        assert estimate.parameters[name].value == pytest.approx(value, rel=0.015), name
+    assert "delay_removed" in {each.code for each in estimate.findings}
+    assert "taken away" in estimate.report()
+
+
+def test_a_good_recording_is_not_shifted(run: jid.Recording) -> None:
+    estimate = identified(run)
+    assert set(estimate.delays) == {"torque", "sensor", "velocity"}
+    assert not any(each.certain or each.applied for each in estimate.delays.values())
+    assert estimate.settings["shift"] == {}
+    assert estimate.settings["min_speed"] == 0.0
+
+
+def test_a_shift_that_is_given_is_the_only_one(run: jid.Recording) -> None:
+    slow = late(run, "torque", 0.002)
+    left = identified(slow, shift={})
+    assert left.settings["shift"] == {}
+    (found,) = (each for each in left.findings if each.code == "signal_lag")
+    (action,) = found.advice
+    obeyed = identified(slow, **action.arguments)
+    assert obeyed.settings["shift"]["torque"] == pytest.approx(0.002, abs=2e-4)
+    assert "signal_lag" not in {each.code for each in obeyed.findings}
+    predicted = obeyed.predict(slow)
+    assert predicted.relative == pytest.approx(obeyed.residuals.relative, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("shift", "reason"),
+    [
+        ({"position": 0.001}, "torque, sensor, velocity"),
+        ({"torque": "soon"}, "in seconds"),
+        ({"torque": 2.0}, "at most 1 s"),
+        (0.001, "a mapping"),
+        ({"current": 0.001}, "torque, sensor, velocity"),
+    ],
+)
+def test_shifts_that_cannot_be(run: jid.Recording, shift: object, reason: str) -> None:
+    with pytest.raises(jid.InputError, match=reason):
+        identified(run, shift=shift)
+
+
+@pytest.mark.parametrize("speed", [-0.1, "slow", float("nan"), True])
+def test_speeds_that_cannot_be(run: jid.Recording, speed: object) -> None:
+    with pytest.raises(jid.InputError, match="a speed of 0 or more"):
+        identified(run, min_speed=speed)
+
+
+def test_a_held_signal_is_shifted_by_the_mean_of_its_intervals(run: jid.Recording) -> None:
+    assert run.torque is not None
+    back = shifted(run, {"torque": 0.0005})
+    assert back.torque is not None
+    assert len(back) == len(run) - 1
+    assert np.allclose(back.torque, 0.5 * (run.torque[1:] + run.torque[:-1]))
+
+
+def test_a_derived_velocity_has_no_delay_of_its_own(run: jid.Recording) -> None:
+    derived = jid.Recording(time=run.time, position=run.position, torque=run.torque)
+    assert "velocity" not in jid.identify(derived, search="separable").delays
+    with pytest.raises(jid.InputError, match="derived from the position"):
+        jid.identify(derived, shift={"velocity": 0.001})
+
+
+def test_slow_motion_is_left_out_on_request(run: jid.Recording) -> None:
+    estimate = identified(run, min_speed=0.2)
+    assert estimate.settings["min_speed"] == 0.2
+    assert estimate.residuals.left_out > identified(run).residuals.left_out + 0.02
+
+
+def test_creep_that_contradicts_is_left_out(shared_data: Path) -> None:
+    """KR300, joint 3: authors' nominal values 2024 N·m·s/rad and 294 N·m."""
+    path = shared_data / "kr300" / "kr300_A.csv.gz"
+    columns = {
+        "position": "motor_encoder_pos_3_linkside_rad",
+        "velocity": "motor_encoder_vel_3_linkside_rad_s",
+        "motor_torque": "motor_torque_3_Nm",
+    }
+    joint = jid.Joint(gear_ratio=252.33, model=jid.Model("coulomb_viscous", gravity="free"))
+    estimate = jid.identify(jid.load(path, columns=columns), joint, search="separable")
+    assert estimate.parameters["viscous"].value == pytest.approx(2024.0, rel=0.1)
+    assert estimate.parameters["coulomb"].value == pytest.approx(294.0, rel=0.1)
+    slow = estimate.slow_motion
+    assert slow is not None
+    assert slow.applied
+    assert slow.speed == estimate.settings["min_speed"] > 0.0
+    again = jid.Estimate.from_json(estimate.to_json())
+    assert again.slow_motion == slow
+    assert again.delays == estimate.delays
+    everything = jid.identify(
+        jid.load(path, columns=columns), joint, search="separable", min_speed=0
+    )
+    assert everything.parameters["viscous"].value < 0.9 * 2024.0
