@@ -59,13 +59,15 @@ double spread(const Signal& signal, const base::Cancel* cancel) {
          base::quantile(count, count, 0.025, value, cancel);
 }
 
-/// Whether the joint reverses, sticks or moves slowly within a few samples of begin .. end.
+/// Whether the joint reverses, sticks or moves slowly within a few samples of begin .. end, without
+/// those between: where the velocity itself has the spike, they tell nothing.
 bool turns(const Signal& velocity, double peak_speed, Eigen::Index begin, Eigen::Index end) {
   const Eigen::Index from = std::max<Eigen::Index>(0, begin - kReach);
   const Eigen::Index to = std::min(velocity.size() - 1, end + kReach);
   const double slow = kSlow * peak_speed;
   const bool forward = velocity[from] > 0.0;
   for (Eigen::Index k = from; k <= to; ++k) {
+    if (k > begin && k < end) continue;
     if (std::fabs(velocity[k]) <= slow || (velocity[k] > 0.0) != forward) return true;
   }
   return false;

@@ -25,6 +25,7 @@ __all__: list[str] = [
     "Hold",
     "Inspection",
     "Limit",
+    "LocalVelocity",
     "LugreObserver",
     "Model",
     "MotionScale",
@@ -37,6 +38,7 @@ __all__: list[str] = [
     "PenaltyParts",
     "Pid",
     "PolishResult",
+    "PositionNoise",
     "Recording",
     "Residual",
     "Scenario",
@@ -58,6 +60,7 @@ __all__: list[str] = [
     "friction_basis",
     "inspect",
     "is_parameter",
+    "local_velocity",
     "minimise_genetic",
     "minimise_random",
     "minimise_separable",
@@ -67,6 +70,7 @@ __all__: list[str] = [
     "models",
     "parameter_names",
     "polish",
+    "position_noise",
     "refine_separable",
     "robust_variance",
     "shape",
@@ -74,6 +78,7 @@ __all__: list[str] = [
     "simulate_runs",
     "term",
     "terms",
+    "timing_errors",
     "triangle",
     "usable_intervals",
     "window_duration",
@@ -219,6 +224,7 @@ class Recording:
         sensor: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None,
         torque_hold: Hold,
         gap_after: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+        min_speed: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> None: ...
     @property
     def samples(self) -> int: ...
@@ -1125,6 +1131,43 @@ class SlidingPenalty:
     @property
     def window_count(self) -> int: ...
 
+class PositionNoise:
+    """
+    Noise of a position signal.
+    """
+    @property
+    def quantum(self) -> float:
+        """
+        The encoder's step [rad or m]; 0: positions lie on no grid.
+        """
+    @property
+    def sigma(self) -> float:
+        """
+        Standard deviation at a sample, apart from that of the stamps [rad or m].
+        """
+    @property
+    def timing(self) -> float:
+        """
+        Scatter of the time stamps [s].
+        """
+
+class LocalVelocity:
+    """
+    Velocity derived from position.
+    """
+    @property
+    def noise(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Its standard deviation at each sample.
+        """
+    @property
+    def refined(self) -> bool:
+        """
+        False: the noise is harmless, every velocity is the difference.
+        """
+    @property
+    def velocity(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+
 class SpikeRule(enum.Enum):
     """
     What a spike of a signal is held against.
@@ -1185,6 +1228,11 @@ class SignalFacts:
         Intervals at a fair speed.
         """
     @property
+    def smallest(self) -> float:
+        """
+        The smallest of those; infinite: none.
+        """
+    @property
     def stale(self) -> int:
         """
         Of those: no step, and not on a limit.
@@ -1241,11 +1289,6 @@ class Inspection:
         """
     @property
     def peak_speed(self) -> float: ...
-    @property
-    def sensor_lag(self) -> tuple[float, float]:
-        """
-        How late the sensor is, and the error of that [s].
-        """
     @property
     def spikes(self) -> list[Spike]:
         """
@@ -2742,7 +2785,6 @@ def inspect(
     position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     velocity_derived: bool,
-    sensor: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None,
     period: typing.SupportsFloat | typing.SupportsIndex,
     channels: collections.abc.Sequence[
         tuple[typing.Annotated[numpy.typing.ArrayLike, numpy.float64], SpikeRule, bool]
@@ -2756,6 +2798,18 @@ def inspect(
 def is_parameter(name: str) -> bool:
     """
     Whether a parameter can have this name.
+    """
+
+def local_velocity(
+    time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    difference: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    gap_after: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+    noise: PositionNoise,
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> LocalVelocity:
+    """
+    Velocity by local cubics whose length follows the noise; the differences where they are fine.
     """
 
 def minimise_genetic(
@@ -2836,6 +2890,16 @@ def polish(
     *,
     iterations: typing.SupportsInt | typing.SupportsIndex = 200,
 ) -> PolishResult: ...
+def position_noise(
+    time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    gap_after: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+    period: typing.SupportsFloat | typing.SupportsIndex,
+) -> PositionNoise:
+    """
+    Noise of a position: the encoder's step, white noise, errors of the stamps.
+    """
+
 def refine_separable(
     penalty: PenaltyFunction,
     lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -2891,6 +2955,15 @@ def term(key: str) -> Term:
 def terms() -> list[Term]:
     """
     All terms, in canonical order.
+    """
+
+def timing_errors(
+    time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    period: typing.SupportsFloat | typing.SupportsIndex,
+) -> tuple[float, float]:
+    """
+    Scatter of the samples' times about the stamps and about an even grid [s].
     """
 
 def triangle(
