@@ -16,7 +16,7 @@ from jointid.identification.warnings.excitation import Excitation, Lack
 
 UNDETERMINED = FindingType(
     code="undetermined",
-    meaning="a standard error above 5 %, or a value that moves by more than three times its error by chance when the "
+    meaning="a 95 % interval wider than ±4 % (a gain's: ±1 %, where the load hardly varies), or a value that moves by more than three times its error by chance when the "
     "windows are halved or doubled, and the recording has too little of what this parameter needs: a range of speeds, "
     "slow motion, reversals, load, acceleration, travel, or only time; or a gain of the other sign that fits as well; "
     "or an inertia that is hidden by a noisy velocity. Where the recording has enough, the cause is another: a misfit "
@@ -24,8 +24,12 @@ UNDETERMINED = FindingType(
     advice="record what is missing (the finding says how much there is), or fix the parameter",
 )
 
-# A parameter is not well determined above this relative standard error, or when other windows move it by so many.
-_LARGE_ERROR = 0.05
+# A parameter is not well determined where its 95 % interval is wider than this to either side, or when other windows
+# move it by so many errors. Wider than 5 % would leave unnamed what is off by 5 % by chance.
+_LARGE_ERROR = 0.04
+# A gain is a calibration: where the load hardly varies, it is named above this.
+_LARGE_GAIN_ERROR = 0.01
+_GAIN = ("sensor_gain", "sensor_offset")
 _LARGE_SHIFT = 3.0
 _NOTICEABLE_SHIFT = 0.01
 _INSEPARABLE = 0.98
@@ -103,7 +107,7 @@ def _lack(p: ParameterEstimate, evidence: Evidence, excitation: Excitation) -> L
     lack = excitation.lack(p)
     if lack is not None or evidence.causes is not None:
         return lack
-    error, wanted = p.stderr or 0.0, _LARGE_ERROR * scale_of(p, evidence)
+    error, wanted = _half_width(p), _LARGE_ERROR * scale_of(p, evidence)
     if math.isinf(error) or error <= wanted or wanted == 0.0:
         return None
     return excitation.longer(error, wanted)
@@ -173,7 +177,7 @@ def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]
         return []
     scale = scale_of(p, evidence)
     reasons = []
-    if p.stderr > _LARGE_ERROR * scale:
+    if _half_width(p) > (_LARGE_GAIN_ERROR if p.name in _GAIN else _LARGE_ERROR) * scale:
         relative = scale == abs(p.value) and scale > 0.0
         error = Measured(p.stderr / scale) if relative else Measured(p.stderr, p.unit)
         text = (
@@ -195,6 +199,11 @@ def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]
         }
         reasons.append(_Reason(text, measured))
     return reasons
+
+
+def _half_width(p: ParameterEstimate) -> float:
+    """Half of the 95 % interval; 0 without one."""
+    return 0.0 if p.interval is None else 0.5 * (p.interval[1] - p.interval[0])
 
 
 def _hidden(p: ParameterEstimate, evidence: Evidence) -> bool:
