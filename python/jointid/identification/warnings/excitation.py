@@ -253,10 +253,11 @@ class Excitation:
         evidence = self.evidence
         if "sensor_gain" not in evidence.parameters:
             return None
-        reading = np.concatenate(
-            [run.sensor for run in evidence.recordings if run.sensor is not None]
-        )
-        spread = abs(evidence.parameters["sensor_gain"].value) * float(reading.std())
+        sensed = [run.sensor for run in evidence.recordings if run.sensor is not None]
+        # White noise of the reading is no load: it is what neighbouring samples differ by.
+        noise = float(np.mean([0.5 * np.mean(np.diff(each) ** 2) for each in sensed]))
+        level = float(np.concatenate(sensed).var())
+        spread = abs(evidence.parameters["sensor_gain"].value) * math.sqrt(max(level - noise, 0.0))
         share = spread / max(evidence.torque_level, 1e-300)
         if share >= _LOAD:
             return None
