@@ -14,6 +14,7 @@ from jointid.estimate.findings import Measured
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.evidence import Evidence
+from jointid.problem.terms import WEAK_READING
 
 Array = NDArray[np.float64]
 
@@ -259,9 +260,19 @@ class Excitation:
         level = float(np.concatenate(sensed).var())
         spread = abs(evidence.parameters["sensor_gain"].value) * math.sqrt(max(level - noise, 0.0))
         share = spread / max(evidence.torque_level, 1e-300)
-        if share >= _LOAD:
+        weak = (
+            evidence.problem.choice.residual_reason == WEAK_READING
+        )  # the gain, too, is then a guess
+        if share >= _LOAD and not weak:
             return None
         unit = self._torque()
+        if share >= _LOAD:
+            return Lack(
+                "load_range",
+                f"{WEAK_READING}, which varies by {_two(spread)} {unit}, noise apart",
+                "motion of the link through a wider range of gravity torque",
+                {"load_range": Measured(spread, unit), "load_range.share": Measured(share)},
+            )
         return Lack(
             "load_range",
             f"the sensed torque varies by {_two(spread)} {unit}, {percent(share)} of the drive's torque, and {of} "
