@@ -33,6 +33,7 @@ _GAIN = ("sensor_gain", "sensor_offset")
 _LARGE_SHIFT = 3.0
 _NOTICEABLE_SHIFT = 0.01
 _INSEPARABLE = 0.98
+_LOAD_FRICTION = 0.05
 _PAIRS = 5
 
 _SHOWN = 4  # reasons, and pairs, in the sentence; the evidence has all
@@ -158,6 +159,8 @@ def scale_of(p: ParameterEstimate, evidence: Evidence) -> float:
     """Reference of the 5 %: an offset, or one phase of a harmonic, may be zero."""
     if "offset" in p.name:
         return max(abs(p.value), evidence.torque_level)
+    if p.name == "load_friction":  # a joint may have none
+        return max(abs(p.value), _LOAD_FRICTION)
     family, _, rest = p.name.partition("_")
     if family in ("gravity", "ripple", "position"):
         order = rest.partition("_")[2]
