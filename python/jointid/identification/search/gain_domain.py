@@ -76,8 +76,8 @@ def guess_gain(
     size of the reading determines the gain. In a small motion a gain of the wrong sign fits with negative
     friction, which is therefore excluded. The reading is regressed on the torque, whose noise is the smaller
     one; but where it is projected on instruments the torque is regressed on it, as in the fit: in a small
-    motion the reading holds so little of the balance that any friction which the terms lack reverses the sign
-    of the other regression.
+    motion the reading is so small a part of the balance that an error of the other terms reverses the sign of
+    the other regression.
 
     Parameters
     ----------
