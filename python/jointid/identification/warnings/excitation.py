@@ -28,6 +28,7 @@ _LOAD = 0.03  # spread of the sensed torque over the torque of the drive
 _ACCELERATION = 0.1  # of the torque
 _TRAVEL = 0.75  # of a period of a torque over the angle
 _GRAVITY = 1.0  # [rad]
+_LONGEST = 10.0  # times the recording: nobody records longer for one parameter
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,6 +147,12 @@ class Excitation:
             f"{_two(needed)} s like it would do"
         )
         motion = f"about {_two(needed)} s of such motion"
+        if needed > _LONGEST * duration:
+            text = (
+                f"the noise hides it: {_two(duration)} s of motion would have to be {_two(needed / duration)} times as "
+                "long"
+            )
+            motion = "with less noise, or with motion that this parameter shows in more"
         measured = {"duration": Measured(duration, "s"), "duration.needed": Measured(needed, "s")}
         return Lack("duration", text, motion, measured, needed)
 
@@ -305,4 +312,4 @@ class Excitation:
 
 
 def _two(value: float) -> str:
-    return f"{value:.2g}"
+    return f"{float(f'{value:.2g}'):g}"
