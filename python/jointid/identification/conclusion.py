@@ -114,10 +114,16 @@ def infer(
     torque_level = float(np.sqrt(np.mean((penalty.target / penalty.usable_duration) ** 2)))
     causes = None
     run = table.recording
+    # A misfit of values that are no estimate, or of a gain whose sign is a guess, is not the model's.
+    meant = statistics.r_squared >= 0.0 and not domain.guessed_sign
     if (
-        statistics.r_squared < POORLY_EXPLAINED
-        or suspicious(table.residual, run, table.duration, table.velocity)
-    ) and not (penalty.cumulative or not free):
+        meant
+        and (
+            statistics.r_squared < POORLY_EXPLAINED
+            or suspicious(table.residual, run, table.duration, table.velocity)
+        )
+        and not (penalty.cumulative or not free)
+    ):
         causes = find_causes(
             problem,
             penalty,

@@ -1,6 +1,7 @@
 """A model that explains too little."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
@@ -11,7 +12,7 @@ from jointid.identification.warnings.structured_residual import excluded, named
 POOR_FIT = FindingType(
     code="poor_fit",
     meaning="the model explains less than 95 % of the variance of the measured signal, and no cause with a name "
-    "explains the rest",
+    "explains the rest; blocking where it explains less than the signal's mean does, whatever the cause",
     advice="check units, signs and gear ratio",
     picture="windows",
 )
@@ -20,12 +21,24 @@ POORLY_EXPLAINED = 0.95
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
     explained = evidence.residuals.r_squared
-    if explained < POORLY_EXPLAINED and not named(evidence):
+    actions = (
+        Action("inspect", text="units, signs and gear ratio"),
+        Action("inspect", text="the residuals over time and over velocity"),
+    )
+    measured = {"r_squared": Measured(explained)}
+    if explained < 0.0:
+        found = POOR_FIT.finding(
+            f"the model explains less of what was measured than its mean does (R² = {explained:.2f}): the values "
+            "cannot be used",
+            *actions,
+            evidence=measured,
+        )
+        yield replace(found, severity="blocking")
+    elif explained < POORLY_EXPLAINED and not named(evidence):
         yield POOR_FIT.finding(
             f"the model explains only {100.0 * explained:.1f} % of what was measured{excluded(evidence)}",
-            Action("inspect", text="units, signs and gear ratio"),
-            Action("inspect", text="the residuals over time and over velocity"),
-            evidence={"r_squared": Measured(explained)},
+            *actions,
+            evidence=measured,
         )
 
 
