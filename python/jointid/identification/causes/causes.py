@@ -21,6 +21,7 @@ from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
+_NORMAL = 1.959964  # standard errors of half a 95 % interval
 _MOVED, _ERRORS = 0.03, 1.5  # share of a value, and standard errors, from which a cause matters
 _UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it must move by more
 _PART = 0.02  # of the variance of what was measured
@@ -156,7 +157,8 @@ def _matters(p: ParameterEstimate, shift: float, left: float, scale: float) -> f
     if scale == 0.0:
         return None
     share = abs(shift) / scale
-    error = p.stderr or 0.0
+    # With what is systematic: a shift that the interval states already is nothing new.
+    error = (p.interval[1] - p.interval[0]) / (2.0 * _NORMAL) if p.interval is not None else 0.0
     errors = abs(shift) / error if error > 0.0 else 0.0
     after = error * np.sqrt(max(left, 0.0))
     if after > _UNKNOWN * scale and abs(shift) < _CLEARLY * after:

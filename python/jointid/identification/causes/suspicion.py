@@ -45,6 +45,11 @@ def suspicious(residual: Array, run: NDArray[np.int64], duration: Array, velocit
     return slow_misfit(residual, duration, velocity) > _LOUD
 
 
+def testable(run: NDArray[np.int64]) -> bool:
+    """Whether there are enough windows to tell noise from structure."""
+    return len(run) >= _FEWEST
+
+
 def slow_misfit(residual: Array, duration: Array, velocity: Array) -> float:
     """Mean squared misfit of the slowest windows over that of the others."""
     if len(residual) < 5 * _FEWEST:
