@@ -13,7 +13,7 @@ from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence
 from jointid.identification.causes.causes import find_causes
-from jointid.identification.causes.suspicion import suspicious, testable
+from jointid.identification.causes.suspicion import correlated, suspicious, testable
 from jointid.identification.inference.covariance import parameter_covariance
 from jointid.identification.inference.inference import (
     freedom_of,
@@ -127,7 +127,11 @@ def infer(
             parameters,
             torque_level=torque_level,
             r_squared=statistics.r_squared,
+            delays=refinements.delays,
         )
+        if not causes.found and testable(run) and not correlated(table.residual, run):
+            # Louder at low speed, but no cause and nothing that lasts: noise, of the velocity or of a reversal.
+            causes, noise = None, True
     findings = diagnose(
         Evidence(
             problem=problem,
