@@ -18,9 +18,9 @@ UNDETERMINED = FindingType(
     code="undetermined",
     meaning="a 95 % interval wider than ±4 % (a gain's: ±1 %, where the load hardly varies), or a value that moves by "
     "more than three times its error by chance when the windows are halved or doubled, and the recording has too "
-    "little of what this parameter needs: a range of speeds, slow motion, reversals, load, acceleration, travel, or only "
-    "time; or a gain of the other sign that fits as well; or an inertia that is hidden by a noisy velocity. Where the recording has enough, the cause is another: a misfit "
-    "of the model, which has its own finding",
+    "little of what this parameter needs: a range of speeds, slow motion, reversals, load, acceleration, travel, or "
+    "only time; or a gain of the other sign that fits as well; or an inertia that is hidden by a noisy velocity. Where "
+    "the recording has enough, the cause is another: a misfit of the model, which has its own finding",
     advice="record what is missing (the finding says how much there is), or fix the parameter",
 )
 
