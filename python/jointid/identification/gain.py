@@ -9,11 +9,11 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.identification.search.domain import SearchDomain
 from jointid.problem.problem import Problem
+from jointid.problem.terms import WEAK_READING
 from jointid.problem.windows import Windows
 
 _CUMULATIVE = "running integrals, as in the thesis"
 _LOADED = "friction depends on the sensed load"
-_WEAK = "the motion explains too little of the reading"
 
 
 def with_instruments(
@@ -57,7 +57,7 @@ def with_instruments(
     if stated or not reason:
         _project(penalty, domain, problem.threads)
         stage = penalty.first_stage
-        reason = _WEAK if stage is not None and stage.weak else ""
+        reason = WEAK_READING if stage is not None and stage.weak else ""
     if stated or not reason:
         return problem, penalty
     choice = replace(problem.choice, residual="sensor", residual_reason=reason)
