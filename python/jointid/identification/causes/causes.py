@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.estimate.causes import Cause, Causes
+from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Measured
 from jointid.estimate.statistics import ParameterEstimate
@@ -21,6 +22,8 @@ from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
+_LATE = 2.0  # standard errors of a delay that is none
+_NORMAL = 1.959964  # standard errors of half a 95 % interval
 _MOVED, _ERRORS = 0.03, 1.5  # share of a value, and standard errors, from which a cause matters
 _UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it must move by more
 _PART = 0.02  # of the variance of what was measured
@@ -34,6 +37,7 @@ def find_causes(
     *,
     torque_level: float,
     r_squared: float,
+    delays: Mapping[str, Delay],
     signals: Mapping[str, Array] | None = None,
 ) -> Causes:
     """Attribute the misfit of an estimate.
@@ -48,6 +52,8 @@ def find_causes(
         Root mean square of the torque [N·m or N]; what an offset is held against.
     r_squared : float
         Share of the variance that the model explains.
+    delays : mapping of str to Delay
+        Of the signals against the position, as estimated before.
     signals : mapping of str to ndarray, optional
         Further signals of the first recording, one value a sample.
     """
@@ -59,7 +65,12 @@ def find_causes(
         if parameters[name].vary and parameters[name].at_bound is None
     )
     fit = Fitted.of(problem, penalty, best, free, signals)
-    tried = listed_candidates(fit)
+    # Much resembles a delay; where its own estimate shows none, it is not one.
+    tried = [
+        each
+        for each in listed_candidates(fit)
+        if each.name != "delay" or not _on_time(delays.get(each.detail))
+    ]
     found: list[Cause] = []
     harmless: list[Cause] = []
     for each in attribute(fit, tried):
@@ -108,8 +119,14 @@ def attributed(
         estimate.parameters,
         torque_level=float(np.sqrt(np.mean(torque**2))),
         r_squared=estimate.residuals.r_squared,
+        delays=estimate.delays,
         signals=found,
     )
+
+
+def _on_time(delay: Delay | None) -> bool:
+    """Whether what is left of a delay is within its error."""
+    return delay is not None and abs(delay.value - delay.applied) <= _LATE * delay.stderr
 
 
 def _cause(
@@ -156,7 +173,8 @@ def _matters(p: ParameterEstimate, shift: float, left: float, scale: float) -> f
     if scale == 0.0:
         return None
     share = abs(shift) / scale
-    error = p.stderr or 0.0
+    # With what is systematic: a shift that the interval states already is nothing new.
+    error = (p.interval[1] - p.interval[0]) / (2.0 * _NORMAL) if p.interval is not None else 0.0
     errors = abs(shift) / error if error > 0.0 else 0.0
     after = error * np.sqrt(max(left, 0.0))
     if after > _UNKNOWN * scale and abs(shift) < _CLEARLY * after:

@@ -11,12 +11,14 @@ from jointid.identification.warnings.structured_residual import excluded, named
 
 POOR_FIT = FindingType(
     code="poor_fit",
-    meaning="the model explains less than 95 % of the variance of the measured signal, and no cause with a name "
-    "explains the rest; blocking where it explains less than the signal's mean does, whatever the cause",
+    meaning="the model explains less than 95 % of the variance of the measured signal, the rest is not noise, and no "
+    "cause with a name explains it; or it explains less than 5 %, whatever the rest is; blocking where it explains less "
+    "than the signal's mean does",
     advice="check units, signs and gear ratio",
     picture="windows",
 )
 POORLY_EXPLAINED = 0.95
+_NOTHING = 0.05
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
@@ -34,7 +36,10 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             evidence=measured,
         )
         yield replace(found, severity="blocking")
-    elif explained < POORLY_EXPLAINED and not named(evidence):
+        return
+    # Noise alone is no misfit, and the errors contain it, unless it is all that was measured.
+    limit = _NOTHING if evidence.white else POORLY_EXPLAINED
+    if explained < limit and not named(evidence):
         yield POOR_FIT.finding(
             f"the model explains only {100.0 * explained:.1f} % of what was measured{excluded(evidence)}",
             *actions,
