@@ -12,8 +12,8 @@ from jointid.identification.warnings.structured_residual import excluded, named
 POOR_FIT = FindingType(
     code="poor_fit",
     meaning="the model explains less than 95 % of the variance of the measured signal, the rest is not noise, and no "
-    "cause with a name explains it; or it explains less than 5 %, whatever the rest is; blocking where it explains less "
-    "than the signal's mean does",
+    "cause with a name explains it; or it explains less than 5 %, whatever the rest is; blocking where the signal's "
+    "mean explains more",
     advice="check units, signs and gear ratio",
     picture="windows",
 )
