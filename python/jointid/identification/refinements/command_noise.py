@@ -24,7 +24,7 @@ _REACH = len(_AUTOCORRELATION) - 1
 _SURE = 8.0  # standard errors of the noise's share in the torque
 _EXPLAINED = 0.9  # of the cross-correlation, by one delay
 _BLOCKS = 60  # of the recording, whose spread gives the standard errors
-_ANSWER = 0.06  # samples: how far the joint's own answer to the noise moves the delay
+_ANSWER = 0.1  # samples: how far the joint's own answer to the noise moves the delay
 
 
 def delay_in_command(pieces: Sequence[Piece]) -> Shift | None:

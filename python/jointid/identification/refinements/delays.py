@@ -129,7 +129,7 @@ def _velocity(pieces: Sequence[Piece], glance: bool = False) -> tuple[Shift, boo
     )
     period = pieces[0].stretch.period
     if glance:
-        found = fit_shift(balance)
+        found = fit_shift(balance, robust=False, least=_SUSPECT * _VELOCITY * period)
         return None if found is None else (found, not _is_clearly_none(found, _VELOCITY * period))
     found = _searched(balance, period, _VELOCITY * period)
     if found is None or found.unexplained > _MOST_LEFT_OF_VELOCITY:
@@ -143,10 +143,10 @@ def _sensor(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
     if not pieces:
         return None
 
-    def balance(factor: int) -> Balance:
+    def balance(factor: int, varying: bool = False) -> Balance:
         windows = []
         for piece in pieces:
-            half = factor * half_length(piece.stretch)
+            half = factor * piece.half
             windows.append(
                 SmoothWindows(
                     stretch=piece.stretch,
@@ -161,7 +161,7 @@ def _sensor(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
         # acceleration of the interval before its sample.
         columns = stacked(
             [
-                conservative(each, piece.circle, delayed=piece.held)
+                conservative(each, piece.circle, delayed=piece.held, varying=varying)
                 for each, piece in zip(windows, pieces, strict=True)
             ]
         )
@@ -186,8 +186,12 @@ def _sensor(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
     least = _SMALL if found.value > 0.0 or not pieces[0].held else _SMALL + 0.6 * period
     if not _is_long(found, least):
         return found, False
-    smoother = _searched(balance(3), period, 0.0)
-    return found, smoother is not None and found.agrees(smoother, _ALIKE)
+    # A link whose inertia varies with the pose may look like a late reading.
+    for factor, varying in ((3, False), (1, True)):
+        other = _searched(balance(factor, varying), period, 0.0)
+        if other is None or not found.agrees(other, _ALIKE) or abs(other.value) < least:
+            return found, False
+    return found, True
 
 
 def _torque(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
@@ -201,7 +205,7 @@ def _torque(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
     def windows(clear: bool) -> list[SmoothWindows]:
         result = []
         for piece in pieces:
-            half, margin = half_length(piece.stretch), _margin(piece)
+            half, margin = piece.half, _margin(piece)
             result.append(
                 SmoothWindows(
                     stretch=piece.stretch,

@@ -171,7 +171,7 @@ def fit_shift(
     delay = _least_misfit(balance, shifted, projection, reach) if reach > 0.0 else 0.0
     bound = 2.0 * reach if reach > 0.0 else 0.02
     weights = np.ones(rows)
-    step, level = 0.0, np.zeros(rows)
+    step, level, none = 0.0, np.zeros(rows), False
     for turn in range(_ROUNDS if robust else 1):
         for _ in range(_STEPS):
             level = shifted(delay)
@@ -191,7 +191,8 @@ def fit_shift(
                 break
         missed = rest + step * total
         noise = float(missed @ missed) / (rows - projection.rank)
-        if abs(delay) + _CLEAR_ERRORS * np.sqrt(noise / energy) < least:
+        none = abs(delay) + _CLEAR_ERRORS * np.sqrt(noise / energy) < least
+        if none:
             break
         if robust and turn < _ROUNDS - 1:
             size = np.abs(missed)
@@ -201,7 +202,7 @@ def fit_shift(
     own = _errors(total[:, None], missed, weights, groups, projection.rank)
     spread = level - level.mean()
     parts = ((delay, float(own[0])),) * 2
-    if slopes.shape[1] > 1:
+    if slopes.shape[1] > 1 and not none:
         matrix = slopes.T @ (weights[:, None] * slopes)
         apart = -np.linalg.pinv(matrix) @ (slopes.T @ (weights * rest))
         errors = _errors(slopes, rest + slopes @ apart, weights, groups, projection.rank)
@@ -279,7 +280,8 @@ def _errors(
     slopes: Array, missed: Array, weights: Array, groups: NDArray[np.int64], rank: int
 ) -> Array:
     """Standard errors: the larger of the classical ones and those clustered over pieces of the motion."""
-    inverse = np.linalg.pinv(slopes.T @ (weights[:, None] * slopes))
+    gram = slopes.T @ (weights[:, None] * slopes)
+    inverse = 1.0 / gram if gram.size == 1 else np.linalg.pinv(gram)
     scores = slopes * (weights * missed)[:, None]
     sums = np.column_stack([np.bincount(groups, column) for column in scores.T])
     used = max(2, int(np.count_nonzero(np.bincount(groups))))

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.identification.refinements.smooth_windows import Stretch
+from jointid.identification.refinements.smooth_windows import Stretch, half_length
 from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 _SHORTEST = 250  # samples
 _PIECE = 12_000  # samples
 _MOST = 60_000  # samples of all pieces: an hour of motion says it no better
-_PART, _PARTS = 1200, 3  # samples, and number, of the parts for a first look
+_PART, _PARTS = 1200, 2  # samples, and number, of the parts for a first look
 _UNEVEN = 1e-3  # of the period
 
 
@@ -44,6 +44,11 @@ class Piece:
     torque: Array
     sensor: Array | None
     held: bool
+
+    @cached_property
+    def half(self) -> int:
+        """Half the length of a window, in samples."""
+        return half_length(self.stretch)
 
     @cached_property
     def circle(self) -> tuple[Array, Array]:
