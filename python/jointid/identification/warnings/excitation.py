@@ -153,7 +153,7 @@ class Excitation:
                 f"the noise hides it: {_two(duration)} s of motion would have to be {_two(needed / duration)} times as "
                 "long"
             )
-            measured["duration.factor"] = Measured(needed / duration)
+            measured["duration.factor"] = Measured(float(_two(needed / duration)))
             motion = "with less noise, or with motion that this parameter shows in more"
         return Lack("duration", text, motion, measured, needed)
 
