@@ -120,7 +120,9 @@ def infer(
     )
     # Running integrals of white noise are correlated by themselves.
     noise = not structured and testable(run) and not penalty.cumulative
-    if structured and not (penalty.cumulative or not free):
+    # A misfit of values that are no estimate, or of a gain whose sign is a guess, is not the model's.
+    meant = statistics.r_squared >= 0.0 and not domain.guessed_sign
+    if structured and meant and not (penalty.cumulative or not free):
         causes = find_causes(
             problem,
             penalty,
