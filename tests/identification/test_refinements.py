@@ -7,6 +7,7 @@ import pytest
 from tests.simulated_joint import TRUTH, simulate
 
 import jointid as jid
+from jointid import _core
 from jointid.recording.shifting import shifted
 
 
@@ -39,6 +40,22 @@ def test_a_late_signal_is_named_and_shifted_back(
         assert estimate.parameters[name].value == pytest.approx(value, rel=0.015), name
     assert "delay_removed" in {each.code for each in estimate.findings}
     assert "taken away" in estimate.report()
+
+
+@pytest.mark.parametrize("model", [each.name for each in _core.models()])
+@pytest.mark.parametrize("signal", ["torque", "sensor", "velocity"])
+@pytest.mark.parametrize("more", ["", ":asymmetric"], ids=["", "asymmetric"])
+def test_every_model_says_what_a_delay_costs(
+    run: jid.Recording, model: str, signal: str, more: str
+) -> None:
+    short = late(run.crop(0.0, 6.0), signal, 0.003)
+    estimate = identified(short, model=model + more, min_speed=0)
+    parts = estimate.parameters["viscous" + ("_positive" if more else "")].systematic
+    found = estimate.delays[signal]
+    assert found.value == pytest.approx(0.003, abs=5e-4)
+    # Of the torque only beside a friction that fits.
+    assert found.certain == (signal != "torque" or model != "coulomb_viscous")
+    assert parts.get("lag", 0.0) > 0.0 or not found.certain
 
 
 def test_a_good_recording_is_not_shifted(run: jid.Recording) -> None:
