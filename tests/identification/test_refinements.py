@@ -79,6 +79,33 @@ def test_a_shift_that_is_given_is_the_only_one(run: jid.Recording) -> None:
     assert predicted.relative == pytest.approx(obeyed.residuals.relative, rel=1e-6)
 
 
+def test_a_shift_that_is_wrong_is_told_with_what_it_leaves(run: jid.Recording) -> None:
+    estimate = identified(run, shift={"torque": 0.003})
+    found = estimate.delays["torque"]
+    assert found.left == pytest.approx(-0.003, abs=1e-4)
+    assert "+3.00 ms was taken away as stated, -3." in estimate.report()
+    gain = estimate.parameters["sensor_gain"]
+    assert abs(gain.value - TRUTH["sensor_gain"]) < 2.0 * gain.systematic["lag"]
+    (finding,) = (each for each in estimate.findings if each.code == "signal_lag")
+    assert finding.evidence["lag"].value == found.left
+    assert "early by 3" in finding.cause
+    assert "after the stated shift by 3 ms" in finding.cause
+    assert finding.advice[0].arguments["shift"] == {}
+    # Nothing else in the report says another thing of the torque.
+    assert "delay" not in {each.code for each in estimate.findings}
+    for cause in estimate.causes().found:
+        assert cause.name != "delay" or cause.numbers["delay"].value == found.left
+
+
+def test_a_torque_that_comes_before_its_motion_is_told_and_left(run: jid.Recording) -> None:
+    estimate = identified(late(run, "torque", -0.002))
+    assert estimate.delays["torque"].certain
+    assert estimate.settings["shift"] == {}
+    (finding,) = (each for each in estimate.findings if each.code == "signal_lag")
+    assert "the position is late" in finding.cause
+    assert {action.kind for action in finding.advice} == {"inspect"}
+
+
 @pytest.mark.parametrize(
     ("shift", "reason"),
     [

@@ -74,7 +74,8 @@ def identify(
         set-valued and the model does not apply. Default True.
     shift : mapping of str to float, optional
         Delays of "torque", "sensor" and "velocity" against the position [s], to be taken away; positive:
-        the signal is late. An empty mapping shifts nothing. Default: the delays that are certain; the
+        the signal is late. An empty mapping shifts nothing. Default: the delays that are certain, but for a
+        torque that is early by more than a sample, as it seems beside a late or coarse position; the
         estimate's `delays` and its report tell them.
     min_speed : float, optional
         Motion slower than this is left out [rad/s or m/s]; 0 leaves out nothing. Default: chosen; 0 unless

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,17 +11,20 @@ from numpy.typing import ArrayLike, NDArray
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.estimate.causes import Cause, Causes
+from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Measured
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.identification.causes.attribution import Attributed, attribute
-from jointid.identification.causes.candidates import inertia_basis, listed_candidates
+from jointid.identification.causes.candidates import Candidate, inertia_basis, listed_candidates
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.remedies import advice_against
 from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
+# How far a delay may be from what its signal by itself says: of that, and in standard errors.
+_APART, _FAR = 0.7, 4.0
 _MOVED, _ERRORS = 0.03, 1.5  # share of a value, and standard errors, from which a cause matters
 _UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it must move by more
 _PART = 0.02  # of the variance of what was measured
@@ -35,6 +39,7 @@ def find_causes(
     torque_level: float,
     r_squared: float,
     signals: Mapping[str, Array] | None = None,
+    delays: Mapping[str, Delay] | None = None,
 ) -> Causes:
     """Attribute the misfit of an estimate.
 
@@ -50,6 +55,8 @@ def find_causes(
         Share of the variance that the model explains.
     signals : mapping of str to ndarray, optional
         Further signals of the first recording, one value a sample.
+    delays : mapping of str to Delay, optional
+        As measured by themselves; a cause must not contradict them.
     """
     names = list(penalty.names)
     best = np.array([parameters[name].value for name in names])
@@ -58,17 +65,35 @@ def find_causes(
         for index, name in enumerate(names)
         if parameters[name].vary and parameters[name].at_bound is None
     )
-    fit = Fitted.of(problem, penalty, best, free, signals)
+    fit = replace(Fitted.of(problem, penalty, best, free, signals), delays=delays or {})
     tried = listed_candidates(fit)
     found: list[Cause] = []
     harmless: list[Cause] = []
-    for each in attribute(fit, tried):
+    for each in _believed(fit, tried):
         cause = _cause(fit, each, parameters, torque_level)
         # A large part of what was measured matters, however badly the values are known without it.
         matters = cause.relative or cause.share * (1.0 - r_squared) > _PART
         (found if matters else harmless).append(cause)
-    wanted = dict.fromkeys([*(each.name for each in tried), "disturbance"])
+    wanted = dict.fromkeys([*(each.name for each in tried), "delay", "disturbance"])
     return Causes(found=tuple(found), harmless=tuple(harmless), tried=tuple(wanted))
+
+
+def _believed(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
+    """The attribution without delays that the signals by themselves contradict."""
+    found = attribute(fit, tried)
+    wrong = {each.candidate.detail for each in found if _contradicted(fit, each)}
+    if not wrong:
+        return found
+    return _believed(
+        fit, [each for each in tried if each.name != "delay" or each.detail not in wrong]
+    )
+
+
+def _contradicted(fit: Fitted, each: Attributed) -> bool:
+    if each.candidate.name != "delay" or each.candidate.detail not in fit.delays:
+        return False
+    delay, late = fit.delays[each.candidate.detail], float(each.coefficients[0])
+    return abs(late - delay.left) > max(_APART * abs(delay.left), _FAR * delay.stderr)
 
 
 def attributed(
@@ -109,6 +134,7 @@ def attributed(
         torque_level=float(np.sqrt(np.mean(torque**2))),
         r_squared=estimate.residuals.r_squared,
         signals=found,
+        delays=estimate.delays,
     )
 
 
@@ -215,8 +241,10 @@ def _described(fit: Fitted, each: Attributed) -> tuple[str, str, dict[str, Measu
     elif name in ("offset", "disturbance"):
         size, numbers["torque"] = f"{found[0]:.3g} {torque}", Measured(float(found[0]), torque)
     elif name == "delay":
-        late = float(found[0])
-        size, numbers["delay"] = f"by about {1e3 * late:.2g} ms", Measured(late, "s")
+        known = fit.delays.get(detail)
+        late = known.left if known is not None and known.certain else float(found[0])
+        side = "late" if late > 0.0 else "early"
+        size, numbers["delay"] = f"{side} by about {1e3 * abs(late):.2g} ms", Measured(late, "s")
     elif name == "load_friction":
         size, numbers["coefficient"] = f"{found[0]:.3g} of the load", Measured(float(found[0]))
     elif name == "drift":

@@ -43,8 +43,14 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if evidence.causes is None:
         return
     for cause in evidence.causes.found:
-        if cause.name != WRONG_SCALE.code:  # its own check asks for more
+        # Their own checks say more.
+        if cause.name != WRONG_SCALE.code and not _is_known_delay(cause, evidence):
             yield _finding(cause)
+
+
+def _is_known_delay(cause: Cause, evidence: Evidence) -> bool:
+    delay = evidence.delays.get(cause.detail) if cause.name == "delay" else None
+    return delay is not None and delay.certain
 
 
 def _finding(cause: Cause) -> Finding:
