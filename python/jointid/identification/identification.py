@@ -11,6 +11,7 @@ from jointid.estimate.estimate import Estimate
 from jointid.identification.prepared import prepare
 from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Search
+from jointid.identification.warnings.load_scale import LOAD_SCALE
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
@@ -115,7 +116,8 @@ def identify(
             )
             for each in either
         ]
-        return min(found, key=lambda estimate: estimate.residuals.relative)
+        # A load that scales all values fits anything.
+        return min(found, key=lambda each: (_blocked(each), each.residuals.relative))
     prepared = prepare(
         recordings,
         joint,
@@ -132,3 +134,7 @@ def identify(
     )
     outcome = run_search(chosen, prepared.penalty, prepared.domain)
     return prepared.estimate(chosen, outcome, started)
+
+
+def _blocked(estimate: Estimate) -> bool:
+    return LOAD_SCALE.code in {finding.code for finding in estimate.findings}
