@@ -114,3 +114,30 @@ def test_noise_is_not_suspicious_and_slow_structure_is() -> None:
     # Silent from one window to the next, loud over sixteen.
     slow = rng.normal(size=1200) + 0.5 * np.sin(np.linspace(0.0, 30.0, 1200))
     assert suspicious(slow, run, ones, velocity)
+
+
+def test_a_misfit_without_a_name_is_said_in_one_line() -> None:
+    rng = np.random.default_rng(2)
+    bench = Bench(
+        motion=thesis(np.radians([60.0])),
+        law=Law(inertia=2.5, stiffness=40.0, feedback=1.5, on_reference=1.0),
+        plant=Plant(),
+        log=Log(),
+    )
+    (run,) = simulate(bench, duration=9.0, seed=4)
+    wander = np.convolve(rng.normal(0.0, 0.4, len(run) + 99), np.ones(100), "valid")
+    run = jid.Recording(
+        time=run.time,
+        position=run.position,
+        velocity=run.velocity,
+        torque=run.torque + wander,
+        sensor=run.sensor,
+    )
+    estimate = jid.identify(run, jid.thesis_joint(), search="separable")
+    said = [f for f in estimate.findings if f.code in ("structured_residual", "poor_fit")]
+    assert said
+    count = len(estimate.causes().excluded)
+    for found in said:
+        assert f"none of {count} known causes" in found.message
+        assert found.evidence["causes_excluded"].value == count
+        assert len(found.message) <= 220

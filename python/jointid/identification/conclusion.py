@@ -124,6 +124,7 @@ def infer(
             parameters,
             torque_level=torque_level,
             r_squared=statistics.r_squared,
+            delays=refinements.delays,
         )
     findings = diagnose(
         Evidence(

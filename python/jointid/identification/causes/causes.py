@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.estimate.causes import Cause, Causes
+from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Measured
 from jointid.estimate.statistics import ParameterEstimate
@@ -21,9 +22,10 @@ from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
-_MOVED, _ERRORS = 0.03, 1.5  # share of a value, and standard errors, from which a cause matters
+_MOVED, _ERRORS = 0.04, 1.8  # share of a value, and standard errors, from which a cause matters
 _UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it must move by more
-_PART = 0.02  # of the variance of what was measured
+_PART = 0.05  # of the variance of what was measured
+_KNOWN = 3e-4  # [s]; standard error of a delay that says whether one matters
 _LEAST = 0.003  # share of a value: a smaller change matters to nobody, however certain
 
 
@@ -34,6 +36,7 @@ def find_causes(
     *,
     torque_level: float,
     r_squared: float,
+    delays: Mapping[str, Delay] | None = None,
     signals: Mapping[str, Array] | None = None,
 ) -> Causes:
     """Attribute the misfit of an estimate.
@@ -48,6 +51,8 @@ def find_causes(
         Root mean square of the torque [N·m or N]; what an offset is held against.
     r_squared : float
         Share of the variance that the model explains.
+    delays : mapping of str to Delay, optional
+        As measured against the position. Default: not measured.
     signals : mapping of str to ndarray, optional
         Further signals of the first recording, one value a sample.
     """
@@ -58,7 +63,7 @@ def find_causes(
         for index, name in enumerate(names)
         if parameters[name].vary and parameters[name].at_bound is None
     )
-    fit = Fitted.of(problem, penalty, best, free, signals)
+    fit = Fitted.of(problem, penalty, best, free, signals, _prompt(delays or {}))
     tried = listed_candidates(fit)
     found: list[Cause] = []
     harmless: list[Cause] = []
@@ -108,7 +113,17 @@ def attributed(
         estimate.parameters,
         torque_level=float(np.sqrt(np.mean(torque**2))),
         r_squared=estimate.residuals.r_squared,
+        delays=estimate.delays,
         signals=found,
+    )
+
+
+def _prompt(delays: Mapping[str, Delay]) -> frozenset[str]:
+    """Signals whose delay is known well enough, and is none or was taken away."""
+    return frozenset(
+        each.signal
+        for each in delays.values()
+        if each.stderr < _KNOWN and (not each.certain or each.applied == each.value)
     )
 
 

@@ -37,6 +37,8 @@ class Fitted:
         What has been added to the parameters in `residual`.
     signals : mapping of str to ndarray
         Further signals of the first recording, one value a sample.
+    prompt : frozenset of str
+        Signals that are known not to be late.
     """
 
     problem: Problem
@@ -47,6 +49,7 @@ class Fitted:
     jacobian: Array
     start: Array
     signals: Mapping[str, Array] = field(default_factory=dict)
+    prompt: frozenset[str] = frozenset()
 
     @functools.cached_property
     def names(self) -> tuple[str, ...]:
@@ -108,6 +111,7 @@ class Fitted:
         best: Array,
         free: tuple[int, ...],
         signals: Mapping[str, Array] | None = None,
+        prompt: frozenset[str] = frozenset(),
     ) -> Fitted:
         """Return the fit at a minimum, on the torque's side whatever the penalty compares."""
         _, residual, jacobian = penalty.linearised(best)
@@ -125,6 +129,7 @@ class Fitted:
                 jacobian=jacobian,
                 start=start,
                 signals=signals,
+                prompt=prompt,
             )
         gain = names.index("sensor_gain")
         reading = penalty.columns(best[penalty.coefficients :])[:, gain]
@@ -139,6 +144,7 @@ class Fitted:
             jacobian=jacobian,
             start=start,
             signals=signals,
+            prompt=prompt,
         )
         if gain not in free or "load_friction" in names:
             return fit

@@ -6,7 +6,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
-from jointid.identification.warnings.structured_residual import excluded, named
+from jointid.identification.warnings.structured_residual import excluded, excluded_number, named
 
 POOR_FIT = FindingType(
     code="poor_fit",
@@ -22,10 +22,10 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     explained = evidence.residuals.r_squared
     if explained < POORLY_EXPLAINED and not named(evidence):
         yield POOR_FIT.finding(
-            f"the model explains only {100.0 * explained:.1f} % of what was measured{excluded(evidence)}",
+            f"the model explains only {100.0 * explained:.1f} % of what was measured{excluded(evidence, 'the rest')}",
             Action("inspect", text="units, signs and gear ratio"),
             Action("inspect", text="the residuals over time and over velocity"),
-            evidence={"r_squared": Measured(explained)},
+            evidence={"r_squared": Measured(explained)} | excluded_number(evidence),
         )
 
 

@@ -16,7 +16,7 @@ STRUCTURED_RESIDUAL = FindingType(
     picture="windows",
 )
 _CORRELATED = 0.5
-_SHOWN = 3  # parameters in the sentence
+_SHOWN = 2  # parameters in the sentence
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
@@ -30,12 +30,15 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     makes = ""
     if uncertain:
         shown = ", ".join(uncertain[:_SHOWN]) + " and others" * (len(uncertain) > _SHOWN)
-        makes = f", which makes {shown} uncertain"
+        makes = f"; {shown} are uncertain"
     yield STRUCTURED_RESIDUAL.finding(
-        f"the residuals are autocorrelated (r = {correlation:.2f}): the model misses a systematic effect{makes}; the "
-        f"standard errors allow for it, a bias may remain{excluded(evidence)}",
-        Action("inspect", text="the residuals over time and over velocity"),
-        evidence={"autocorrelation": Measured(correlation)},
+        f"the residuals are autocorrelated (r = {correlation:.2f}): the model misses a systematic effect"
+        f"{excluded(evidence)}{makes}",
+        Action(
+            "inspect",
+            text="the residuals over time and over velocity",
+        ),
+        evidence={"autocorrelation": Measured(correlation)} | excluded_number(evidence),
         parameters=uncertain,
     )
 
@@ -46,12 +49,17 @@ def named(evidence: Evidence) -> bool:
     return any(cause.name != "wrong_scale" for cause in causes)
 
 
-def excluded(evidence: Evidence) -> str:
-    """What was looked for and not found, as the end of a sentence."""
-    if evidence.causes is None or not evidence.causes.excluded:
-        return ""
-    names = [name.replace("_", " ") for name in evidence.causes.excluded]
-    return f"; it is not {', '.join(names[:-1])} or {names[-1]}" if len(names) > 1 else ""
+def excluded(evidence: Evidence, what: str = "it") -> str:
+    """How much was looked for and not found, as a part of a sentence; `Causes.excluded` has the names."""
+    count = len(evidence.causes.excluded) if evidence.causes is not None else 0
+    return f"; none of {count} known causes explains {what}" if count else ""
+
+
+def excluded_number(evidence: Evidence) -> dict[str, Measured]:
+    """How many causes were looked for and not found, as evidence."""
+    if evidence.causes is None:
+        return {}
+    return {"causes_excluded": Measured(float(len(evidence.causes.excluded)))}
 
 
 CHECK = Check(_find, (STRUCTURED_RESIDUAL,))
