@@ -116,15 +116,43 @@ def test_noise_is_not_suspicious_and_slow_structure_is() -> None:
     assert suspicious(slow, run, ones, velocity)
 
 
+def _benches(*logs: Log, **plant: float) -> Bench:
+    law = Law(inertia=2.5, stiffness=40.0, feedback=1.5, on_reference=1.0)
+    motion = thesis(np.radians([60.0]))
+    return Bench.stack([Bench(motion=motion, law=law, plant=Plant(**plant), log=x) for x in logs])
+
+
+def test_a_filtered_velocity_is_no_friction_at_low_speed() -> None:
+    (run,) = simulate(_benches(Log(velocity_cutoff=50.0)), duration=9.0, seed=6)
+    estimate = jid.identify(run, jid.thesis_joint(), search="separable")
+    assert estimate.delays["velocity"].certain
+    causes = estimate.causes()
+    first = (*causes.found, *causes.harmless)[0]
+    assert first.name == "delay"
+    assert first.detail.startswith("velocity")
+    assert dict(first.advice[0].arguments) == {"columns": {"velocity": None}}
+    assert not _SLOW & set(_named(estimate))
+
+
+def test_a_velocity_that_is_measured_as_prompt_is_no_cause() -> None:
+    stiff = {"bristle_stiffness": 1e5, "bristle_damping": 200.0}
+    (run,) = simulate(_benches(Log(), **stiff), duration=9.0, seed=3)
+    estimate = jid.identify(run, jid.thesis_joint(), search="separable")
+    assert not estimate.delays["velocity"].certain
+    assert "delay" not in estimate.causes().tried or all(
+        cause.detail != "velocity" for cause in estimate.causes().found
+    )
+
+
+def test_noise_of_a_sensor_is_no_structure() -> None:
+    (run,) = simulate(_benches(Log(sensor_noise=5.0)), duration=9.0, seed=7)
+    estimate = jid.identify(run, jid.thesis_joint(), search="separable")
+    assert not {"structured_residual", *MEANINGS} & {found.code for found in estimate.findings}
+
+
 def test_a_misfit_without_a_name_is_said_in_one_line() -> None:
     rng = np.random.default_rng(2)
-    bench = Bench(
-        motion=thesis(np.radians([60.0])),
-        law=Law(inertia=2.5, stiffness=40.0, feedback=1.5, on_reference=1.0),
-        plant=Plant(),
-        log=Log(),
-    )
-    (run,) = simulate(bench, duration=9.0, seed=4)
+    (run,) = simulate(_benches(Log()), duration=9.0, seed=4)
     wander = np.convolve(rng.normal(0.0, 0.4, len(run) + 99), np.ones(100), "valid")
     run = jid.Recording(
         time=run.time,

@@ -114,10 +114,10 @@ def infer(
     torque_level = float(np.sqrt(np.mean((penalty.target / penalty.usable_duration) ** 2)))
     causes = None
     run = table.recording
-    if (
-        statistics.r_squared < POORLY_EXPLAINED
-        or suspicious(table.residual, run, table.duration, table.velocity)
-    ) and not (penalty.cumulative or not free):
+    structured = suspicious(table.residual, run, table.duration, table.velocity)
+    if (statistics.r_squared < POORLY_EXPLAINED or structured) and not (
+        penalty.cumulative or not free
+    ):
         causes = find_causes(
             problem,
             penalty,
@@ -144,6 +144,7 @@ def infer(
             inspections=inspections,
             at_best=at_best,
             causes=causes,
+            structured=structured,
             velocity_effect=effect,
             correlations={
                 (domain.names[free[i]], domain.names[free[j]]): float(spread.correlation[i, j])

@@ -11,6 +11,7 @@ from jointid.identification.causes.candidates import Candidate
 from jointid.identification.causes.events import LocalEvent, local_event
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.folds import Folds, summed
+from jointid.identification.causes.slow_rows import SlowRows, slow_rows
 
 Array = NDArray[np.float64]
 
@@ -20,6 +21,9 @@ _SHARE = 0.12  # of the misfit, at least, at one scale
 _SHARE_OF_ALL = 0.05  # of the misfit before any cause was found
 _SURE = 3.0  # mean improvement of a block over its error
 _FEWEST = 5  # blocks that hold the misfit
+_LEFT = (
+    0.2  # of a column's sum of squares: with less in the faster windows they do not tell its value
+)
 _ALIKE = 1.1  # ratio of misfits that blocks do not tell apart
 _HARDLY = 0.9  # a runner-up explains so much of what the winner does, in logarithms of the misfit
 
@@ -90,6 +94,9 @@ def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
             reached = reached + found[-1].shifts
             continue
         if not sure:
+            slow = None if found else slow_rows(fit, matrix[:, base], matrix[:, -1])
+            if slow is not None:
+                found.append(_of_slow_rows(fit, matrix, slow))
             break
         winner = _parsimonious(sure, tried)
         base = base + places[winner]
@@ -111,6 +118,39 @@ def _of_event(
         coefficients=np.array([event.torque]),
         shifts=steps[: len(reached)] - reached,
     )
+
+
+def _of_slow_rows(fit: Fitted, matrix: Array, slow: SlowRows) -> Attributed:
+    """The shifts when slow motion is left out, of what is known without it."""
+    kept = np.where(slow.rows[:, None], 0.0, matrix)
+    number = ("speed", slow.speed, "/s")
+    return Attributed(
+        candidate=Candidate(
+            name="slow_motion",
+            columns=np.zeros((0, 1)),
+            detail=f"below about {slow.speed:.2g} @/s",
+            numbers=(number,),
+        ),
+        share=slow.share,
+        factor=1,
+        coefficients=np.zeros(0),
+        shifts=_without_slow(fit, kept, matrix),
+    )
+
+
+def _without_slow(fit: Fitted, kept: Array, matrix: Array) -> Array:
+    """Steps without the slow windows; none for what only these windows show."""
+    count = len(fit.start)
+    left = np.einsum("ni,ni->i", kept[:, :count], kept[:, :count])
+    whole = np.einsum("ni,ni->i", matrix[:, :count], matrix[:, :count])
+    known = np.flatnonzero(left > _LEFT * whole)
+    steps = np.zeros(count)
+    # Without what `solve` adds to the first columns, which these are not.
+    size = np.sqrt(left[known])
+    scaled = kept[:, known] / size
+    square = np.einsum("ni,nj->ij", scaled, scaled) + 1e-12 * np.eye(len(known))
+    steps[known] = np.linalg.solve(square, -np.einsum("ni,n->i", scaled, kept[:, -1])) / size
+    return steps
 
 
 def _family(candidate: Candidate) -> str:

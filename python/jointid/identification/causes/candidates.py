@@ -18,6 +18,7 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
+FILTERED = "velocity, which is not the position's rate"
 _PERIOD = np.pi  # [rad] of a harmonic that the motion covers, at least
 
 
@@ -200,15 +201,35 @@ def _delay(fit: Fitted) -> Iterator[Candidate]:
         yield Candidate(name="delay", columns=rise[:, None], detail="velocity")
 
 
+def _velocity(fit: Fitted) -> Iterator[Candidate]:
+    """A velocity that is not the position's rate, as behind a filter: what the model says with either."""
+    if fit.filtered and not fit.problem.recordings[0].velocity_derived:
+        rise = fit.value("inertia") * fit.rise(lambda _, run: _rate(run) - run.velocity)
+        torque = fit.integral(
+            lambda _, run: _friction(fit, _rate(run)) - _friction(fit, run.velocity)
+        )
+        yield Candidate(name="delay", columns=(rise + torque)[:, None], detail=FILTERED)
+
+
+def _rate(run: Recording) -> Array:
+    return np.asarray(np.gradient(run.position, run.time))
+
+
 def _of_velocity(fit: Fitted, run: Recording) -> Array:
     """Torque of the terms that the velocity enters: inertia and friction, but for what the travel gives."""
     total = fit.value("inertia") * np.gradient(run.velocity, run.time)
+    return np.asarray(total + _friction(fit, run.velocity))
+
+
+def _friction(fit: Fitted, velocity: Array) -> Array:
+    """The friction at a velocity, without its viscous part: over a window that is the travel's."""
+    total = -fit.value("viscous") * velocity
     shapes = {shape: fit.value(shape) for term in fit.penalty.terms for shape in term.shapes}
     for index, term in enumerate(fit.penalty.terms):
         if term.friction and not term.needs_load:
             values = np.array([shapes[shape] for shape in term.shapes])
-            total += fit.best[index] * _core.friction_basis(term.key, run.velocity, values)
-    return np.asarray(total - fit.value("viscous") * run.velocity)
+            total += fit.best[index] * _core.friction_basis(term.key, velocity, values)
+    return np.asarray(total)
 
 
 def _asymmetry(fit: Fitted) -> Iterator[Candidate]:
@@ -252,7 +273,7 @@ def _other_signal(fit: Fitted) -> Iterator[Candidate]:
 
 FAMILIES: tuple[Callable[[Fitted], Iterator[Candidate]], ...] = (
     *(_gravity, _inertia_varies, _load_friction, _slow, _drift, _harmonic, _ripple),
-    *(_delay, _asymmetry, _offset, _scale, _other_signal),
+    *(_delay, _velocity, _asymmetry, _offset, _scale, _other_signal),
 )
 
 

@@ -15,7 +15,7 @@ from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Measured
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.identification.causes.attribution import Attributed, attribute
-from jointid.identification.causes.candidates import inertia_basis, listed_candidates
+from jointid.identification.causes.candidates import FILTERED, inertia_basis, listed_candidates
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.remedies import advice_against
 from jointid.problem.problem import Problem
@@ -26,6 +26,7 @@ _MOVED, _ERRORS = 0.04, 1.8  # share of a value, and standard errors, from which
 _UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it must move by more
 _PART = 0.05  # of the variance of what was measured
 _KNOWN = 3e-4  # [s]; standard error of a delay that says whether one matters
+_BY_CHANCE = 3.0  # standard errors of a delay
 _LEAST = 0.003  # share of a value: a smaller change matters to nobody, however certain
 
 
@@ -63,7 +64,9 @@ def find_causes(
         for index, name in enumerate(names)
         if parameters[name].vary and parameters[name].at_bound is None
     )
-    fit = Fitted.of(problem, penalty, best, free, signals, _prompt(delays or {}))
+    delays = delays or {}
+    late = "velocity" in delays and delays["velocity"].certain
+    fit = Fitted.of(problem, penalty, best, free, signals, _prompt(delays), late)
     tried = listed_candidates(fit)
     found: list[Cause] = []
     harmless: list[Cause] = []
@@ -119,12 +122,17 @@ def attributed(
 
 
 def _prompt(delays: Mapping[str, Delay]) -> frozenset[str]:
-    """Signals whose delay is known well enough, and is none or was taken away."""
-    return frozenset(
-        each.signal
-        for each in delays.values()
-        if each.stderr < _KNOWN and (not each.certain or each.applied == each.value)
-    )
+    """Signals whose delay is known well enough, and is none or was taken away.
+
+    A torque of which only some parts seem late is not late: something else is amiss there.
+    """
+    found = set()
+    for each in delays.values():
+        left = abs(each.value - each.applied)
+        none = not each.certain and (each.signal == "torque" or left < _BY_CHANCE * each.stderr)
+        if each.stderr < _KNOWN and (none or left == 0.0):
+            found.add(each.signal)
+    return frozenset(found)
 
 
 def _cause(
@@ -229,7 +237,7 @@ def _described(fit: Fitted, each: Attributed) -> tuple[str, str, dict[str, Measu
         size, numbers["amplitude"] = f"{amplitude:.3g} {torque}", Measured(amplitude, torque)
     elif name in ("offset", "disturbance"):
         size, numbers["torque"] = f"{found[0]:.3g} {torque}", Measured(float(found[0]), torque)
-    elif name == "delay":
+    elif name == "delay" and detail != FILTERED:
         late = float(found[0])
         size, numbers["delay"] = f"by about {1e3 * late:.2g} ms", Measured(late, "s")
     elif name == "load_friction":

@@ -39,6 +39,8 @@ class Fitted:
         Further signals of the first recording, one value a sample.
     prompt : frozenset of str
         Signals that are known not to be late.
+    filtered : bool
+        Whether the velocity was late against the position: a filter does more than that.
     """
 
     problem: Problem
@@ -50,6 +52,7 @@ class Fitted:
     start: Array
     signals: Mapping[str, Array] = field(default_factory=dict)
     prompt: frozenset[str] = frozenset()
+    filtered: bool = False
 
     @functools.cached_property
     def names(self) -> tuple[str, ...]:
@@ -112,6 +115,7 @@ class Fitted:
         free: tuple[int, ...],
         signals: Mapping[str, Array] | None = None,
         prompt: frozenset[str] = frozenset(),
+        filtered: bool = False,
     ) -> Fitted:
         """Return the fit at a minimum, on the torque's side whatever the penalty compares."""
         _, residual, jacobian = penalty.linearised(best)
@@ -130,6 +134,7 @@ class Fitted:
                 start=start,
                 signals=signals,
                 prompt=prompt,
+                filtered=filtered,
             )
         gain = names.index("sensor_gain")
         reading = penalty.columns(best[penalty.coefficients :])[:, gain]
@@ -145,6 +150,7 @@ class Fitted:
             start=start,
             signals=signals,
             prompt=prompt,
+            filtered=filtered,
         )
         if gain not in free or "load_friction" in names:
             return fit

@@ -83,6 +83,8 @@ class Evidence:
         How slow windows disagree with faster ones.
     causes : Causes or None
         Why the model does not fit; None where the residuals are noise.
+    structured : bool
+        Whether the residuals are more than noise.
     """
 
     problem: Problem
@@ -105,6 +107,7 @@ class Evidence:
     slow_motion: SlowMotion | None
     velocity_effect: VelocityEffect | None = None
     causes: Causes | None = None
+    structured: bool = False
 
     @property
     def recordings(self) -> tuple[Recording, ...]:

@@ -24,7 +24,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if evidence.penalty.cumulative or named(evidence):
         return
     correlation = evidence.residuals.autocorrelation
-    uncertain = wide(evidence) if evidence.causes is not None else ()
+    uncertain = wide(evidence) if evidence.structured else ()
     if correlation <= _CORRELATED and not uncertain:
         return
     makes = ""
