@@ -150,6 +150,23 @@ def test_noise_of_a_sensor_is_no_structure() -> None:
     assert not {"structured_residual", *MEANINGS} & {found.code for found in estimate.findings}
 
 
+def test_a_clipped_torque_is_its_own_cause() -> None:
+    (run,) = simulate(_benches(Log()), duration=9.0, seed=8)
+    torque = run.torque
+    assert torque is not None
+    limit = 0.7 * float(torque.max())
+    run = jid.Recording(
+        time=run.time,
+        position=run.position,
+        velocity=run.velocity,
+        torque=np.minimum(torque, limit),
+        sensor=run.sensor,
+    )
+    estimate = jid.identify(run, jid.thesis_joint(), search="separable")
+    assert "torque_saturated" in {found.code for found in estimate.findings}
+    assert _named(estimate) == []
+
+
 def test_a_misfit_without_a_name_is_said_in_one_line() -> None:
     rng = np.random.default_rng(2)
     (run,) = simulate(_benches(Log()), duration=9.0, seed=4)

@@ -24,6 +24,7 @@ _FEWEST = 5  # blocks that hold the misfit
 _LEFT = (
     0.2  # of a column's sum of squares: with less in the faster windows they do not tell its value
 )
+_GONE = 0.3  # of the misfit may be left without the windows on the limit of the torque
 _ALIKE = 1.1  # ratio of misfits that blocks do not tell apart
 _HARDLY = 0.9  # a runner-up explains so much of what the winner does, in logarithms of the misfit
 
@@ -71,12 +72,13 @@ def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
         places.append(list(range(at, at + each.columns.shape[1])))
         at += each.columns.shape[1]
     matrix = np.column_stack([fit.jacobian, *(each.columns for each in tried), fit.residual])
+    base, reached = list(range(count)), np.zeros(count)
+    if _of_the_limit(fit, matrix[:, base], matrix[:, -1]):
+        return ()
     scaled = _at_scales(fit, matrix)
-    base = list(range(count))
     whole = {factor: folds.misfit(base).sum() for factor, folds in scaled}
     found: list[Attributed] = []
     taken: set[str] = set()
-    reached = np.zeros(count)
     while len(found) < _MOST:
         scores = {
             index: _score(scaled[:1] if each.finest else scaled, base, places[index], whole)
@@ -104,6 +106,18 @@ def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
         found.append(_attributed(fit, matrix, base, tried, winner, scores, reached))
         reached = reached + found[-1].shifts
     return tuple(found)
+
+
+def _of_the_limit(fit: Fitted, base: Array, residual: Array) -> bool:
+    """Whether the misfit is gone from the other windows once those on the torque's limit are left out."""
+    kept = fit.trusted
+    if kept.all():
+        return False
+    steps = fit.solve(base[kept], residual[kept]) - fit.start
+    all_rows = fit.solve(base, residual) - fit.start
+    before = residual + base @ all_rows
+    after = residual[kept] + base[kept] @ steps
+    return float(np.sum(after**2)) < _GONE * float(np.sum(before**2))
 
 
 def _of_event(

@@ -15,6 +15,10 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
+_OFTEN = 0.005  # share of the samples on a limit
+_EQUAL = 1e-9  # of the torque's range
+_MOST_RESTING = 0.5
+
 
 @dataclass(frozen=True, kw_only=True)
 class Fitted:
@@ -73,6 +77,15 @@ class Fitted:
     def duration(self) -> Array:
         """Integrated time of each window [s]."""
         return np.asarray(self.penalty.usable_duration)
+
+    @functools.cached_property
+    def trusted(self) -> NDArray[np.bool_]:
+        """Windows in which the torque does not rest on a limit: there the record may be less than the torque.
+
+        All of them, if most windows would be lost.
+        """
+        resting = self.integral(lambda _, run: _on_a_limit(_present(run.torque))) > 0.0
+        return ~resting if resting.mean() < _MOST_RESTING else np.ones(len(resting), dtype=bool)
 
     @functools.cached_property
     def weights(self) -> list[Array]:
@@ -185,6 +198,21 @@ class Fitted:
             total = np.concatenate([np.zeros((1, *each.shape[1:])), np.cumsum(each, axis=0)])
             parts.append(total[bounds[mine, 1]] - total[bounds[mine, 0]])
         return np.concatenate(parts)
+
+
+def _present(signal: Array | None) -> Array:
+    assert signal is not None
+    return signal
+
+
+def _on_a_limit(torque: Array) -> Array:
+    """1 where the torque is its largest or its smallest value, if that is so often; else 0."""
+    resting = np.zeros(len(torque))
+    for limit in (torque.max(), torque.min()):
+        there = np.abs(torque - limit) <= _EQUAL * np.ptp(torque)
+        if there.mean() > _OFTEN:
+            resting[there] = 1.0
+    return resting
 
 
 def _explained(fit: Fitted, reading: Array) -> Array:
