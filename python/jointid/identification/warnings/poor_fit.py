@@ -7,7 +7,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
-from jointid.identification.warnings.structured_residual import excluded, named
+from jointid.identification.warnings.structured_residual import excluded, excluded_number, named
 
 POOR_FIT = FindingType(
     code="poor_fit",
@@ -41,9 +41,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     limit = _NOTHING if evidence.white else POORLY_EXPLAINED
     if explained < limit and not named(evidence):
         yield POOR_FIT.finding(
-            f"the model explains only {100.0 * explained:.1f} % of what was measured{excluded(evidence)}",
+            f"the model explains only {100.0 * explained:.1f} % of what was measured{excluded(evidence, 'the rest')}",
             *actions,
-            evidence=measured,
+            evidence=measured | excluded_number(evidence),
         )
 
 
