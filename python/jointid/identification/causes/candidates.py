@@ -18,6 +18,8 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
+_LATE = 3e-4  # [s], of what is left of a delay that matters
+_ERRORS = 3.0  # of it
 _PERIOD = np.pi  # [rad] of a harmonic that the motion covers, at least
 
 
@@ -183,17 +185,27 @@ def _ripple(fit: Fitted) -> Iterator[Candidate]:
 
 
 def _delay(fit: Fitted) -> Iterator[Candidate]:
-    """To first order, the integral of a signal that is late changes by its rise over the window."""
+    """To first order, the integral of a signal that is late changes by its rise over the window.
+
+    Not of a signal that is known to have no delay left: each was held against the motion by itself, which
+    tells more than a misfit that the other errors of the model share.
+    """
     runs = fit.problem.in_core
-    late = np.asarray(fit.penalty.torque_steps(runs, fit.problem.mask_standstill))
-    yield Candidate(name="delay", columns=late[:, None], detail="torque")
-    if "sensor_gain" in fit.names:
+    if _may_be_late(fit, "torque"):
+        late = -np.asarray(fit.penalty.torque_steps(runs, fit.problem.mask_standstill))
+        yield Candidate(name="delay", columns=late[:, None], detail="torque")
+    if "sensor_gain" in fit.names and _may_be_late(fit, "sensor"):
         gain = fit.value("sensor_gain")
         rise = gain * fit.rise(lambda _, run: _present(run.sensor))
         yield Candidate(name="delay", columns=rise[:, None], detail="sensor")
-    if not fit.problem.recordings[0].velocity_derived:
-        rise = -fit.rise(lambda _, run: _of_velocity(fit, run))
+    if not fit.problem.recordings[0].velocity_derived and _may_be_late(fit, "velocity"):
+        rise = fit.rise(lambda _, run: _of_velocity(fit, run))
         yield Candidate(name="delay", columns=rise[:, None], detail="velocity")
+
+
+def _may_be_late(fit: Fitted, signal: str) -> bool:
+    delay = fit.delays.get(signal)
+    return delay is None or abs(delay.left) + _ERRORS * delay.stderr > _LATE
 
 
 def _of_velocity(fit: Fitted, run: Recording) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,17 +11,22 @@ from numpy.typing import ArrayLike, NDArray
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.estimate.causes import Cause, Causes
+from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Measured
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.identification.causes.attribution import Attributed, attribute
-from jointid.identification.causes.candidates import inertia_basis, listed_candidates
+from jointid.identification.causes.candidates import Candidate, inertia_basis, listed_candidates
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.remedies import advice_against
 from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
+_LATE = 2.0  # standard errors of a delay that is none
+_NORMAL = 1.959964  # standard errors of half a 95 % interval
+# How far a delay may be from what its signal by itself says: of that, and in standard errors.
+_APART, _FAR = 0.7, 4.0
 _MOVED, _ERRORS = 0.03, 1.5  # share of a value, and standard errors, from which a cause matters
 _UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it must move by more
 _PART = 0.02  # of the variance of what was measured
@@ -34,6 +40,7 @@ def find_causes(
     *,
     torque_level: float,
     r_squared: float,
+    delays: Mapping[str, Delay],
     signals: Mapping[str, Array] | None = None,
 ) -> Causes:
     """Attribute the misfit of an estimate.
@@ -48,6 +55,8 @@ def find_causes(
         Root mean square of the torque [N·m or N]; what an offset is held against.
     r_squared : float
         Share of the variance that the model explains.
+    delays : mapping of str to Delay
+        Of the signals against the position, as estimated before.
     signals : mapping of str to ndarray, optional
         Further signals of the first recording, one value a sample.
     """
@@ -58,17 +67,40 @@ def find_causes(
         for index, name in enumerate(names)
         if parameters[name].vary and parameters[name].at_bound is None
     )
-    fit = Fitted.of(problem, penalty, best, free, signals)
-    tried = listed_candidates(fit)
+    fit = replace(Fitted.of(problem, penalty, best, free, signals), delays=delays)
+    # Much resembles a delay; where its own estimate shows none, it is not one.
+    tried = [
+        each
+        for each in listed_candidates(fit)
+        if each.name != "delay" or not _on_time(delays.get(each.detail))
+    ]
     found: list[Cause] = []
     harmless: list[Cause] = []
-    for each in attribute(fit, tried):
+    for each in _believed(fit, tried):
         cause = _cause(fit, each, parameters, torque_level)
         # A large part of what was measured matters, however badly the values are known without it.
         matters = cause.relative or cause.share * (1.0 - r_squared) > _PART
         (found if matters else harmless).append(cause)
-    wanted = dict.fromkeys([*(each.name for each in tried), "disturbance"])
+    wanted = dict.fromkeys([*(each.name for each in tried), "delay", "disturbance"])
     return Causes(found=tuple(found), harmless=tuple(harmless), tried=tuple(wanted))
+
+
+def _believed(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
+    """The attribution without delays that the signals by themselves contradict."""
+    found = attribute(fit, tried)
+    wrong = {each.candidate.detail for each in found if _contradicted(fit, each)}
+    if not wrong:
+        return found
+    return _believed(
+        fit, [each for each in tried if each.name != "delay" or each.detail not in wrong]
+    )
+
+
+def _contradicted(fit: Fitted, each: Attributed) -> bool:
+    if each.candidate.name != "delay" or each.candidate.detail not in fit.delays:
+        return False
+    delay, late = fit.delays[each.candidate.detail], float(each.coefficients[0])
+    return abs(late - delay.left) > max(_APART * abs(delay.left), _FAR * delay.stderr)
 
 
 def attributed(
@@ -108,8 +140,14 @@ def attributed(
         estimate.parameters,
         torque_level=float(np.sqrt(np.mean(torque**2))),
         r_squared=estimate.residuals.r_squared,
+        delays=estimate.delays,
         signals=found,
     )
+
+
+def _on_time(delay: Delay | None) -> bool:
+    """Whether what is left of a delay is within its error."""
+    return delay is not None and abs(delay.value - delay.applied) <= _LATE * delay.stderr
 
 
 def _cause(
@@ -156,7 +194,8 @@ def _matters(p: ParameterEstimate, shift: float, left: float, scale: float) -> f
     if scale == 0.0:
         return None
     share = abs(shift) / scale
-    error = p.stderr or 0.0
+    # With what is systematic: a shift that the interval states already is nothing new.
+    error = (p.interval[1] - p.interval[0]) / (2.0 * _NORMAL) if p.interval is not None else 0.0
     errors = abs(shift) / error if error > 0.0 else 0.0
     after = error * np.sqrt(max(left, 0.0))
     if after > _UNKNOWN * scale and abs(shift) < _CLEARLY * after:
@@ -215,8 +254,10 @@ def _described(fit: Fitted, each: Attributed) -> tuple[str, str, dict[str, Measu
     elif name in ("offset", "disturbance"):
         size, numbers["torque"] = f"{found[0]:.3g} {torque}", Measured(float(found[0]), torque)
     elif name == "delay":
-        late = float(found[0])
-        size, numbers["delay"] = f"by about {1e3 * late:.2g} ms", Measured(late, "s")
+        known = fit.delays.get(detail)
+        late = known.left if known is not None and known.certain else float(found[0])
+        side = "late" if late > 0.0 else "early"
+        size, numbers["delay"] = f"{side} by about {1e3 * abs(late):.2g} ms", Measured(late, "s")
     elif name == "load_friction":
         size, numbers["coefficient"] = f"{found[0]:.3g} of the load", Measured(float(found[0]))
     elif name == "drift":

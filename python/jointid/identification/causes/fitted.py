@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.estimate.delays import Delay
 from jointid.problem.problem import Problem
 from jointid.recording.recording import Recording
 
@@ -37,6 +38,8 @@ class Fitted:
         What has been added to the parameters in `residual`.
     signals : mapping of str to ndarray
         Further signals of the first recording, one value a sample.
+    delays : mapping of str to Delay
+        Of the signals, as they were measured by themselves.
     """
 
     problem: Problem
@@ -47,6 +50,7 @@ class Fitted:
     jacobian: Array
     start: Array
     signals: Mapping[str, Array] = field(default_factory=dict)
+    delays: Mapping[str, Delay] = field(default_factory=dict)
 
     @functools.cached_property
     def names(self) -> tuple[str, ...]:

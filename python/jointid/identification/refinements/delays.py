@@ -48,7 +48,7 @@ def refined_delays(
         Of the recordings as they are.
     given : mapping of str to float, optional
         Delays to take away [s], no others. Default: those that are certain and without which the torque
-        balance fits better.
+        balance fits better; never a torque that is early by more than a sample.
     """
     choose = given is None
     shift = dict(given or {})
@@ -71,10 +71,12 @@ def refined_delays(
             fits = fits_better(mended, without, _LEAST_GAIN[signal])
             # Friction that the model lacks may look like a late torque; the others are measured without it.
             certain = fits or signal != "torque"
-            if fits:
+            wrong = signal == "torque" and left.value < -problem.recordings[0].sample_period
+            # A torque does not come before its motion: then the position is late, as a coarse one is.
+            if fits and not (choose and wrong):
                 mended, pieces = without, pieces_of(without)
-            if fits and choose:
-                shift[signal] = taken = left.value
+                if choose:
+                    shift[signal] = taken = left.value
         found[signal] = Delay(
             signal=signal,
             value=value,
