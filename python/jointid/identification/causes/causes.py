@@ -25,6 +25,7 @@ Array = NDArray[np.float64]
 
 # How far a delay may be from what its signal by itself says: of that, and in standard errors.
 _APART, _FAR = 0.7, 4.0
+_NORMAL = 1.959964  # standard errors of half a 95 % interval
 _MOVED, _ERRORS = 0.03, 1.5  # share of a value, and standard errors, from which a cause matters
 _UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it must move by more
 _PART = 0.02  # of the variance of what was measured
@@ -38,8 +39,8 @@ def find_causes(
     *,
     torque_level: float,
     r_squared: float,
+    delays: Mapping[str, Delay],
     signals: Mapping[str, Array] | None = None,
-    delays: Mapping[str, Delay] | None = None,
 ) -> Causes:
     """Attribute the misfit of an estimate.
 
@@ -53,10 +54,10 @@ def find_causes(
         Root mean square of the torque [N·m or N]; what an offset is held against.
     r_squared : float
         Share of the variance that the model explains.
+    delays : mapping of str to Delay
+        Of the signals against the position, as estimated before; a cause must not contradict them.
     signals : mapping of str to ndarray, optional
         Further signals of the first recording, one value a sample.
-    delays : mapping of str to Delay, optional
-        As measured by themselves; a cause must not contradict them.
     """
     names = list(penalty.names)
     best = np.array([parameters[name].value for name in names])
@@ -65,7 +66,7 @@ def find_causes(
         for index, name in enumerate(names)
         if parameters[name].vary and parameters[name].at_bound is None
     )
-    fit = replace(Fitted.of(problem, penalty, best, free, signals), delays=delays or {})
+    fit = replace(Fitted.of(problem, penalty, best, free, signals), delays=delays)
     tried = listed_candidates(fit)
     found: list[Cause] = []
     harmless: list[Cause] = []
@@ -140,8 +141,8 @@ def attributed(
         estimate.parameters,
         torque_level=float(np.sqrt(np.mean(torque**2))),
         r_squared=estimate.residuals.r_squared,
-        signals=found,
         delays=estimate.delays,
+        signals=found,
     )
 
 
@@ -189,7 +190,8 @@ def _matters(p: ParameterEstimate, shift: float, left: float, scale: float) -> f
     if scale == 0.0:
         return None
     share = abs(shift) / scale
-    error = p.stderr or 0.0
+    # With what is systematic: a shift that the interval states already is nothing new.
+    error = (p.interval[1] - p.interval[0]) / (2.0 * _NORMAL) if p.interval is not None else 0.0
     errors = abs(shift) / error if error > 0.0 else 0.0
     after = error * np.sqrt(max(left, 0.0))
     if after > _UNKNOWN * scale and abs(shift) < _CLEARLY * after:

@@ -28,6 +28,7 @@ _LOAD = 0.03  # spread of the sensed torque over the torque of the drive
 _ACCELERATION = 0.1  # of the torque
 _TRAVEL = 0.75  # of a period of a torque over the angle
 _GRAVITY = 1.0  # [rad]
+_LONGEST = 10.0  # times the recording: nobody records longer for one parameter
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,6 +148,13 @@ class Excitation:
         )
         motion = f"about {_two(needed)} s of such motion"
         measured = {"duration": Measured(duration, "s"), "duration.needed": Measured(needed, "s")}
+        if needed > _LONGEST * duration:
+            text = (
+                f"the noise hides it: {_two(duration)} s of motion would have to be {_two(needed / duration)} times as "
+                "long"
+            )
+            measured["duration.factor"] = Measured(float(_two(needed / duration)))
+            motion = "with less noise, or with motion that this parameter shows in more"
         return Lack("duration", text, motion, measured, needed)
 
     def noise(self) -> Lack:
@@ -305,4 +313,4 @@ class Excitation:
 
 
 def _two(value: float) -> str:
-    return f"{value:.2g}"
+    return f"{float(f'{value:.2g}'):g}"

@@ -6,17 +6,17 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
-from jointid.identification.warnings.undetermined import wide
+from jointid.identification.warnings.undetermined import listed, wide, with_partners
 
 STRUCTURED_RESIDUAL = FindingType(
     code="structured_residual",
     meaning="the residuals of neighbouring windows are correlated by more than 0.5, or by less and a parameter is not "
-    "well determined; and no cause with a name explains that: the model misses a systematic effect",
+    "well determined; and no cause with a name explains that: the model misses a systematic effect (info where every "
+    "parameter is well determined nevertheless)",
     advice="look at the picture of the residuals; the standard errors allow for the correlation, a bias may remain",
     picture="windows",
 )
 _CORRELATED = 0.5
-_SHOWN = 3  # parameters in the sentence
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
@@ -24,19 +24,18 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if evidence.penalty.cumulative or named(evidence):
         return
     correlation = evidence.residuals.autocorrelation
-    uncertain = wide(evidence) if evidence.causes is not None else ()
+    uncertain = with_partners(evidence, wide(evidence)) if evidence.causes is not None else ()
     if correlation <= _CORRELATED and not uncertain:
         return
-    makes = ""
-    if uncertain:
-        shown = ", ".join(uncertain[:_SHOWN]) + " and others" * (len(uncertain) > _SHOWN)
-        makes = f", which makes {shown} uncertain"
+    makes = f", which makes {listed(uncertain)} uncertain" if uncertain else ""
+    # Where all intervals are narrow with what the misfit adds to them, it is worth knowing, no more.
     yield STRUCTURED_RESIDUAL.finding(
         f"the residuals are autocorrelated (r = {correlation:.2f}): the model misses a systematic effect{makes}; the "
         f"standard errors allow for it, a bias may remain{excluded(evidence)}",
         Action("inspect", text="the residuals over time and over velocity"),
         evidence={"autocorrelation": Measured(correlation)},
         parameters=uncertain,
+        severity=None if uncertain else "info",
     )
 
 

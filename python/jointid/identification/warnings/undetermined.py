@@ -35,6 +35,8 @@ _NOTICEABLE_SHIFT = 0.01
 _INSEPARABLE = 0.98
 _LOAD_FRICTION = 0.05
 _PAIRS = 5
+_LOW_SPEED = ("static", "stribeck", "stribeck_velocity", "stribeck_exponent")
+_FEW = 3  # names in a sentence
 
 _SHOWN = 4  # reasons, and pairs, in the sentence; the evidence has all
 
@@ -117,6 +119,23 @@ def _lack(p: ParameterEstimate, evidence: Evidence, excitation: Excitation) -> L
 def wide(evidence: Evidence) -> tuple[str, ...]:
     """Parameters that are not well determined, whatever the reason."""
     return tuple(p.name for p in evidence.parameters.values() if _why_undetermined(p, evidence))
+
+
+def with_partners(evidence: Evidence, names: Collection[str]) -> tuple[str, ...]:
+    """The parameters, and the rest of the friction at low speed if they have a part of it.
+
+    Its height and its decay lie on one curve: what moves one of them moves the other by an amount that no shift of
+    first order shows.
+    """
+    low = [name for name, p in evidence.parameters.items() if p.vary and _kind(name) in _LOW_SPEED]
+    partners = low if set(low) & set(names) else []
+    return tuple(dict.fromkeys([*names, *partners]))
+
+
+def listed(names: Collection[str]) -> str:
+    """Names in a sentence."""
+    few = list(names)[:_FEW]
+    return ", ".join(few) + " and others" * (len(names) > len(few))
 
 
 def _worst_pairs(
