@@ -145,3 +145,75 @@ def test_noise_is_not_suspicious_and_slow_structure_is() -> None:
     # Silent from one window to the next, loud over sixteen.
     slow = rng.normal(size=1200) + 0.5 * np.sin(np.linspace(0.0, 30.0, 1200))
     assert suspicious(slow, run, ones, velocity)
+
+
+def _benches(*logs: Log, **plant: float) -> Bench:
+    law = Law(inertia=2.5, stiffness=40.0, feedback=1.5, on_reference=1.0)
+    motion = thesis(np.radians([60.0]))
+    return Bench.stack([Bench(motion=motion, law=law, plant=Plant(**plant), log=x) for x in logs])
+
+
+def test_a_filtered_velocity_is_no_friction_at_low_speed() -> None:
+    (run,) = simulate(_benches(Log(velocity_cutoff=50.0)), duration=9.0, seed=6)
+    estimate = jid.identify(run, jid.thesis_joint(), search="separable")
+    assert estimate.delays["velocity"].certain
+    causes = estimate.causes()
+    first = (*causes.found, *causes.harmless)[0]
+    assert first.name == "delay"
+    assert first.detail.startswith("velocity")
+    assert dict(first.advice[0].arguments) == {"columns": {"velocity": None}}
+    assert not _SLOW & set(_named(estimate))
+
+
+def test_a_velocity_that_is_measured_as_prompt_is_no_cause() -> None:
+    stiff = {"bristle_stiffness": 1e5, "bristle_damping": 200.0}
+    (run,) = simulate(_benches(Log(), **stiff), duration=9.0, seed=3)
+    estimate = jid.identify(run, jid.thesis_joint(), search="separable")
+    assert not estimate.delays["velocity"].certain
+    assert "delay" not in estimate.causes().tried or all(
+        cause.detail != "velocity" for cause in estimate.causes().found
+    )
+
+
+def test_noise_of_a_sensor_is_no_structure() -> None:
+    (run,) = simulate(_benches(Log(sensor_noise=5.0)), duration=9.0, seed=7)
+    estimate = jid.identify(run, jid.thesis_joint(), search="separable")
+    assert not {"structured_residual", *MEANINGS} & {found.code for found in estimate.findings}
+
+
+def test_a_clipped_torque_is_its_own_cause() -> None:
+    (run,) = simulate(_benches(Log()), duration=9.0, seed=8)
+    torque = run.torque
+    assert torque is not None
+    limit = 0.7 * float(torque.max())
+    run = jid.Recording(
+        time=run.time,
+        position=run.position,
+        velocity=run.velocity,
+        torque=np.minimum(torque, limit),
+        sensor=run.sensor,
+    )
+    estimate = jid.identify(run, jid.thesis_joint(), search="separable")
+    assert "torque_saturated" in {found.code for found in estimate.findings}
+    assert _named(estimate) == []
+
+
+def test_a_misfit_without_a_name_is_said_in_one_line() -> None:
+    rng = np.random.default_rng(2)
+    (run,) = simulate(_benches(Log()), duration=9.0, seed=4)
+    wander = np.convolve(rng.normal(0.0, 0.4, len(run) + 99), np.ones(100), "valid")
+    run = jid.Recording(
+        time=run.time,
+        position=run.position,
+        velocity=run.velocity,
+        torque=run.torque + wander,
+        sensor=run.sensor,
+    )
+    estimate = jid.identify(run, jid.thesis_joint(), search="separable")
+    said = [f for f in estimate.findings if f.code in ("structured_residual", "poor_fit")]
+    assert said
+    count = len(estimate.causes().excluded)
+    for found in said:
+        assert f"none of {count} known causes" in found.message
+        assert found.evidence["causes_excluded"].value == count
+        assert len(found.message) <= 220

@@ -11,6 +11,7 @@ from jointid.identification.causes.candidates import Candidate
 from jointid.identification.causes.events import LocalEvent, local_event
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.folds import Folds, summed
+from jointid.identification.causes.slow_rows import SlowRows, slow_rows
 
 Array = NDArray[np.float64]
 
@@ -20,6 +21,10 @@ _SHARE = 0.12  # of the misfit, at least, at one scale
 _SHARE_OF_ALL = 0.05  # of the misfit before any cause was found
 _SURE = 3.0  # mean improvement of a block over its error
 _FEWEST = 5  # blocks that hold the misfit
+_LEFT = (
+    0.2  # of a column's sum of squares: with less in the faster windows they do not tell its value
+)
+_GONE = 0.3  # of the misfit may be left without the windows on the limit of the torque
 _ALIKE = 1.1  # ratio of misfits that blocks do not tell apart
 _HARDLY = 0.9  # a runner-up explains so much of what the winner does, in logarithms of the misfit
 
@@ -67,12 +72,13 @@ def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
         places.append(list(range(at, at + each.columns.shape[1])))
         at += each.columns.shape[1]
     matrix = np.column_stack([fit.jacobian, *(each.columns for each in tried), fit.residual])
+    base, reached = list(range(count)), np.zeros(count)
+    if _of_the_limit(fit, matrix[:, base], matrix[:, -1]):
+        return ()
     scaled = _at_scales(fit, matrix)
-    base = list(range(count))
     whole = {factor: folds.misfit(base).sum() for factor, folds in scaled}
     found: list[Attributed] = []
     taken: set[str] = set()
-    reached = np.zeros(count)
     while len(found) < _MOST:
         scores = {
             index: _score(scaled[:1] if each.finest else scaled, base, places[index], whole)
@@ -90,6 +96,9 @@ def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
             reached = reached + found[-1].shifts
             continue
         if not sure:
+            slow = None if found else slow_rows(fit, matrix[:, base], matrix[:, -1])
+            if slow is not None:
+                found.append(_of_slow_rows(fit, matrix, slow))
             break
         winner = _parsimonious(sure, tried)
         base = base + places[winner]
@@ -97,6 +106,18 @@ def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
         found.append(_attributed(fit, matrix, base, tried, winner, scores, reached))
         reached = reached + found[-1].shifts
     return tuple(found)
+
+
+def _of_the_limit(fit: Fitted, base: Array, residual: Array) -> bool:
+    """Whether the misfit is gone from the other windows once those on the torque's limit are left out."""
+    kept = fit.trusted
+    if kept.all():
+        return False
+    steps = fit.solve(base[kept], residual[kept]) - fit.start
+    all_rows = fit.solve(base, residual) - fit.start
+    before = residual + base @ all_rows
+    after = residual[kept] + base[kept] @ steps
+    return float(np.sum(after**2)) < _GONE * float(np.sum(before**2))
 
 
 def _of_event(
@@ -111,6 +132,39 @@ def _of_event(
         coefficients=np.array([event.torque]),
         shifts=steps[: len(reached)] - reached,
     )
+
+
+def _of_slow_rows(fit: Fitted, matrix: Array, slow: SlowRows) -> Attributed:
+    """The shifts when slow motion is left out, of what is known without it."""
+    kept = np.where(slow.rows[:, None], 0.0, matrix)
+    number = ("speed", slow.speed, "/s")
+    return Attributed(
+        candidate=Candidate(
+            name="slow_motion",
+            columns=np.zeros((0, 1)),
+            detail=f"below about {slow.speed:.2g} @/s",
+            numbers=(number,),
+        ),
+        share=slow.share,
+        factor=1,
+        coefficients=np.zeros(0),
+        shifts=_without_slow(fit, kept, matrix),
+    )
+
+
+def _without_slow(fit: Fitted, kept: Array, matrix: Array) -> Array:
+    """Steps without the slow windows; none for what only these windows show."""
+    count = len(fit.start)
+    left = np.einsum("ni,ni->i", kept[:, :count], kept[:, :count])
+    whole = np.einsum("ni,ni->i", matrix[:, :count], matrix[:, :count])
+    known = np.flatnonzero(left > _LEFT * whole)
+    steps = np.zeros(count)
+    # Without what `solve` adds to the first columns, which these are not.
+    size = np.sqrt(left[known])
+    scaled = kept[:, known] / size
+    square = np.einsum("ni,nj->ij", scaled, scaled) + 1e-12 * np.eye(len(known))
+    steps[known] = np.linalg.solve(square, -np.einsum("ni,n->i", scaled, kept[:, -1])) / size
+    return steps
 
 
 def _family(candidate: Candidate) -> str:

@@ -18,8 +18,7 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-_LATE = 3e-4  # [s], of what is left of a delay that matters
-_ERRORS = 3.0  # of it
+FILTERED = "velocity, which is not the position's rate"
 _PERIOD = np.pi  # [rad] of a harmonic that the motion covers, at least
 
 
@@ -187,36 +186,50 @@ def _ripple(fit: Fitted) -> Iterator[Candidate]:
 def _delay(fit: Fitted) -> Iterator[Candidate]:
     """To first order, the integral of a signal that is late changes by its rise over the window.
 
-    Not of a signal that is known to have no delay left: each was held against the motion by itself, which
-    tells more than a misfit that the other errors of the model share.
+    Of a signal whose delay was measured by itself, that says more than the misfit of the whole balance.
     """
-    runs = fit.problem.in_core
-    if _may_be_late(fit, "torque"):
-        late = -np.asarray(fit.penalty.torque_steps(runs, fit.problem.mask_standstill))
+    if "torque" not in fit.prompt:
+        runs = fit.problem.in_core
+        late = np.asarray(fit.penalty.torque_steps(runs, fit.problem.mask_standstill))
         yield Candidate(name="delay", columns=late[:, None], detail="torque")
-    if "sensor_gain" in fit.names and _may_be_late(fit, "sensor"):
+    if "sensor_gain" in fit.names and "sensor" not in fit.prompt:
         gain = fit.value("sensor_gain")
         rise = gain * fit.rise(lambda _, run: _present(run.sensor))
         yield Candidate(name="delay", columns=rise[:, None], detail="sensor")
-    if not fit.problem.recordings[0].velocity_derived and _may_be_late(fit, "velocity"):
-        rise = fit.rise(lambda _, run: _of_velocity(fit, run))
+    if not fit.problem.recordings[0].velocity_derived and "velocity" not in fit.prompt:
+        rise = -fit.rise(lambda _, run: _of_velocity(fit, run))
         yield Candidate(name="delay", columns=rise[:, None], detail="velocity")
 
 
-def _may_be_late(fit: Fitted, signal: str) -> bool:
-    delay = fit.delays.get(signal)
-    return delay is None or abs(delay.left) + _ERRORS * delay.stderr > _LATE
+def _velocity(fit: Fitted) -> Iterator[Candidate]:
+    """A velocity that is not the position's rate, as behind a filter: what the model says with either."""
+    if fit.filtered and not fit.problem.recordings[0].velocity_derived:
+        rise = fit.value("inertia") * fit.rise(lambda _, run: _rate(run) - run.velocity)
+        torque = fit.integral(
+            lambda _, run: _friction(fit, _rate(run)) - _friction(fit, run.velocity)
+        )
+        yield Candidate(name="delay", columns=(rise + torque)[:, None], detail=FILTERED)
+
+
+def _rate(run: Recording) -> Array:
+    return np.asarray(np.gradient(run.position, run.time))
 
 
 def _of_velocity(fit: Fitted, run: Recording) -> Array:
     """Torque of the terms that the velocity enters: inertia and friction, but for what the travel gives."""
     total = fit.value("inertia") * np.gradient(run.velocity, run.time)
+    return np.asarray(total + _friction(fit, run.velocity))
+
+
+def _friction(fit: Fitted, velocity: Array) -> Array:
+    """The friction at a velocity, without its viscous part: over a window that is the travel's."""
+    total = -fit.value("viscous") * velocity
     shapes = {shape: fit.value(shape) for term in fit.penalty.terms for shape in term.shapes}
     for index, term in enumerate(fit.penalty.terms):
         if term.friction and not term.needs_load:
             values = np.array([shapes[shape] for shape in term.shapes])
-            total += fit.best[index] * _core.friction_basis(term.key, run.velocity, values)
-    return np.asarray(total - fit.value("viscous") * run.velocity)
+            total += fit.best[index] * _core.friction_basis(term.key, velocity, values)
+    return np.asarray(total)
 
 
 def _asymmetry(fit: Fitted) -> Iterator[Candidate]:
@@ -260,7 +273,7 @@ def _other_signal(fit: Fitted) -> Iterator[Candidate]:
 
 FAMILIES: tuple[Callable[[Fitted], Iterator[Candidate]], ...] = (
     *(_gravity, _inertia_varies, _load_friction, _slow, _drift, _harmonic, _ripple),
-    *(_delay, _asymmetry, _offset, _scale, _other_signal),
+    *(_delay, _velocity, _asymmetry, _offset, _scale, _other_signal),
 )
 
 

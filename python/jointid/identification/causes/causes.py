@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,19 +15,19 @@ from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Measured
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.identification.causes.attribution import Attributed, attribute
-from jointid.identification.causes.candidates import Candidate, inertia_basis, listed_candidates
+from jointid.identification.causes.candidates import FILTERED, inertia_basis, listed_candidates
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.remedies import advice_against
 from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
-# How far a delay may be from what its signal by itself says: of that, and in standard errors.
-_APART, _FAR = 0.7, 4.0
 _NORMAL = 1.959964  # standard errors of half a 95 % interval
-_MOVED, _ERRORS = 0.03, 1.5  # share of a value, and standard errors, from which a cause matters
+_MOVED, _ERRORS = 0.04, 1.8  # share of a value, and standard errors, from which a cause matters
 _UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it must move by more
-_PART = 0.02  # of the variance of what was measured
+_PART = 0.05  # of the variance of what was measured
+_KNOWN = 3e-4  # [s]; standard error of a delay that says whether one matters
+_BY_CHANCE = 3.0  # standard errors of a delay
 _LEAST = 0.003  # share of a value: a smaller change matters to nobody, however certain
 
 
@@ -39,7 +38,7 @@ def find_causes(
     *,
     torque_level: float,
     r_squared: float,
-    delays: Mapping[str, Delay],
+    delays: Mapping[str, Delay] | None = None,
     signals: Mapping[str, Array] | None = None,
 ) -> Causes:
     """Attribute the misfit of an estimate.
@@ -54,8 +53,8 @@ def find_causes(
         Root mean square of the torque [N·m or N]; what an offset is held against.
     r_squared : float
         Share of the variance that the model explains.
-    delays : mapping of str to Delay
-        Of the signals against the position, as estimated before; a cause must not contradict them.
+    delays : mapping of str to Delay, optional
+        As measured against the position. Default: not measured.
     signals : mapping of str to ndarray, optional
         Further signals of the first recording, one value a sample.
     """
@@ -66,35 +65,19 @@ def find_causes(
         for index, name in enumerate(names)
         if parameters[name].vary and parameters[name].at_bound is None
     )
-    fit = replace(Fitted.of(problem, penalty, best, free, signals), delays=delays)
+    delays = delays or {}
+    late = "velocity" in delays and delays["velocity"].certain
+    fit = Fitted.of(problem, penalty, best, free, signals, _prompt(delays), late)
     tried = listed_candidates(fit)
     found: list[Cause] = []
     harmless: list[Cause] = []
-    for each in _believed(fit, tried):
+    for each in attribute(fit, tried):
         cause = _cause(fit, each, parameters, torque_level)
         # A large part of what was measured matters, however badly the values are known without it.
         matters = cause.relative or cause.share * (1.0 - r_squared) > _PART
         (found if matters else harmless).append(cause)
     wanted = dict.fromkeys([*(each.name for each in tried), "delay", "disturbance"])
     return Causes(found=tuple(found), harmless=tuple(harmless), tried=tuple(wanted))
-
-
-def _believed(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
-    """The attribution without delays that the signals by themselves contradict."""
-    found = attribute(fit, tried)
-    wrong = {each.candidate.detail for each in found if _contradicted(fit, each)}
-    if not wrong:
-        return found
-    return _believed(
-        fit, [each for each in tried if each.name != "delay" or each.detail not in wrong]
-    )
-
-
-def _contradicted(fit: Fitted, each: Attributed) -> bool:
-    if each.candidate.name != "delay" or each.candidate.detail not in fit.delays:
-        return False
-    delay, late = fit.delays[each.candidate.detail], float(each.coefficients[0])
-    return abs(late - delay.left) > max(_APART * abs(delay.left), _FAR * delay.stderr)
 
 
 def attributed(
@@ -144,6 +127,20 @@ def attributed(
         delays=estimate.delays,
         signals=found,
     )
+
+
+def _prompt(delays: Mapping[str, Delay]) -> frozenset[str]:
+    """Signals whose delay is known well enough, and is none or was taken away.
+
+    A torque of which only some parts seem late is not late: something else is amiss there.
+    """
+    found = set()
+    for each in delays.values():
+        left = abs(each.value - each.applied)
+        none = not each.certain and (each.signal == "torque" or left < _BY_CHANCE * each.stderr)
+        if each.stderr < _KNOWN and (none or left == 0.0):
+            found.add(each.signal)
+    return frozenset(found)
 
 
 def _cause(
@@ -249,11 +246,9 @@ def _described(fit: Fitted, each: Attributed) -> tuple[str, str, dict[str, Measu
         size, numbers["amplitude"] = f"{amplitude:.3g} {torque}", Measured(amplitude, torque)
     elif name in ("offset", "disturbance"):
         size, numbers["torque"] = f"{found[0]:.3g} {torque}", Measured(float(found[0]), torque)
-    elif name == "delay":
-        known = fit.delays.get(detail)
-        late = known.left if known is not None and known.certain else float(found[0])
-        side = "late" if late > 0.0 else "early"
-        size, numbers["delay"] = f"{side} by about {1e3 * abs(late):.2g} ms", Measured(late, "s")
+    elif name == "delay" and detail != FILTERED:
+        late = float(found[0])
+        size, numbers["delay"] = f"by about {1e3 * late:.2g} ms", Measured(late, "s")
     elif name == "load_friction":
         size, numbers["coefficient"] = f"{found[0]:.3g} of the load", Measured(float(found[0]))
     elif name == "drift":

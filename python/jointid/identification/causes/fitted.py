@@ -10,11 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.estimate.delays import Delay
 from jointid.problem.problem import Problem
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
+
+_OFTEN = 0.005  # share of the samples on a limit
+_EQUAL = 1e-9  # of the torque's range
+_MOST_RESTING = 0.5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,8 +41,10 @@ class Fitted:
         What has been added to the parameters in `residual`.
     signals : mapping of str to ndarray
         Further signals of the first recording, one value a sample.
-    delays : mapping of str to Delay
-        Of the signals, as they were measured by themselves.
+    prompt : frozenset of str
+        Signals that are known not to be late.
+    filtered : bool
+        Whether the velocity was late against the position: a filter does more than that.
     """
 
     problem: Problem
@@ -50,7 +55,8 @@ class Fitted:
     jacobian: Array
     start: Array
     signals: Mapping[str, Array] = field(default_factory=dict)
-    delays: Mapping[str, Delay] = field(default_factory=dict)
+    prompt: frozenset[str] = frozenset()
+    filtered: bool = False
 
     @functools.cached_property
     def names(self) -> tuple[str, ...]:
@@ -71,6 +77,15 @@ class Fitted:
     def duration(self) -> Array:
         """Integrated time of each window [s]."""
         return np.asarray(self.penalty.usable_duration)
+
+    @functools.cached_property
+    def trusted(self) -> NDArray[np.bool_]:
+        """Windows in which the torque does not rest on a limit: there the record may be less than the torque.
+
+        All of them, if most windows would be lost.
+        """
+        resting = self.integral(lambda _, run: _on_a_limit(_present(run.torque))) > 0.0
+        return ~resting if resting.mean() < _MOST_RESTING else np.ones(len(resting), dtype=bool)
 
     @functools.cached_property
     def weights(self) -> list[Array]:
@@ -112,6 +127,8 @@ class Fitted:
         best: Array,
         free: tuple[int, ...],
         signals: Mapping[str, Array] | None = None,
+        prompt: frozenset[str] = frozenset(),
+        filtered: bool = False,
     ) -> Fitted:
         """Return the fit at a minimum, on the torque's side whatever the penalty compares."""
         _, residual, jacobian = penalty.linearised(best)
@@ -129,6 +146,8 @@ class Fitted:
                 jacobian=jacobian,
                 start=start,
                 signals=signals,
+                prompt=prompt,
+                filtered=filtered,
             )
         gain = names.index("sensor_gain")
         reading = penalty.columns(best[penalty.coefficients :])[:, gain]
@@ -143,6 +162,8 @@ class Fitted:
             jacobian=jacobian,
             start=start,
             signals=signals,
+            prompt=prompt,
+            filtered=filtered,
         )
         if gain not in free or "load_friction" in names:
             return fit
@@ -177,6 +198,21 @@ class Fitted:
             total = np.concatenate([np.zeros((1, *each.shape[1:])), np.cumsum(each, axis=0)])
             parts.append(total[bounds[mine, 1]] - total[bounds[mine, 0]])
         return np.concatenate(parts)
+
+
+def _present(signal: Array | None) -> Array:
+    assert signal is not None
+    return signal
+
+
+def _on_a_limit(torque: Array) -> Array:
+    """1 where the torque is its largest or its smallest value, if that is so often; else 0."""
+    resting = np.zeros(len(torque))
+    for limit in (torque.max(), torque.min()):
+        there = np.abs(torque - limit) <= _EQUAL * np.ptp(torque)
+        if there.mean() > _OFTEN:
+            resting[there] = 1.0
+    return resting
 
 
 def _explained(fit: Fitted, reading: Array) -> Array:

@@ -6,6 +6,7 @@ from typing import Any
 
 from jointid.base.advice import Action
 from jointid.identification.causes.attribution import Attributed
+from jointid.identification.causes.candidates import FILTERED
 from jointid.identification.causes.fitted import Fitted
 
 _OTHERWISE: dict[str, tuple[Action, ...]] = {
@@ -50,6 +51,8 @@ def advice_against(fit: Fitted, cause: Attributed) -> tuple[Action, ...]:
         return (_model(fit, harmonics=(*model.harmonics, float(detail))),)
     if name == "ripple":
         return (_model(fit, ripple=(*model.ripple, float(detail))),)
+    if name == "delay" and detail == FILTERED:
+        return (Action("call", {"columns": {"velocity": None}}, function="load"),)
     if name == "delay":
         return (Action("inspect", text=f"when the {detail} is sampled and logged"),)
     # Friction at low speed: the next richer law where there is one.

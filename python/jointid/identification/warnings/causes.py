@@ -43,13 +43,14 @@ TYPES = {
 def _find(evidence: Evidence) -> Iterator[Finding]:
     if evidence.causes is None:
         return
+    # Their own checks say more.
     causes = [
         each
         for each in evidence.causes.found
         if each.name != WRONG_SCALE.code and not _is_known_delay(each, evidence)
     ]
     uncertain = wide(evidence)
-    for number, cause in enumerate(causes):  # those left out have checks that say more
+    for number, cause in enumerate(causes):
         # The misfit makes values uncertain beside those that a shift of first order shows.
         names = (*cause.relative, *(uncertain if number == 0 else ()))
         yield _finding(cause, with_partners(evidence, names))

@@ -1,13 +1,12 @@
 """A model that explains too little."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
-from jointid.identification.warnings.structured_residual import excluded, named
+from jointid.identification.warnings.structured_residual import excluded, excluded_number, named
 
 POOR_FIT = FindingType(
     code="poor_fit",
@@ -29,21 +28,21 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     )
     measured = {"r_squared": Measured(explained)}
     if explained < 0.0:
-        found = POOR_FIT.finding(
+        yield POOR_FIT.finding(
             f"the model explains less of what was measured than its mean does (R² = {explained:.2f}): the values "
             "cannot be used",
             *actions,
             evidence=measured,
+            severity="blocking",
         )
-        yield replace(found, severity="blocking")
         return
     # Noise alone is no misfit, and the errors contain it, unless it is all that was measured.
     limit = _NOTHING if evidence.white else POORLY_EXPLAINED
     if explained < limit and not named(evidence):
         yield POOR_FIT.finding(
-            f"the model explains only {100.0 * explained:.1f} % of what was measured{excluded(evidence)}",
+            f"the model explains only {100.0 * explained:.1f} % of what was measured{excluded(evidence, 'the rest')}",
             *actions,
-            evidence=measured,
+            evidence=measured | excluded_number(evidence),
         )
 
 

@@ -6,7 +6,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
-from jointid.identification.warnings.undetermined import listed, wide, with_partners
+from jointid.identification.warnings.undetermined import wide, with_partners
 
 STRUCTURED_RESIDUAL = FindingType(
     code="structured_residual",
@@ -17,6 +17,7 @@ STRUCTURED_RESIDUAL = FindingType(
     picture="windows",
 )
 _CORRELATED = 0.5
+_SHOWN = 2  # parameters in the sentence
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
@@ -24,16 +25,22 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if evidence.penalty.cumulative or named(evidence):
         return
     correlation = evidence.residuals.autocorrelation
-    uncertain = with_partners(evidence, wide(evidence)) if evidence.causes is not None else ()
+    uncertain = with_partners(evidence, wide(evidence)) if evidence.structured else ()
     if correlation <= _CORRELATED and not uncertain:
         return
-    makes = f", which makes {listed(uncertain)} uncertain" if uncertain else ""
     # Where all intervals are narrow with what the misfit adds to them, it is worth knowing, no more.
+    makes = ""
+    if uncertain:
+        shown = ", ".join(uncertain[:_SHOWN]) + " and others" * (len(uncertain) > _SHOWN)
+        makes = f"; {shown} are uncertain"
     yield STRUCTURED_RESIDUAL.finding(
-        f"the residuals are autocorrelated (r = {correlation:.2f}): the model misses a systematic effect{makes}; the "
-        f"standard errors allow for it, a bias may remain{excluded(evidence)}",
-        Action("inspect", text="the residuals over time and over velocity"),
-        evidence={"autocorrelation": Measured(correlation)},
+        f"the residuals are autocorrelated (r = {correlation:.2f}): the model misses a systematic effect"
+        f"{excluded(evidence)}{makes}",
+        Action(
+            "inspect",
+            text="the residuals over time and over velocity",
+        ),
+        evidence={"autocorrelation": Measured(correlation)} | excluded_number(evidence),
         parameters=uncertain,
         severity=None if uncertain else "info",
     )
@@ -45,12 +52,17 @@ def named(evidence: Evidence) -> bool:
     return any(cause.name != "wrong_scale" for cause in causes)
 
 
-def excluded(evidence: Evidence) -> str:
-    """What was looked for and not found, as the end of a sentence."""
-    if evidence.causes is None or not evidence.causes.excluded:
-        return ""
-    names = [name.replace("_", " ") for name in evidence.causes.excluded]
-    return f"; it is not {', '.join(names[:-1])} or {names[-1]}" if len(names) > 1 else ""
+def excluded(evidence: Evidence, what: str = "it") -> str:
+    """How much was looked for and not found, as a part of a sentence; `Causes.excluded` has the names."""
+    count = len(evidence.causes.excluded) if evidence.causes is not None else 0
+    return f"; none of {count} known causes explains {what}" if count else ""
+
+
+def excluded_number(evidence: Evidence) -> dict[str, Measured]:
+    """How many causes were looked for and not found, as evidence."""
+    if evidence.causes is None:
+        return {}
+    return {"causes_excluded": Measured(float(len(evidence.causes.excluded)))}
 
 
 CHECK = Check(_find, (STRUCTURED_RESIDUAL,))

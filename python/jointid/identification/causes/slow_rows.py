@@ -1,0 +1,52 @@
+"""Misfit that sits where the joint is slow, though no simple friction at low speed predicts it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.identification.causes.fitted import Fitted
+
+Array = NDArray[np.float64]
+
+_SLOW = 0.2  # of the windows, the slowest
+_MOST = 0.85  # share of the misfit in them
+_PLACES, _EACH = 3, 0.6  # passages, and the largest share of the misfit that one of them may hold
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SlowRows:
+    """Windows of slow motion that hold most of the misfit.
+
+    Attributes
+    ----------
+    rows : ndarray of bool, shape (windows,)
+    share : float
+        Of the misfit.
+    speed : float
+        Below which a window counts as slow [rad/s or m/s].
+    """
+
+    rows: NDArray[np.bool_]
+    share: float
+    speed: float
+
+
+def slow_rows(fit: Fitted, base: Array, residual: Array) -> SlowRows | None:
+    """Return the slow windows if they hold most of the misfit, in several passages; else None."""
+    velocity = fit.integral(lambda _, run: np.abs(run.velocity)) / fit.duration
+    speed = float(np.quantile(velocity, _SLOW))
+    rows = velocity < speed
+    steps = fit.solve(base, residual)
+    steps[: len(fit.start)] -= fit.start
+    power = (residual + base @ steps) ** 2
+    passage = np.cumsum(np.concatenate([[rows[0]], rows[1:] & ~rows[:-1]]))
+    held = np.bincount(passage[rows], weights=power[rows])
+    total = float(power.sum())
+    share = float(held.sum()) / max(total, 1e-300)
+    loud = np.count_nonzero(held > 0.02 * total)
+    if share < _MOST or loud < _PLACES or float(held.max()) > _EACH * total:
+        return None
+    return SlowRows(rows=rows, share=share, speed=speed)
