@@ -82,6 +82,9 @@ def test_a_signal_of_the_log_is_named_only_if_given(estimates: dict[str, jid.Est
     assert "axis 2" in causes.report()
     with pytest.raises(jid.InputError, match="samples"):
         estimate.causes({"axis 2": axis[1:]})
+    axis[7] = np.nan
+    with pytest.raises(jid.InputError, match=r"must be finite; 1 of .*, the first at sample 7"):
+        estimate.causes({"axis 2": axis})
 
 
 @pytest.mark.parametrize("late", [-1.0, 1.0])

@@ -128,6 +128,15 @@ def test_speeds_that_cannot_be(run: jid.Recording, speed: object) -> None:
         identified(run, min_speed=speed)
 
 
+@pytest.mark.parametrize("share", [0.9999, 50.0])
+def test_a_speed_that_leaves_no_motion_is_named(run: jid.Recording, share: float) -> None:
+    speed = share * float(np.abs(run.velocity).max())
+    with pytest.raises(jid.InputError, match="leaves too little motion") as error:
+        identified(run, min_speed=speed)
+    assert error.value.argument == "min_speed"
+    assert error.value.value == speed
+
+
 def test_a_held_signal_is_shifted_by_the_mean_of_its_intervals(run: jid.Recording) -> None:
     assert run.torque is not None
     back = shifted(run, {"torque": 0.0005})

@@ -103,11 +103,18 @@ def attributed(
     found = {}
     for name, values in signals.items():
         series = np.asarray(values, dtype=np.float64)
-        if series.shape != (length,) or not np.all(np.isfinite(series)):
+        if series.shape != (length,):
             raise InputError(
-                f"one finite value for each of the {length} samples is expected",
+                f"one value for each of the {length} samples is expected",
                 argument=f"signals.{name}",
                 value=f"shape {series.shape}",
+            )
+        wrong = np.flatnonzero(~np.isfinite(series))
+        if wrong.size:
+            raise InputError(
+                f"its values must be finite; {wrong.size} of {length} are not, the first at sample {wrong[0]}",
+                argument=f"signals.{name}",
+                value=float(series[wrong[0]]),
             )
         found[name] = series
     torque = np.asarray(penalty.target) / np.asarray(penalty.usable_duration)
