@@ -119,12 +119,13 @@ Spike largest_spike(const Signal& signal, SpikeRule rule, const Signal& velocity
             ? times * usual
             : std::max(times * usual, share * std::sqrt(static_cast<double>(width)) * range);
     const double at_turn = kAtTurn * range;
+    // Friction steps at a reversal, and with it torque and sensor; a velocity has no reason to.
+    const bool may_step = rule != SpikeRule::position && signal.data() != velocity.data();
     Spike found;
     for (Eigen::Index k = 0; k < places; ++k) {
       const double here = height(k);
       if (!(here > limit)) continue;
-      if (rule != SpikeRule::position && here <= at_turn &&
-          turns(velocity, peak_speed, k, k + 2 * width)) {
+      if (may_step && here <= at_turn && turns(velocity, peak_speed, k, k + 2 * width)) {
         continue;
       }
       ++found.count;

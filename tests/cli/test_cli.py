@@ -52,7 +52,7 @@ def test_demo_writes_a_report_with_its_pictures(tmp_path: Path) -> None:
 def test_identify_prints_json_that_reads_back(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["identify", KR300, "--joint", KR300_JOINT, "--json", "--quiet"]) == 0
     text = capsys.readouterr().out
-    assert json.loads(text)["schema"] == 2
+    assert json.loads(text)["schema"] == 3
     assert jid.Estimate.from_json(text).parameters["coulomb"].value == pytest.approx(
         355.0, rel=0.15
     )

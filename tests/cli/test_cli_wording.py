@@ -301,7 +301,8 @@ def test_values(value: object, text: str) -> None:
 
 def test_a_page_from_the_command_line_advises_options(tmp_path: Path) -> None:
     """Who made the page with the command line follows its advice there."""
-    assert main(["demo", "--output", str(tmp_path), "--quiet"]) == 0
-    page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "load with --column velocity=none" in page
-    assert "columns=" not in page
+    target = tmp_path / "report.html"
+    assert main(["identify", WELL, "--report", str(target), "--quiet"]) == 0
+    page = target.read_text(encoding="utf-8")
+    assert "identify with --torque-hold zoh" in page
+    assert "torque_hold=" not in page

@@ -148,7 +148,7 @@ def test_the_simplest_within_one_standard_error_wins() -> None:
     entries = [
         made_up("rich", 7, 0.100, 0.010),
         made_up("middle", 5, 0.109, 0.001),
-        made_up("poor", 4, 0.111, 0.050),
+        made_up("poor", 4, 0.125, 0.050),
         made_up("also_middle", 5, 0.108, 0.001),
     ]
     judged, winner, reason = judge(entries)

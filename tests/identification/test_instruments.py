@@ -1,8 +1,10 @@
 """The sensor's gain by instruments: free of the bias that either side of a regression has."""
 
+import math
+
 import numpy as np
 import pytest
-from simulated_joint import TRUTH, simulate
+from simulated_joint import INERTIA, TRUTH, simulate
 
 import jointid as jid
 from jointid.estimate.tables import quality
@@ -136,3 +138,40 @@ def test_the_bootstrap_draws_the_estimate_that_was_made(noisy: list[jid.Recordin
     assert chance is not None
     assert 0.5 * chance < drawn.stderr < 1.6 * chance
     assert drawn.interval[0] < estimate.parameters["sensor_gain"].value < drawn.interval[1]
+
+
+def hardly_moving_link(seed: int, polarity: float = 1.0) -> jid.Recording:
+    """Twenty degrees about the horizontal: the reading hardly varies beside the torque."""
+    joint = jid.thesis_joint()
+    presumed = {"coulomb": 15.0, "static": 10.0, "stribeck": 150.0, "viscous": 10.0}
+    run = jid.simulate(
+        joint.with_parameters(TRUTH),
+        jid.AdaptiveRobust(inertia=2.5, sensor_gain=1.5, sensor_offset=0.0, **presumed),
+        jid.Trajectory.thesis(math.radians(20.0), cycle=3.0, duration=6.0),
+        sensors=jid.Sensors(torque_noise=0.2),
+        seed=seed,
+    )
+    assert run.sensor is not None
+    signals = {name: getattr(run, name) for name in ("time", "position", "velocity", "torque")}
+    return jid.Recording(**signals, sensor=polarity * run.sensor, torque_hold="zoh")
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("polarity", [1.0, -1.0])
+def test_a_small_motion_without_a_joint_has_the_right_sign(seed: int, polarity: float) -> None:
+    estimate = jid.identify(hardly_moving_link(seed, polarity))
+    assert estimate.settings["residual"] == "instruments"
+    gain, inertia = (estimate.parameters[name] for name in ("sensor_gain", "inertia"))
+    assert polarity * gain.value == pytest.approx(TRUTH["sensor_gain"], rel=0.1)
+    assert inertia.value == pytest.approx(INERTIA, rel=0.01)
+    assert {each.code for each in estimate.findings} <= {"undetermined", "delay_removed"}
+
+
+def test_a_gain_of_the_wrong_sign_is_refused() -> None:
+    """Forced by its bounds: what is left of the torque is not the joint's, so it has no cause."""
+    run = hardly_moving_link(0)
+    estimate = jid.identify(run, parameters={"sensor_gain": {"max": -0.1}})
+    assert estimate.residuals.r_squared < 0.0
+    (found,) = (each for each in estimate.findings if each.code == "poor_fit")
+    assert found.severity == "blocking"
+    assert not [each for each in estimate.findings if "share" in each.evidence]

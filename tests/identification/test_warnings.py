@@ -145,30 +145,32 @@ def test_uneven_but_true_time_stamps_are_no_jitter(well_excited: jid.Recording) 
     assert "gaps" not in codes(estimate)
 
 
-def test_poor_excitation_is_no_alarm_where_the_interval_holds_the_truth(shared_data: Path) -> None:
+def test_a_gain_without_load_is_named_and_its_interval_holds_the_truth(shared_data: Path) -> None:
     estimate = separable(simulated(shared_data, "poorly_excited"))
     gain = estimate.parameters["sensor_gain"]
     assert gain.interval is not None
     assert gain.interval[0] < 2.4 < gain.interval[1]
-    assert gain.stderr is not None
-    assert ("undetermined" in codes(estimate)) == (gain.stderr > 0.05 * gain.value)
+    found = warned(estimate, "undetermined")
+    assert found.parameters == ("sensor_gain",)
+    assert found.evidence["load_range.share"].value < 0.03
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_poor_excitation_is_named_with_its_figure(seed: int) -> None:
-    # Amplitudes of 4° about the vertical vary the sensed torque as little as ±20° about the horizontal.
-    (run,) = simulate(1, duration=6.0, seed=seed, degrees=(4.0, 4.0), noise=8.0)
+    # Amplitudes of 3° about the vertical vary the sensed torque as little as ±20° about the horizontal.
+    (run,) = simulate(1, duration=6.0, seed=seed, degrees=(3.0, 3.0), noise=4.0)
     found = warned(separable(run), "undetermined")
     assert "sensor_gain" in found.parameters
     assert "gravity torque" in found.message
-    assert 0.0 < found.evidence["load_range.share"].value < 0.03
+    assert found.evidence["load_range"].value > 0.0
 
 
 def test_what_the_log_has_is_not_advised() -> None:
     # Speeds from 0.45 to 0.5 rad/s only, and a noise that hides the slope.
     time = np.arange(0.0, 6.0, 1e-3)
-    velocity = np.where(np.sin(2.0 * np.pi * time / 1.5) > 0.0, 0.5, -0.45)
-    noise = np.random.default_rng(0).normal(0.0, 4.0, len(time))
+    speed = 0.475 + 0.025 * np.sin(2.0 * np.pi * time / 1.1)
+    velocity = np.where(np.sin(2.0 * np.pi * time / 1.5) > 0.0, speed, -speed)
+    noise = np.random.default_rng(0).normal(0.0, 1.0, len(time))
     torque = 2.0 * np.sign(velocity) + 4.0 * velocity + noise
     position = np.concatenate([[0.0], np.cumsum(0.5e-3 * (velocity[1:] + velocity[:-1]))])
     run = jid.Recording(time=time, position=position, velocity=velocity, torque=torque)

@@ -100,7 +100,7 @@ ELSEWHERE = {
     "compare": {"folds", "models"},
     "sweep": {"trials"},
     "sweep grid": {"trials"},
-    "on line": {"", "callback", "model", "per_recording"},
+    "on line": {"", "callback", "model", "per_recording", "load_friction"},
     "joint": set(),
 }
 

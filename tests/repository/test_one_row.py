@@ -41,6 +41,8 @@ ALLOWED: list[tuple[str, str, str]] = [
     # Judgements about one friction model.
     ("*", "python/jointid/identification/warnings/", "whether the data support static friction"),
     ("*", "python/jointid/identification/causes/", "causes of a misfit, some named like a term"),
+    ("static", "python/jointid/identification/refinements/", "decays of any shape, for a delay"),
+    ("coulomb", "python/jointid/identification/refinements/", "the size of what creep contradicts"),
     ("coulomb*", "python/jointid/problem/constant_torque.py", "collinear with an offset"),
     ("*", "python/jointid/joint/thesis.py", "the thesis's joint, with its bounds"),
     ("coulomb", "python/jointid/simulation/scenario.py", "a controller with friction estimates"),

@@ -13,7 +13,7 @@ from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence
 from jointid.identification.causes.causes import find_causes
-from jointid.identification.causes.suspicion import suspicious
+from jointid.identification.causes.suspicion import correlated, suspicious, testable
 from jointid.identification.inference.covariance import parameter_covariance
 from jointid.identification.inference.inference import (
     freedom_of,
@@ -114,10 +114,15 @@ def infer(
     torque_level = float(np.sqrt(np.mean((penalty.target / penalty.usable_duration) ** 2)))
     causes = None
     run = table.recording
-    structured = suspicious(table.residual, run, table.duration, table.velocity)
-    if (statistics.r_squared < POORLY_EXPLAINED or structured) and not (
-        penalty.cumulative or not free
-    ):
+    # Noise alone may be most of what was measured: it is no misfit, and the errors contain it.
+    structured = suspicious(table.residual, run, table.duration, table.velocity) or (
+        statistics.r_squared < POORLY_EXPLAINED and not testable(run)
+    )
+    # Running integrals of white noise are correlated by themselves.
+    noise = not structured and testable(run) and not penalty.cumulative
+    # A misfit of values that are no estimate, or of a gain whose sign is a guess, is not the model's.
+    meant = statistics.r_squared >= 0.0 and not domain.guessed_sign
+    if structured and meant and not (penalty.cumulative or not free):
         causes = find_causes(
             problem,
             penalty,
@@ -126,6 +131,9 @@ def infer(
             r_squared=statistics.r_squared,
             delays=refinements.delays,
         )
+        if not causes.found and testable(run) and not correlated(table.residual, run):
+            # Louder at low speed, but no cause and nothing that lasts: noise, of the velocity or of a reversal.
+            causes, noise = None, True
     findings = diagnose(
         Evidence(
             problem=problem,
@@ -144,7 +152,7 @@ def infer(
             inspections=inspections,
             at_best=at_best,
             causes=causes,
-            structured=structured,
+            white=noise,
             velocity_effect=effect,
             correlations={
                 (domain.names[free[i]], domain.names[free[j]]): float(spread.correlation[i, j])

@@ -2,24 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.identification.search.domain import SearchDomain
+from jointid.identification.search.stated_bounds import known_parameters
+from jointid.joint.parameters import Parameter
 from jointid.problem.problem import Problem
+from jointid.problem.terms import WEAK_READING
 from jointid.problem.windows import Windows
 
 _CUMULATIVE = "running integrals, as in the thesis"
 _LOADED = "friction depends on the sensed load"
-_WEAK = "the motion explains too little of the reading"
 
 
 def with_instruments(
-    problem: Problem, penalty: _core.Penalty, domain: SearchDomain, windows: Windows, stated: bool
+    problem: Problem,
+    penalty: _core.Penalty,
+    parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None,
+    windows: Windows,
+    stated: bool,
 ) -> tuple[Problem, _core.Penalty]:
     """Return problem and penalty ready to search: the reading projected on instruments, if they suffice.
+
+    Before the search domain, which takes the gain's sign and size from the projected reading.
 
     Gravity and inertia of a rigid link explain the reading, and neither the reading's noise nor friction
     that the model lacks is correlated with them: the gain by two-stage least squares is free of the bias
@@ -32,7 +41,8 @@ def with_instruments(
         Its choice has the residual "instruments", or another one, which is left as it is.
     penalty : Penalty
         Over `windows`, of which it projects the reading.
-    domain : SearchDomain
+    parameters : mapping or None
+        Argument of the call; what it or the joint fixes is no instrument.
     windows : int, float, str, WindowOptions or None
     stated : bool
         Whether the caller asked for this residual, which then is not replaced.
@@ -40,7 +50,8 @@ def with_instruments(
     Raises
     ------
     InputError
-        The caller asked for instruments and for friction that depends on the load.
+        The caller asked for instruments and for friction that depends on the load; or `parameters` names
+        one that the model does not have.
     """
     if penalty.residual != _core.Residual.instruments:
         return problem, penalty
@@ -55,9 +66,11 @@ def with_instruments(
                 remedy=Action("call", {"residual": "sensor"}),
             )
     if stated or not reason:
-        _project(penalty, domain, problem.threads)
+        known = known_parameters(tuple(penalty.names), problem.joint, parameters)
+        free = [index for index, each in enumerate(known) if each.vary]
+        penalty.project_reading(free, threads=problem.threads)
         stage = penalty.first_stage
-        reason = _WEAK if stage is not None and stage.weak else ""
+        reason = WEAK_READING if stage is not None and stage.weak else ""
     if stated or not reason:
         return problem, penalty
     choice = replace(problem.choice, residual="sensor", residual_reason=reason)
@@ -81,11 +94,7 @@ def penalty_as_fitted(problem: Problem, windows: Windows, domain: SearchDomain) 
     """
     penalty = problem.penalty(windows)
     if penalty.residual == _core.Residual.instruments:
-        _project(penalty, domain, problem.threads)
+        bounds = zip(domain.lower, domain.upper, strict=True)
+        free = [index for index, (low, high) in enumerate(bounds) if low < high]
+        penalty.project_reading(free, threads=problem.threads)
     return penalty
-
-
-def _project(penalty: _core.Penalty, domain: SearchDomain, threads: int) -> None:
-    bounds = zip(domain.lower, domain.upper, strict=True)
-    free = [index for index, (low, high) in enumerate(bounds) if low < high]
-    penalty.project_reading(free, threads=threads)

@@ -239,12 +239,14 @@ def prepare(
             problem, selection = select_model(problem, request, parameters, windows)
         problem, delays = without_delays(problem, shift)
         problem, penalty, slow_motion = without_creep(problem, windows, speed)
+        problem, penalty = with_instruments(
+            problem, penalty, parameters, windows, residual is not None
+        )
         domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
     except InputError as error:
         if error.place == "parameters":  # they are not excited
             raise_if_hardly_moving(runs)
         raise
-    problem, penalty = with_instruments(problem, penalty, domain, windows, residual is not None)
     return Prepared(
         problem=problem,
         penalty=penalty,

@@ -20,6 +20,10 @@ _SENSOR = ("sensor_gain", "sensor_offset")
 RESIDUALS = ("instruments", "sensor", "torque")
 
 
+WEAK_READING = "the motion explains too little of the reading"
+"""Why the reading of a sensor is not projected on the motion."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
     """The terms and the residual that a call asks for.

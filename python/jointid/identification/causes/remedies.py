@@ -28,10 +28,7 @@ _OTHERWISE: dict[str, tuple[Action, ...]] = {
         Action("inspect", text="what happened at that time"),
     ),
     "offset": (Action("call", {"torque_offset": True}, function="Joint"),),
-    "wrong_scale": (
-        Action("inspect", text="gear ratio, torque constant and inertia"),
-        Action("call", {"parameters": {"inertia": {"vary": True}}}, text="to free the inertia"),
-    ),
+    "wrong_scale": (Action("inspect", text="gear ratio, torque constant and inertia"),),
 }
 _SLOW = (Action("record", text="motion that passes zero speed faster, and slow motion by itself"),)
 

@@ -38,11 +38,21 @@ def suspicious(residual: Array, run: NDArray[np.int64], duration: Array, velocit
     velocity : ndarray
         Mean velocity of each window.
     """
+    return correlated(residual, run) or slow_misfit(residual, duration, velocity) > _LOUD
+
+
+def correlated(residual: Array, run: NDArray[np.int64]) -> bool:
+    """Whether neighbours are alike at some scale."""
     for factor, correlation in correlations(residual, run).items():
         error = 1.0 / np.sqrt(len(residual) / factor)
         if correlation > max(_CORRELATED, _SURE * error):
             return True
-    return slow_misfit(residual, duration, velocity) > _LOUD
+    return False
+
+
+def testable(run: NDArray[np.int64]) -> bool:
+    """Whether there are enough windows to tell noise from structure."""
+    return len(run) >= _FEWEST
 
 
 def slow_misfit(residual: Array, duration: Array, velocity: Array) -> float:

@@ -54,6 +54,9 @@ def _misfit(problem: Problem) -> float:
         columns = np.column_stack([columns, *others])
     weight = 1.0 / np.sqrt(np.asarray(penalty.usable_duration))
     columns, target = columns * weight[:, None], np.asarray(penalty.target) * weight
+    # The triangle has all that least squares needs; BLAS on tall matrices changes the last bits with its threads.
+    both = np.asarray(_core.triangle(np.column_stack([columns, target]), threads=problem.threads))
+    columns, target = both[:, :-1], both[:, -1]
     sizes = np.linalg.norm(columns, axis=0)
     columns = columns / np.where(sizes > 0.0, sizes, 1.0)
     found = np.linalg.lstsq(columns, target, rcond=1e-10)[0]

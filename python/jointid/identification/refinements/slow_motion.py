@@ -81,11 +81,13 @@ def slow_disagreement(
         return None
     weight = 1.0 / np.sqrt(duration)
     own = np.where(slow, np.sign(velocity) * duration, 0.0)
-    rows = np.column_stack([columns, own]) * weight[:, None]
-    sizes = np.linalg.norm(rows, axis=0)
-    rows /= np.where(sizes > 0.0, sizes, 1.0)
-    found, _, rank, _ = np.linalg.lstsq(rows, target * weight, rcond=1e-10)
-    missed = target * weight - rows @ found
+    # The triangle has all that least squares needs; BLAS on tall matrices changes the last bits with its threads.
+    tall = np.column_stack([columns, own, target]) * weight[:, None]
+    both = np.asarray(_core.triangle(tall))
+    sizes = np.linalg.norm(both[:, :-1], axis=0)
+    rows, wanted = both[:, :-1] / np.where(sizes > 0.0, sizes, 1.0), both[:, -1]
+    found, _, rank, _ = np.linalg.lstsq(rows, wanted, rcond=1e-10)
+    missed = wanted - rows @ found
     variance = float(missed @ missed) / max(1, len(target) - int(rank))
     others, _ = np.linalg.qr(rows[:, :-1])
     alone = rows[:, -1] - others @ (others.T @ rows[:, -1])

@@ -74,7 +74,10 @@ def guess_gain(
 
     A sensor's zero and polarity are arbitrary, so neither the raw product of reading and torque nor the
     size of the reading determines the gain. In a small motion a gain of the wrong sign fits with negative
-    friction, which is therefore excluded.
+    friction, which is therefore excluded. The reading is regressed on the torque, whose noise is the smaller
+    one; but where it is projected on instruments the torque is regressed on it, as in the fit: in a small
+    motion the reading is so small a part of the balance that an error of the other terms reverses the sign of
+    the other regression.
 
     Parameters
     ----------
@@ -94,10 +97,13 @@ def guess_gain(
     """
     best, value, swing = np.inf, 0.0, 0.0
     misfits = dict.fromkeys((1.0, -1.0), np.inf)
+    projected: Array | None = None
     for each in columns:
         swing = swing or _swing(penalty, each)
+        if penalty.first_stage is not None and projected is None:
+            projected = _projected(penalty)
         for sign in signs:
-            misfit, gain = _fitted(penalty, each, fixed, sign)
+            misfit, gain = _fitted(penalty, each, projected, fixed, sign)
             misfits[sign] = min(misfits[sign], misfit)
             if misfit < best * (1.0 - 1e-9):
                 best, value = misfit, gain
@@ -124,8 +130,18 @@ def _swing(penalty: _core.Penalty, columns: Array) -> float:
     return float(np.std(penalty.target / penalty.usable_duration)) / spread
 
 
+def _projected(penalty: _core.Penalty) -> Array:
+    """Return the reading's projection, which has no shape; `columns` has the reading itself."""
+    columns = penalty.linear_columns(np.ones(len(penalty.names)))
+    return np.array(columns[:, penalty.names.index("sensor_gain")])
+
+
 def _fitted(
-    penalty: _core.Penalty, columns: Array, fixed: Mapping[str, float], sign: float
+    penalty: _core.Penalty,
+    columns: Array,
+    projected: Array | None,
+    fixed: Mapping[str, float],
+    sign: float,
 ) -> tuple[float, float]:
     """Return misfit and gain; friction is not negative, the gain has this sign or is 0."""
     from scipy.optimize import nnls
@@ -142,8 +158,8 @@ def _fitted(
             torque -= fixed[name] * columns[:, index]
         else:
             (signed if term.non_negative else free).append(index)
-    reading = columns[:, of_gain]
-    reversed_roles = penalty.residual != _core.Residual.torque
+    reading = columns[:, of_gain] if projected is None else projected
+    reversed_roles = penalty.residual != _core.Residual.torque and projected is None
     if reversed_roles:
         # reading = (torque - the other terms) / gain: linear in 1 / gain, and in the rest over it.
         sides, target = [sign * torque, *(-sign * columns[:, i] for i in signed)], reading

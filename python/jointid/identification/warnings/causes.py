@@ -10,6 +10,7 @@ from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.ripple import RIPPLE
 from jointid.identification.warnings.torque_balance import WRONG_SCALE
+from jointid.identification.warnings.undetermined import listed, wide, with_partners
 
 _REMEDIES = {
     "gravity": "identify gravity, too: `stribeck:gravity=free`",
@@ -42,17 +43,22 @@ TYPES = {
 def _find(evidence: Evidence) -> Iterator[Finding]:
     if evidence.causes is None:
         return
-    for cause in evidence.causes.found:
-        if cause.name != WRONG_SCALE.code:  # its own check asks for more
-            yield _finding(cause)
+    causes = [each for each in evidence.causes.found if each.name != WRONG_SCALE.code]
+    uncertain = wide(evidence)
+    for number, cause in enumerate(causes):  # a wrong scale has its own check, which asks for more
+        # The misfit makes values uncertain beside those that a shift of first order shows.
+        names = (*cause.relative, *(uncertain if number == 0 else ()))
+        yield _finding(cause, with_partners(evidence, names))
 
 
-def _finding(cause: Cause) -> Finding:
+def _finding(cause: Cause, concerned: tuple[str, ...]) -> Finding:
     measured = {"share": Measured(cause.share), "windows": Measured(cause.scale, "s")}
     measured |= cause.numbers
     measured |= {f"{name}.shift": Measured(share) for name, share in cause.relative.items()}
+    beside = [name for name in concerned if name not in cause.relative]
+    text = f"{cause}; it also makes {listed(beside)} uncertain" if beside else str(cause)
     return TYPES[cause.name].finding(
-        str(cause), *cause.advice, evidence=measured, parameters=tuple(cause.relative)
+        text, *cause.advice, evidence=measured, parameters=tuple(concerned)
     )
 
 

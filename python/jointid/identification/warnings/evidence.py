@@ -81,10 +81,10 @@ class Evidence:
         Of the signals against the position.
     slow_motion : SlowMotion or None
         How slow windows disagree with faster ones.
+    white : bool
+        Whether the residuals are noise as far as enough windows can tell.
     causes : Causes or None
         Why the model does not fit; None where the residuals are noise.
-    structured : bool
-        Whether the residuals are more than noise.
     """
 
     problem: Problem
@@ -106,8 +106,8 @@ class Evidence:
     delays: Mapping[str, Delay]
     slow_motion: SlowMotion | None
     velocity_effect: VelocityEffect | None = None
+    white: bool = False
     causes: Causes | None = None
-    structured: bool = False
 
     @property
     def recordings(self) -> tuple[Recording, ...]:

@@ -14,6 +14,7 @@ from jointid.estimate.findings import Measured
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.evidence import Evidence
+from jointid.problem.terms import WEAK_READING
 
 Array = NDArray[np.float64]
 
@@ -27,6 +28,7 @@ _LOAD = 0.03  # spread of the sensed torque over the torque of the drive
 _ACCELERATION = 0.1  # of the torque
 _TRAVEL = 0.75  # of a period of a torque over the angle
 _GRAVITY = 1.0  # [rad]
+_LONGEST = 10.0  # times the recording: nobody records longer for one parameter
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +147,12 @@ class Excitation:
             f"{_two(needed)} s like it would do"
         )
         motion = f"about {_two(needed)} s of such motion"
+        if needed > _LONGEST * duration:
+            text = (
+                f"the noise hides it: {_two(duration)} s of motion would have to be {_two(needed / duration)} times as "
+                "long"
+            )
+            motion = "with less noise, or with motion that this parameter shows in more"
         measured = {"duration": Measured(duration, "s"), "duration.needed": Measured(needed, "s")}
         return Lack("duration", text, motion, measured, needed)
 
@@ -253,14 +261,25 @@ class Excitation:
         evidence = self.evidence
         if "sensor_gain" not in evidence.parameters:
             return None
-        reading = np.concatenate(
-            [run.sensor for run in evidence.recordings if run.sensor is not None]
-        )
-        spread = abs(evidence.parameters["sensor_gain"].value) * float(reading.std())
+        sensed = [run.sensor for run in evidence.recordings if run.sensor is not None]
+        # White noise of the reading is no load: it is what neighbouring samples differ by.
+        noise = float(np.mean([0.5 * np.mean(np.diff(each) ** 2) for each in sensed]))
+        level = float(np.concatenate(sensed).var())
+        spread = abs(evidence.parameters["sensor_gain"].value) * math.sqrt(max(level - noise, 0.0))
         share = spread / max(evidence.torque_level, 1e-300)
-        if share >= _LOAD:
+        weak = (
+            evidence.problem.choice.residual_reason == WEAK_READING
+        )  # the gain, too, is then a guess
+        if share >= _LOAD and not weak:
             return None
         unit = self._torque()
+        if share >= _LOAD:
+            return Lack(
+                "load_range",
+                f"{WEAK_READING}, which varies by {_two(spread)} {unit}, noise apart",
+                "motion of the link through a wider range of gravity torque",
+                {"load_range": Measured(spread, unit), "load_range.share": Measured(share)},
+            )
         return Lack(
             "load_range",
             f"the sensed torque varies by {_two(spread)} {unit}, {percent(share)} of the drive's torque, and {of} "
@@ -293,4 +312,4 @@ class Excitation:
 
 
 def _two(value: float) -> str:
-    return f"{value:.2g}"
+    return f"{float(f'{value:.2g}'):g}"

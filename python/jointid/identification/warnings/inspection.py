@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from jointid import _core
 from jointid.recording.recording import Recording
+
+Array = NDArray[np.float64]
 
 DRIVE = ("torque", "motor_torque", "current")
 _CHANNELS = ("position", "velocity", *DRIVE, "sensor")
@@ -63,3 +68,16 @@ def inspect(recording: Recording, threads: int = 0) -> Inspected:
         threads=threads,
     )
     return Inspected(recording=recording, found=found, channels=tuple(signals))
+
+
+def spike_of(recording: Recording, sensor: Array) -> _core.Spike:
+    """The largest spike of a reading in place of the recorded one."""
+    found = _core.inspect(
+        time=recording.time,
+        position=recording.position,
+        velocity=recording.velocity,
+        velocity_derived=recording.velocity_derived,
+        period=recording.sample_period,
+        channels=[(sensor, _core.SpikeRule.other, True)],
+    )
+    return found.spikes[0]

@@ -1,6 +1,7 @@
 """A model that explains too little."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
@@ -10,22 +11,39 @@ from jointid.identification.warnings.structured_residual import excluded, exclud
 
 POOR_FIT = FindingType(
     code="poor_fit",
-    meaning="the model explains less than 95 % of the variance of the measured signal, and no cause with a name "
-    "explains the rest",
+    meaning="the model explains less than 95 % of the variance of the measured signal, the rest is not noise, and no "
+    "cause with a name explains it; or it explains less than 5 %, whatever the rest is; blocking where the signal's "
+    "mean explains more",
     advice="check units, signs and gear ratio",
     picture="windows",
 )
 POORLY_EXPLAINED = 0.95
+_NOTHING = 0.05
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
     explained = evidence.residuals.r_squared
-    if explained < POORLY_EXPLAINED and not named(evidence):
+    actions = (
+        Action("inspect", text="units, signs and gear ratio"),
+        Action("inspect", text="the residuals over time and over velocity"),
+    )
+    measured = {"r_squared": Measured(explained)}
+    if explained < 0.0:
+        found = POOR_FIT.finding(
+            f"the model explains less of what was measured than its mean does (R² = {explained:.2f}): the values "
+            "cannot be used",
+            *actions,
+            evidence=measured,
+        )
+        yield replace(found, severity="blocking")
+        return
+    # Noise alone is no misfit, and the errors contain it, unless it is all that was measured.
+    limit = _NOTHING if evidence.white else POORLY_EXPLAINED
+    if explained < limit and not named(evidence):
         yield POOR_FIT.finding(
             f"the model explains only {100.0 * explained:.1f} % of what was measured{excluded(evidence, 'the rest')}",
-            Action("inspect", text="units, signs and gear ratio"),
-            Action("inspect", text="the residuals over time and over velocity"),
-            evidence={"r_squared": Measured(explained)} | excluded_number(evidence),
+            *actions,
+            evidence=measured | excluded_number(evidence),
         )
 
 

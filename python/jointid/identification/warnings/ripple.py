@@ -13,6 +13,7 @@ from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.model_advice import add_ripple
+from jointid.identification.warnings.undetermined import wide, with_partners
 
 RIPPLE = FindingType(
     code="ripple",
@@ -78,8 +79,15 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
                 "amplitude": Measured(peak.amplitude, "N·m"),
                 "share_of_variance": Measured(peak.share),
             },
-            parameters=("sensor_gain",) if "sensor_gain" in evidence.parameters else (),
+            parameters=_concerned(evidence),
         )
+
+
+def _concerned(evidence: Evidence) -> tuple[str, ...]:
+    """Gain and static friction, and what is uncertain besides."""
+    biased = ("sensor_gain", "static", "static_positive", "static_negative")
+    names = (name for name in biased if name in evidence.parameters)
+    return with_partners(evidence, (*names, *wide(evidence)))
 
 
 CHECK = Check(_find, (RIPPLE,))

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
+from jointid import _core
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.inspection import Inspected, spike_of
 
 SPIKES = FindingType(
     code="spikes",
@@ -20,12 +24,15 @@ JUMPS = FindingType(
     advice="unwrap the angle, or crop the recording there",
 )
 
+_JUMP = 10.0  # times the usual change of the velocity between samples
+_BESIDE = 1  # samples
+
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
     for inspected in evidence.inspections:
         recording = inspected.recording
         for name in inspected.channels:
-            spike = inspected.spike(name)
+            spike = _without_kicks(inspected) if name == "sensor" else inspected.spike(name)
             if spike.count:
                 unit = "" if name == "sensor" else recording.unit(name)
                 height = f"{spike.height:.3g} {unit}".rstrip()
@@ -51,6 +58,28 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
                 Action("inspect", text="the recording there, and unwrap the angle or crop it"),
                 evidence={"height": Measured(step, unit), "time": Measured(time, "s")},
             )
+
+
+def _without_kicks(inspected: Inspected) -> _core.Spike:
+    """The sensor's largest spike beside those of the link, which feels every jump of the velocity.
+
+    A command that turns friction's compensation around at a reversal stops the drive at once.
+    """
+    recording, spike = inspected.recording, inspected.spike("sensor")
+    if not spike.count or recording.sensor is None:
+        return spike
+    change = np.abs(np.diff(recording.velocity, prepend=recording.velocity[0]))
+    moving = change[change > 0.0]
+    jumps = np.flatnonzero(change > _JUMP * np.median(moving)) if moving.size else moving
+    if not np.any(np.abs(jumps - spike.index) <= _BESIDE):
+        return spike
+    kept = np.ones(len(recording), dtype=bool)
+    for step in range(-_BESIDE, _BESIDE + 1):
+        kept[np.clip(jumps + step, 0, len(recording) - 1)] = False
+    if not kept.any():
+        return spike
+    smooth = np.interp(recording.time, recording.time[kept], recording.sensor[kept])
+    return spike_of(recording, smooth)
 
 
 CHECK = Check(_find, (SPIKES, JUMPS))

@@ -16,11 +16,11 @@ from jointid.identification.warnings.excitation import Excitation, Lack
 
 UNDETERMINED = FindingType(
     code="undetermined",
-    meaning="a 95 % interval wider than ±4 % (a gain's: ±1 %, where the load hardly varies), or a value that moves by more than three times its error by chance when the "
-    "windows are halved or doubled, and the recording has too little of what this parameter needs: a range of speeds, "
-    "slow motion, reversals, load, acceleration, travel, or only time; or a gain of the other sign that fits as well; "
-    "or an inertia that is hidden by a noisy velocity. Where the recording has enough, the cause is another: a misfit "
-    "of the model, which has its own finding",
+    meaning="a 95 % interval wider than ±4 % (a gain's: ±1 %, where the load hardly varies), or a value that moves by "
+    "more than three times its error by chance when the windows are halved or doubled; and the log has too little "
+    "of what this parameter needs: a range of speeds, slow motion, reversals, load, acceleration, travel, or time; "
+    "or a gain of the other sign that fits as well; or an inertia that is hidden by a noisy velocity. Where the log "
+    "has enough, the cause is another: a misfit of the model, which has its own finding",
     advice="record what is missing (the finding says how much there is), or fix the parameter",
 )
 
@@ -33,7 +33,10 @@ _GAIN = ("sensor_gain", "sensor_offset")
 _LARGE_SHIFT = 3.0
 _NOTICEABLE_SHIFT = 0.01
 _INSEPARABLE = 0.98
+_LOAD_FRICTION = 0.05
 _PAIRS = 5
+_LOW_SPEED = ("static", "stribeck", "stribeck_velocity", "stribeck_exponent")
+_FEW = 3  # names in a sentence
 
 _SHOWN = 4  # reasons, and pairs, in the sentence; the evidence has all
 
@@ -118,6 +121,23 @@ def wide(evidence: Evidence) -> tuple[str, ...]:
     return tuple(p.name for p in evidence.parameters.values() if _why_undetermined(p, evidence))
 
 
+def with_partners(evidence: Evidence, names: Collection[str]) -> tuple[str, ...]:
+    """The parameters, and the rest of the friction at low speed if they have a part of it.
+
+    Its height and its decay lie on one curve: what moves one of them moves the other by an amount that no shift of
+    first order shows.
+    """
+    low = [name for name, p in evidence.parameters.items() if p.vary and _kind(name) in _LOW_SPEED]
+    partners = low if set(low) & set(names) else []
+    return tuple(dict.fromkeys([*names, *partners]))
+
+
+def listed(names: Collection[str]) -> str:
+    """Names in a sentence."""
+    few = list(names)[:_FEW]
+    return ", ".join(few) + " and others" * (len(names) > len(few))
+
+
 def _worst_pairs(
     correlations: Mapping[tuple[str, str], float], names: Collection[str]
 ) -> list[tuple[tuple[str, str], float]]:
@@ -158,6 +178,8 @@ def scale_of(p: ParameterEstimate, evidence: Evidence) -> float:
     """Reference of the 5 %: an offset, or one phase of a harmonic, may be zero."""
     if "offset" in p.name:
         return max(abs(p.value), evidence.torque_level)
+    if p.name == "load_friction":  # a joint may have none
+        return max(abs(p.value), _LOAD_FRICTION)
     family, _, rest = p.name.partition("_")
     if family in ("gravity", "ripple", "position"):
         order = rest.partition("_")[2]
