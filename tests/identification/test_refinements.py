@@ -83,12 +83,13 @@ def test_a_shift_that_is_wrong_is_told_with_what_it_leaves(run: jid.Recording) -
     estimate = identified(run, shift={"torque": 0.003})
     found = estimate.delays["torque"]
     assert found.left == pytest.approx(-0.003, abs=1e-4)
-    assert "+3.00 ms was taken away as stated, -3." in estimate.report()
+    left = f"+3.00 ms was taken away as stated, {1e3 * found.left:+.2f} ms is left"
+    assert left in estimate.report()
     gain = estimate.parameters["sensor_gain"]
     assert abs(gain.value - TRUTH["sensor_gain"]) < 2.0 * gain.systematic["lag"]
     (finding,) = (each for each in estimate.findings if each.code == "signal_lag")
     assert finding.evidence["lag"].value == found.left
-    assert "early by 3" in finding.cause
+    assert "the torque is early by" in finding.cause
     assert "after the stated shift by 3 ms" in finding.cause
     assert finding.advice[0].arguments["shift"] == {}
     # Nothing else in the report says another thing of the torque.
