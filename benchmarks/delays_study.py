@@ -173,13 +173,9 @@ def tables(found: Mapping[str, tuple[Case, Sequence[Outcome]]]) -> list[str]:
                 f" {sum(inside)} of {len(named)} | {sum(bool(each.false) for each in runs)} |"
                 f" {sum(each.worst <= CLOSE for each in runs)} |"
             )
-    lines += [
-        "",
-        f"| nothing is late | runs | a signal is called late | all parameters within {CLOSE:.1%} |".replace(
-            "%", " %"
-        ),
-        "|---|--:|---|--:|",
-    ]
+    close = f"{CLOSE:.1%}".replace("%", " %")
+    head = f"| nothing is late | runs | a signal is called late | all parameters within {close} |"
+    lines += ["", head, "|---|--:|---|--:|"]
     for title, (case, runs) in found.items():
         if not case.signal:
             false = [name for each in runs for name in sorted(each.false)]

@@ -201,7 +201,7 @@ def test_a_clipped_torque_is_its_own_cause() -> None:
 def test_a_misfit_without_a_name_is_said_in_one_line() -> None:
     rng = np.random.default_rng(2)
     (run,) = simulate(_benches(Log()), duration=9.0, seed=4)
-    wander = np.convolve(rng.normal(0.0, 0.4, len(run) + 99), np.ones(100), "valid")
+    wander = np.convolve(rng.normal(0.0, 0.15, len(run) + 99), np.ones(100), "valid")
     run = jid.Recording(
         time=run.time,
         position=run.position,

@@ -85,8 +85,6 @@ class Evidence:
         Whether the residuals are noise as far as enough windows can tell.
     causes : Causes or None
         Why the model does not fit; None where the residuals are noise.
-    structured : bool
-        Whether the residuals are more than noise.
     """
 
     problem: Problem
@@ -110,7 +108,6 @@ class Evidence:
     velocity_effect: VelocityEffect | None = None
     white: bool = False
     causes: Causes | None = None
-    structured: bool = False
 
     @property
     def recordings(self) -> tuple[Recording, ...]:
