@@ -95,6 +95,7 @@ study: $(INSTALLED)  ## accuracy over many seeds; by hand, the results go to doc
 	@$(BIN)/python benchmarks/ring_study.py
 	@$(BIN)/python benchmarks/emulated_ring.py --output docs/emulated_ring.md
 	@$(BIN)/python benchmarks/conditions_study.py --output docs/conditions.md
+	@$(BIN)/python benchmarks/delays_study.py --output docs/delays.md
 	@$(BIN)/python benchmarks/causes_study.py --joints 100 --output docs/causes.md
 
 bench: $(INSTALLED) .venv/.bench-tools  ## speed against other libraries (20 min); writes docs/performance.md

@@ -93,6 +93,29 @@ def test_an_industrial_robot_has_no_known_load(shared_data: Path, joint: int, ra
     assert "load_friction" in found.rows[1].reason
 
 
+@pytest.mark.parametrize("sensor", [True, False])
+def test_a_load_that_scales_all_values_is_refused(runs: list[jid.Recording], sensor: bool) -> None:
+    run = runs[2]
+    if not sensor:
+        run = jid.Recording(
+            time=run.time, position=run.position, velocity=run.velocity, torque=run.torque
+        )
+
+    def found(joint: jid.Joint | None, load: str) -> set[str]:
+        model = f"stribeck:load_friction={load}"
+        estimate = jid.identify(run, joint, model=model, search="separable")
+        return {each.code for each in estimate.findings if each.severity == "blocking"}
+
+    assert "load_scale" in found(None, "drive")
+    known = jid.Joint(inertia=INERTIA, sensor=sensor, torque_hold="zoh")
+    assert "load_scale" not in found(known, "drive")
+    # A load behind the gear is known apart from the drive's torque.
+    assert ("load_scale" in found(None, "true")) == (not sensor)
+    compared = jid.compare_models(run, models=["stribeck", "stribeck:load_friction=drive"])
+    assert compared.winner == "stribeck"
+    assert "neither the inertia nor gravity is known" in compared.rows[1].reason
+
+
 def test_instruments_and_load_friction_exclude_each_other(runs: list[jid.Recording]) -> None:
     with pytest.raises(jid.InputError, match="instruments"):
         jid.identify(runs[0], SENSED, model="stribeck:load_friction", residual="instruments")

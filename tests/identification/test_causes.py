@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import pickle
 from collections.abc import Mapping
 
@@ -11,8 +12,10 @@ from plants import Bench, Law, Log, Plant, simulate, thesis
 
 import jointid as jid
 from jointid.estimate.causes import MEANINGS
+from jointid.estimate.delays import Delay
 from jointid.identification.causes.folds import Folds, summed
 from jointid.identification.causes.suspicion import suspicious
+from jointid.identification.follow_up import EstimateSource
 
 _SLOW = {"slow_motion", "presliding", "stribeck_exponent"}
 _BROKEN: Mapping[str, tuple[dict[str, float], set[str]]] = {
@@ -79,6 +82,34 @@ def test_a_signal_of_the_log_is_named_only_if_given(estimates: dict[str, jid.Est
     assert "axis 2" in causes.report()
     with pytest.raises(jid.InputError, match="samples"):
         estimate.causes({"axis 2": axis[1:]})
+    axis[7] = np.nan
+    with pytest.raises(jid.InputError, match=r"must be finite; 1 of .*, the first at sample 7"):
+        estimate.causes({"axis 2": axis})
+
+
+@pytest.mark.parametrize("late", [-1.0, 1.0])
+@pytest.mark.parametrize("signal", ["torque", "velocity"])
+def test_a_delay_has_a_side_and_is_no_cause_where_the_signal_excludes_it(
+    estimates: dict[str, jid.Estimate], signal: str, late: float
+) -> None:
+    source = estimates["clean"].follow_up
+    assert isinstance(source, EstimateSource)
+    (run,) = source.problem.recordings
+    fields = {name: getattr(run, name) for name in run.signals}
+    fields[signal] = np.interp(run.time - late * 2e-3, run.time, fields[signal])
+    moved = jid.Recording(**fields, torque_hold=run.torque_hold)
+    estimate = jid.identify(moved, jid.thesis_joint(), search="separable", shift={}, min_speed=0)
+    again = estimate.follow_up
+    assert isinstance(again, EstimateSource)
+    unknown = again.causes(dataclasses.replace(estimate, delays={}), {})
+    every = [*unknown.found, *unknown.harmless]
+    (cause,) = [each for each in every if (each.name, each.detail) == ("delay", signal)]
+    assert cause.numbers["delay"].value == pytest.approx(late * 2e-3, rel=0.5)
+    assert ("late by" if late > 0.0 else "early by") in cause.size
+    nothing = Delay(signal=signal, value=0.0, stderr=1e-5, certain=False, fits=False, applied=0.0)
+    excluded = dataclasses.replace(estimate, delays={signal: nothing})
+    known = again.causes(excluded, {})
+    assert signal not in {each.detail for each in (*known.found, *known.harmless)}
 
 
 def test_a_read_estimate_has_no_recordings(estimates: dict[str, jid.Estimate]) -> None:

@@ -7,6 +7,7 @@ import pytest
 from tests.simulated_joint import TRUTH, simulate
 
 import jointid as jid
+from jointid import _core
 from jointid.recording.shifting import shifted
 
 
@@ -41,6 +42,22 @@ def test_a_late_signal_is_named_and_shifted_back(
     assert "taken away" in estimate.report()
 
 
+@pytest.mark.parametrize("model", [each.name for each in _core.models()])
+@pytest.mark.parametrize("signal", ["torque", "sensor", "velocity"])
+@pytest.mark.parametrize("more", ["", ":asymmetric"], ids=["", "asymmetric"])
+def test_every_model_says_what_a_delay_costs(
+    run: jid.Recording, model: str, signal: str, more: str
+) -> None:
+    short = late(run.crop(0.0, 6.0), signal, 0.003)
+    estimate = identified(short, model=model + more, min_speed=0)
+    parts = estimate.parameters["viscous" + ("_positive" if more else "")].systematic
+    found = estimate.delays[signal]
+    assert found.value == pytest.approx(0.003, abs=5e-4)
+    # Of the torque only beside a friction that fits.
+    assert found.certain == (signal != "torque" or model != "coulomb_viscous")
+    assert parts.get("lag", 0.0) > 0.0 or not found.certain
+
+
 def test_a_good_recording_is_not_shifted(run: jid.Recording) -> None:
     estimate = identified(run)
     assert set(estimate.delays) == {"torque", "sensor", "velocity"}
@@ -62,6 +79,34 @@ def test_a_shift_that_is_given_is_the_only_one(run: jid.Recording) -> None:
     assert predicted.relative == pytest.approx(obeyed.residuals.relative, rel=1e-6)
 
 
+def test_a_shift_that_is_wrong_is_told_with_what_it_leaves(run: jid.Recording) -> None:
+    estimate = identified(run, shift={"torque": 0.003})
+    found = estimate.delays["torque"]
+    assert found.left == pytest.approx(-0.003, abs=1e-4)
+    stated = f"+3.00 ms was taken away as stated, {1e3 * found.left:.2f} ms is left"
+    assert stated in estimate.report()
+    gain = estimate.parameters["sensor_gain"]
+    assert abs(gain.value - TRUTH["sensor_gain"]) < 2.0 * gain.systematic["lag"]
+    (finding,) = (each for each in estimate.findings if each.code == "signal_lag")
+    assert finding.evidence["lag"].value == found.left
+    assert "early by 3" in finding.cause
+    assert "after the stated shift by 3 ms" in finding.cause
+    assert finding.advice[0].arguments["shift"] == {}
+    # Nothing else in the report says another thing of the torque.
+    assert "delay" not in {each.code for each in estimate.findings}
+    for cause in estimate.causes().found:
+        assert cause.name != "delay" or cause.numbers["delay"].value == found.left
+
+
+def test_a_torque_that_comes_before_its_motion_is_told_and_left(run: jid.Recording) -> None:
+    estimate = identified(late(run, "torque", -0.002))
+    assert estimate.delays["torque"].certain
+    assert estimate.settings["shift"] == {}
+    (finding,) = (each for each in estimate.findings if each.code == "signal_lag")
+    assert "the position is late" in finding.cause
+    assert {action.kind for action in finding.advice} == {"inspect"}
+
+
 @pytest.mark.parametrize(
     ("shift", "reason"),
     [
@@ -81,6 +126,15 @@ def test_shifts_that_cannot_be(run: jid.Recording, shift: object, reason: str) -
 def test_speeds_that_cannot_be(run: jid.Recording, speed: object) -> None:
     with pytest.raises(jid.InputError, match="a speed of 0 or more"):
         identified(run, min_speed=speed)
+
+
+@pytest.mark.parametrize("share", [0.9999, 50.0])
+def test_a_speed_that_leaves_no_motion_is_named(run: jid.Recording, share: float) -> None:
+    speed = share * float(np.abs(run.velocity).max())
+    with pytest.raises(jid.InputError, match="leaves too little motion") as error:
+        identified(run, min_speed=speed)
+    assert error.value.argument == "min_speed"
+    assert error.value.value == speed
 
 
 def test_a_held_signal_is_shifted_by_the_mean_of_its_intervals(run: jid.Recording) -> None:

@@ -171,7 +171,7 @@ MEANINGS = {
     "drift": "a coefficient that changes during the recording",
     "harmonic": "a torque over the joint's angle",
     "ripple": "a torque over the motor's angle",
-    "delay": "a signal that is late",
+    "delay": "a signal that is late or early",
     "other_signal": "another signal that acts on the joint",
     "disturbance": "a disturbance that is local in time",
     "asymmetry": "friction that differs between the two directions",

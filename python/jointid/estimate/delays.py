@@ -14,7 +14,7 @@ class Delay:
     signal : str
         "torque", "sensor" or "velocity".
     value : float
-        [s]; positive: the signal is late.
+        As recorded, before any shift [s]; positive: the signal is late.
     stderr : float
         [s]; clustered over stretches of the motion.
     certain : bool
@@ -35,6 +35,17 @@ class Delay:
     applied: float
 
     @property
+    def left(self) -> float:
+        """What the identification still had of it [s]; with an error of `stderr`."""
+        return self.value - self.applied
+
+    @property
     def shown(self) -> str:
-        """In milliseconds with its standard error, e.g. "torque 1.31 ± 0.04 ms"."""
-        return f"{self.signal} {1e3 * self.value:+.2f} ± {1e3 * self.stderr:.2g} ms"
+        """What was measured, what was taken away, and what is left, in milliseconds."""
+        text = f"{self.signal} {1e3 * self.value:+.2f} ± {1e3 * self.stderr:.2g} ms"
+        if not self.applied:
+            return text
+        if self.applied == self.value:
+            return f"{text} (taken away)"
+        stated = f"{1e3 * self.applied:+.2f} ms was taken away as stated"
+        return f"{text} ({stated}, {1e3 * self.left:+.2f} ms is left)"

@@ -93,10 +93,7 @@ def _refinements(estimate: Estimate) -> list[tuple[str, str]]:
     """What was found about the data before the search, and done about it."""
     lines = []
     if estimate.delays:
-        each = [
-            f"{delay.shown}{' (taken away)' if delay.applied else ''}"
-            for delay in estimate.delays.values()
-        ]
+        each = [delay.shown for delay in estimate.delays.values()]
         lines.append(("delays", f"against the position: {', '.join(each)}"))
     slow = estimate.slow_motion
     if slow is not None and slow.applied:

@@ -94,8 +94,8 @@ def infer(
     )
     spread = with_undivided(spread, kept, free, names, groups)
     parts = systematic_errors(problem, penalty, best, kept, free_jacobian, columns, shifts)
-    lags = {each.signal: _unknown(each) for each in refinements.delays.values() if each.certain}
-    if lags:
+    lags = {each.signal: _unknown(each) for each in refinements.delays.values()}
+    if any(lags.values()):
         parts["lag"] = np.zeros(len(best))
         parts["lag"][kept] = of_lags(problem, penalty, best, free_jacobian, lags)
     effect = velocity_systematic(problem, penalty, best, domain.lower, domain.upper)
@@ -153,6 +153,7 @@ def infer(
             at_best=at_best,
             causes=causes,
             white=noise,
+            structured=structured,
             velocity_effect=effect,
             correlations={
                 (domain.names[free[i]], domain.names[free[j]]): float(spread.correlation[i, j])
@@ -186,8 +187,10 @@ def infer(
 
 
 def _unknown(delay: Delay) -> float:
-    """What is not known of a delay, or was left in the signals [s]."""
-    return delay.stderr if delay.applied else float(np.hypot(delay.value, delay.stderr))
+    """What is not known of a delay, and what the identification had of it [s]."""
+    if delay.certain:
+        return float(np.hypot(delay.left, delay.stderr))
+    return delay.stderr if delay.applied else 0.0
 
 
 def _centre(

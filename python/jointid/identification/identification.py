@@ -11,6 +11,7 @@ from jointid.estimate.estimate import Estimate
 from jointid.identification.prepared import prepare
 from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Search
+from jointid.identification.warnings.load_scale import LOAD_SCALE
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
@@ -74,7 +75,8 @@ def identify(
         set-valued and the model does not apply. Default True.
     shift : mapping of str to float, optional
         Delays of "torque", "sensor" and "velocity" against the position [s], to be taken away; positive:
-        the signal is late. An empty mapping shifts nothing. Default: the delays that are certain; the
+        the signal is late. An empty mapping shifts nothing. Default: the delays that are certain, but for a
+        torque that is early by more than a sample, as it seems beside a late or coarse position; the
         estimate's `delays` and its report tell them.
     min_speed : float, optional
         Motion slower than this is left out [rad/s or m/s]; 0 leaves out nothing. Default: chosen; 0 unless
@@ -114,7 +116,8 @@ def identify(
             )
             for each in either
         ]
-        return min(found, key=lambda estimate: estimate.residuals.relative)
+        # A load that scales all values fits anything.
+        return min(found, key=lambda each: (_blocked(each), each.residuals.relative))
     prepared = prepare(
         recordings,
         joint,
@@ -131,3 +134,7 @@ def identify(
     )
     outcome = run_search(chosen, prepared.penalty, prepared.domain)
     return prepared.estimate(chosen, outcome, started)
+
+
+def _blocked(estimate: Estimate) -> bool:
+    return LOAD_SCALE.code in {finding.code for finding in estimate.findings}

@@ -114,7 +114,7 @@ def _evened(
         if away < _AWAY * (line[1] - line[0]) and before < line[0] and line[-1] < after:
             even[first:last] = line
             changed += last - first
-    return even, changed / max(1, np.count_nonzero(~resting))
+    return even, float(changed / max(1, int(np.count_nonzero(~resting))))
 
 
 def _line(time: FloatArray) -> FloatArray:

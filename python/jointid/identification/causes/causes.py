@@ -22,12 +22,12 @@ from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
-_LATE = 2.0  # standard errors of a delay that is none
 _NORMAL = 1.959964  # standard errors of half a 95 % interval
 _MOVED, _ERRORS = 0.04, 1.8  # share of a value, and standard errors, from which a cause matters
 _UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it must move by more
 _PART = 0.05  # of the variance of what was measured
 _KNOWN = 3e-4  # [s]; standard error of a delay that says whether one matters
+_BY_CHANCE = 3.0  # standard errors of a delay
 _LEAST = 0.003  # share of a value: a smaller change matters to nobody, however certain
 
 
@@ -38,7 +38,7 @@ def find_causes(
     *,
     torque_level: float,
     r_squared: float,
-    delays: Mapping[str, Delay],
+    delays: Mapping[str, Delay] | None = None,
     signals: Mapping[str, Array] | None = None,
 ) -> Causes:
     """Attribute the misfit of an estimate.
@@ -53,8 +53,8 @@ def find_causes(
         Root mean square of the torque [N·m or N]; what an offset is held against.
     r_squared : float
         Share of the variance that the model explains.
-    delays : mapping of str to Delay
-        Of the signals against the position, as estimated before.
+    delays : mapping of str to Delay, optional
+        As measured against the position. Default: not measured.
     signals : mapping of str to ndarray, optional
         Further signals of the first recording, one value a sample.
     """
@@ -65,6 +65,7 @@ def find_causes(
         for index, name in enumerate(names)
         if parameters[name].vary and parameters[name].at_bound is None
     )
+    delays = delays or {}
     late = "velocity" in delays and delays["velocity"].certain
     fit = Fitted.of(problem, penalty, best, free, signals, _prompt(delays), late)
     tried = listed_candidates(fit)
@@ -75,7 +76,7 @@ def find_causes(
         # A large part of what was measured matters, however badly the values are known without it.
         matters = cause.relative or cause.share * (1.0 - r_squared) > _PART
         (found if matters else harmless).append(cause)
-    wanted = dict.fromkeys([*(each.name for each in tried), "disturbance"])
+    wanted = dict.fromkeys([*(each.name for each in tried), "delay", "disturbance"])
     return Causes(found=tuple(found), harmless=tuple(harmless), tried=tuple(wanted))
 
 
@@ -102,11 +103,18 @@ def attributed(
     found = {}
     for name, values in signals.items():
         series = np.asarray(values, dtype=np.float64)
-        if series.shape != (length,) or not np.all(np.isfinite(series)):
+        if series.shape != (length,):
             raise InputError(
-                f"one finite value for each of the {length} samples is expected",
+                f"one value for each of the {length} samples is expected",
                 argument=f"signals.{name}",
                 value=f"shape {series.shape}",
+            )
+        wrong = np.flatnonzero(~np.isfinite(series))
+        if wrong.size:
+            raise InputError(
+                f"its values must be finite; {wrong.size} of {length} are not, the first at sample {wrong[0]}",
+                argument=f"signals.{name}",
+                value=float(series[wrong[0]]),
             )
         found[name] = series
     torque = np.asarray(penalty.target) / np.asarray(penalty.usable_duration)
@@ -122,15 +130,15 @@ def attributed(
 
 
 def _prompt(delays: Mapping[str, Delay]) -> frozenset[str]:
-    """Signals that are not late, or no longer: much resembles a delay, and its own estimate says more.
+    """Signals whose delay is known well enough, and is none or was taken away.
 
     A torque of which only some parts seem late is not late: something else is amiss there.
     """
     found = set()
     for each in delays.values():
         left = abs(each.value - each.applied)
-        parts = each.signal == "torque" and not each.certain and each.stderr < _KNOWN
-        if left <= _LATE * each.stderr or parts:
+        none = not each.certain and (each.signal == "torque" or left < _BY_CHANCE * each.stderr)
+        if each.stderr < _KNOWN and (none or left == 0.0):
             found.add(each.signal)
     return frozenset(found)
 

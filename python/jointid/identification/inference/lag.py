@@ -57,7 +57,7 @@ def of_lags(
         for index, term in enumerate(penalty.terms):
             if term.friction and not term.needs_load:
                 shapes = np.array([best[names.index(shape)] for shape in term.shapes])
-                moved -= best[index] * _core.friction_basis(term.name, run.velocity, shapes, 0.0)
+                moved -= best[index] * _core.friction_basis(term.key, run.velocity, shapes, 0.0)
         if "inertia" in names:
             rate = np.gradient(run.velocity, run.sample_period)
             moved -= best[names.index("inertia")] * rate

@@ -11,14 +11,19 @@ from jointid.identification.refinements.smooth_windows import SmoothWindows
 
 Array = NDArray[np.float64]
 
-_DECAYS = (0.012, 0.025, 0.05, 0.1, 0.2, 0.45)  # Stribeck speeds, of the peak speed
+_LONGEST_DECAY = 0.4  # Stribeck speed, of the peak speed; each next one is half of it
+_DECAYS = 6
 
 
 def conservative(
-    windows: SmoothWindows, angle: Array, *, varying: bool = False, delayed: bool = False
+    windows: SmoothWindows,
+    circle: tuple[Array, Array],
+    *,
+    varying: bool = False,
+    delayed: bool = False,
 ) -> list[Array]:
     """Inertia, gravity, a constant; and an inertia that varies with the angle, if that is asked for."""
-    cosine, sine = np.cos(angle), np.sin(angle)
+    cosine, sine = circle
     columns = [
         windows.acceleration(delayed),
         windows.mean(cosine),
@@ -32,7 +37,7 @@ def conservative(
     return columns
 
 
-def friction(windows: SmoothWindows, angle: Array) -> list[Array]:
+def friction(windows: SmoothWindows, circle: tuple[Array, Array]) -> list[Array]:
     """Friction as any smooth function of the speed, that may depend on direction, angle and time."""
     v = windows.stretch.velocity
     sign, speed = np.sign(v), np.abs(v)
@@ -42,8 +47,13 @@ def friction(windows: SmoothWindows, angle: Array) -> list[Array]:
         smooth = np.convolve(v, windows.weight, mode="same")
     time = np.linspace(-0.5, 0.5, len(v))
     signals = [sign, v, v * speed, speed]
-    signals += [sign * np.exp(-((smooth / (share * peak)) ** 2)) for share in _DECAYS]
-    signals += [sign * np.cos(angle), sign * np.sin(angle), v * np.cos(angle), v * np.sin(angle)]
+    decay = np.exp(-((smooth / (_LONGEST_DECAY * peak)) ** 2))
+    for _ in range(_DECAYS):
+        signals.append(sign * decay)
+        decay = decay * decay
+        decay *= decay  # of half the speed
+    cosine, sine = circle
+    signals += [sign * cosine, sign * sine, v * cosine, v * sine]
     signals += [sign * time, v * time]
     return [windows.mean(each) for each in signals]
 

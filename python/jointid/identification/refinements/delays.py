@@ -14,9 +14,10 @@ from dataclasses import replace
 from jointid.estimate.delays import Delay
 from jointid.identification.refinements.balance_columns import conservative, friction, stacked
 from jointid.identification.refinements.balance_misfit import fits_better
+from jointid.identification.refinements.command_noise import delay_in_command
 from jointid.identification.refinements.shift_fit import Balance, Shift, fit_shift
 from jointid.identification.refinements.smooth_windows import SmoothWindows, half_length
-from jointid.identification.refinements.stretches import Piece, pieces_of
+from jointid.identification.refinements.stretches import Piece, few_of, pieces_of
 from jointid.problem.problem import Problem
 from jointid.recording.shifting import shifted
 
@@ -25,7 +26,9 @@ _SMALL = 3e-4  # [s]; a shorter delay of torque or sensor is left alone
 _SURE = 5.0  # standard errors
 _SURE_OF_VELOCITY = 8.0  # standard errors; no friction stands between velocity and position
 _VELOCITY = 0.35  # sample periods; a backward difference has 0.5
+_LEAST_IN_COMMAND = 0.3  # sample periods
 _SUSPECT = 0.6  # of what would be long enough: look closer
+_CLEARLY = 4.0  # standard errors: a first look at parts of the motion is enough
 _ALIKE, _BARELY_ALIKE = 0.5, 0.7  # of the delay: how far estimates of it may be apart
 _MOST_LEFT = 0.5  # of a signal's variance unexplained: other torques act
 _MOST_LEFT_OF_VELOCITY = 0.05
@@ -45,7 +48,7 @@ def refined_delays(
         Of the recordings as they are.
     given : mapping of str to float, optional
         Delays to take away [s], no others. Default: those that are certain and without which the torque
-        balance fits better.
+        balance fits better; never a torque that is early by more than a sample.
     """
     choose = given is None
     shift = dict(given or {})
@@ -56,8 +59,8 @@ def refined_delays(
         problem  # also without what the call leaves: the next signal is held against true motion
     )
     pieces = pieces_of(mended)
-    for signal, measure in (("velocity", _velocity), ("sensor", _sensor), ("torque", _torque)):
-        measured = measure(pieces)
+    for signal in ("velocity", "sensor", "torque"):
+        measured = _measured(signal, pieces)
         if measured is None:
             continue
         left, certain = measured
@@ -68,10 +71,12 @@ def refined_delays(
             fits = fits_better(mended, without, _LEAST_GAIN[signal])
             # Friction that the model lacks may look like a late torque; the others are measured without it.
             certain = fits or signal != "torque"
-            if fits:
+            wrong = signal == "torque" and left.value < -problem.recordings[0].sample_period
+            # A torque does not come before its motion: then the position is late, as a coarse one is.
+            if fits and not (choose and wrong):
                 mended, pieces = without, pieces_of(without)
-            if fits and choose:
-                shift[signal] = taken = left.value
+                if choose:
+                    shift[signal] = taken = left.value
         found[signal] = Delay(
             signal=signal,
             value=value,
@@ -89,7 +94,18 @@ def _shifted(problem: Problem, shift: Mapping[str, float]) -> Problem:
     return replace(problem, recordings=tuple(shifted(run, shift) for run in problem.recordings))
 
 
-def _velocity(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
+def _measured(signal: str, pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
+    """A signal's delay and whether it is certain; parts of the motion show that the velocity has none."""
+    if signal == "sensor":
+        return _sensor(pieces)
+    if signal == "torque":
+        return _torque(pieces)
+    few = few_of(pieces)
+    first = _velocity(few, glance=True) if few else None
+    return _velocity(pieces) if first is None or first[1] else first
+
+
+def _velocity(pieces: Sequence[Piece], glance: bool = False) -> tuple[Shift, bool] | None:
     pieces = [piece for piece in pieces if not piece.stretch.derived]
     if not pieces:
         return None
@@ -114,6 +130,9 @@ def _velocity(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
         held=False,
     )
     period = pieces[0].stretch.period
+    if glance:
+        found = fit_shift(balance, robust=False, least=_SUSPECT * _VELOCITY * period)
+        return None if found is None else (found, not _is_clearly_none(found, _VELOCITY * period))
     found = _searched(balance, period, _VELOCITY * period)
     if found is None or found.unexplained > _MOST_LEFT_OF_VELOCITY:
         return None
@@ -126,10 +145,10 @@ def _sensor(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
     if not pieces:
         return None
 
-    def balance(factor: int) -> Balance:
+    def balance(factor: int, varying: bool = False) -> Balance:
         windows = []
         for piece in pieces:
-            half = factor * half_length(piece.stretch)
+            half = factor * piece.half
             windows.append(
                 SmoothWindows(
                     stretch=piece.stretch,
@@ -144,7 +163,7 @@ def _sensor(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
         # acceleration of the interval before its sample.
         columns = stacked(
             [
-                conservative(each, piece.angle, delayed=piece.held)
+                conservative(each, piece.circle, delayed=piece.held, varying=varying)
                 for each, piece in zip(windows, pieces, strict=True)
             ]
         )
@@ -158,14 +177,23 @@ def _sensor(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
 
     period = pieces[0].stretch.period
     found = _searched(balance(1), period, _SMALL)
+    if found is None or abs(found.value) + 2.0 * found.stderr > _SMALL:
+        told = delay_in_command(pieces)
+        late = told is not None and told.value > max(_SMALL, _LEAST_IN_COMMAND * period)
+        if told is not None and late and (found is None or found.agrees(told, _ALIKE)):
+            return told, True
     if found is None or found.unexplained > _MOST_LEFT:
         return None
     # An early reading is one that is not of a control cycle, up to half a sample.
     least = _SMALL if found.value > 0.0 or not pieces[0].held else _SMALL + 0.6 * period
     if not _is_long(found, least):
         return found, False
-    smoother = _searched(balance(3), period, 0.0)
-    return found, smoother is not None and found.agrees(smoother, _ALIKE)
+    # A link whose inertia varies with the pose may look like a late reading.
+    for factor, varying in ((3, False), (1, True)):
+        other = _searched(balance(factor, varying), period, 0.0)
+        if other is None or not found.agrees(other, _ALIKE) or abs(other.value) < least:
+            return found, False
+    return found, True
 
 
 def _torque(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
@@ -179,7 +207,7 @@ def _torque(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
     def windows(clear: bool) -> list[SmoothWindows]:
         result = []
         for piece in pieces:
-            half, margin = half_length(piece.stretch), _margin(piece)
+            half, margin = piece.half, _margin(piece)
             result.append(
                 SmoothWindows(
                     stretch=piece.stretch,
@@ -193,8 +221,8 @@ def _torque(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
 
     def balance(clear: bool = False, varying: bool = False) -> Balance:
         each = list(zip(windows(clear), pieces, strict=True))
-        first = [conservative(w, piece.angle, varying=varying) for w, piece in each]
-        rest = [friction(w, piece.angle) for w, piece in each]
+        first = [conservative(w, piece.circle, varying=varying) for w, piece in each]
+        rest = [friction(w, piece.circle) for w, piece in each]
         return Balance(
             windows=[w for w, _ in each],
             signals=[piece.torque for piece in pieces],
@@ -225,10 +253,17 @@ def _torque(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
 def _searched(balance: Balance, period: float, least: float) -> Shift | None:
     """The delay: from no shift, and only where that looks long, from the shift of least misfit."""
     if least > 0.0:
-        found = fit_shift(balance)
+        found = fit_shift(balance, least=_SUSPECT * least)
         if found is not None and abs(found.value) < max(_SUSPECT * least, 2.0 * found.stderr):
             return found
     return fit_shift(balance, reach=max(_REACH, 3.0 * period))
+
+
+def _is_clearly_none(found: Shift, least: float) -> bool:
+    return (
+        found.unexplained < _MOST_LEFT_OF_VELOCITY
+        and abs(found.value) + _CLEARLY * found.stderr < _SUSPECT * least
+    )
 
 
 def _is_long(found: Shift, least: float) -> bool:

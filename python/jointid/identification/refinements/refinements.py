@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from jointid import _core
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
 from jointid.estimate.delays import Delay
 from jointid.estimate.slow_motion import SlowMotion
 from jointid.identification.refinements.delays import refined_delays
@@ -60,10 +62,10 @@ def without_creep(
     Raises
     ------
     InputError
-        Windows that cannot be cut.
+        Windows that cannot be cut; a minimum speed that leaves too little motion.
     """
     if min_speed:
-        problem = replace(problem, min_speed=min_speed)
+        problem = _faster(problem, windows, min_speed)
     penalty = problem.penalty(windows)
     if min_speed is not None:
         return problem, penalty, None
@@ -72,3 +74,20 @@ def without_creep(
         problem = replace(problem, min_speed=slow.speed)
         penalty = problem.penalty(windows)
     return problem, penalty, slow
+
+
+def _faster(problem: Problem, windows: Windows, min_speed: float) -> Problem:
+    """The problem without motion that is slower; an error tells what the speed leaves."""
+    faster = replace(problem, min_speed=min_speed)
+    try:
+        faster.parts(windows)
+    except InputError as error:
+        problem.parts(windows)  # raises where the speed is not to blame
+        unit = "rad/s" if problem.recordings[0].kind == "revolute" else "m/s"
+        raise InputError(
+            f"it leaves too little motion: the joint moves at up to {problem.peak_speed:.3g} {unit}",
+            argument="min_speed",
+            value=min_speed,
+            remedy=Action("call", {"min_speed": 0}),
+        ) from error
+    return faster

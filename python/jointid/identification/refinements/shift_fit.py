@@ -18,6 +18,8 @@ _STEPS = 6
 _ROUNDS = 2  # of weights
 _CLIPPED = 4.0  # medians of the residual's size: a window that misses by more counts for less
 _CLUSTER = 0.3  # [s] of motion that counts as one observation
+_ROWS = 256
+_CLEARLY_SHORTER, _CLEAR_ERRORS = 0.5, 6.0
 _SINGULAR = 1e-11  # of the largest eigenvalue of the scaled normal equations
 
 
@@ -113,7 +115,7 @@ class _Projection:
     def __init__(self, columns: Array, weights: Array | None) -> None:
         self._columns = columns
         weighted = columns if weights is None else columns * weights[:, None]
-        gram = columns.T @ weighted
+        gram = _gram(columns, weighted)
         scale = np.sqrt(np.diag(gram))
         scale = np.where(scale > 0.0, scale, np.inf)
         values, vectors = np.linalg.eigh(gram / np.outer(scale, scale))
@@ -130,7 +132,20 @@ class _Projection:
         return np.asarray(signal - self._columns @ self.coefficients(signal))
 
 
-def fit_shift(balance: Balance, *, reach: float = 0.0, robust: bool = True) -> Shift | None:
+def _gram(columns: Array, others: Array) -> Array:
+    """columns.T @ others in blocks of rows: a library with threads spends longer on waking them than on one."""
+    whole = len(columns) // _ROWS * _ROWS
+    width = columns.shape[1]
+    blocks = np.matmul(
+        columns[:whole].reshape(-1, _ROWS, width).transpose(0, 2, 1),
+        others[:whole].reshape(-1, _ROWS, width),
+    )
+    return np.asarray(blocks.sum(axis=0) + columns[whole:].T @ others[whole:])
+
+
+def fit_shift(
+    balance: Balance, *, reach: float = 0.0, robust: bool = True, least: float = 0.0
+) -> Shift | None:
     """Return the delay of the balance's signal; None where the rows are too few or say nothing.
 
     The signal's window means, shifted, are regressed on the columns and on their own rate of change, which
@@ -144,6 +159,8 @@ def fit_shift(balance: Balance, *, reach: float = 0.0, robust: bool = True) -> S
         Search from the shift of least misfit up to this [s]. Default 0: from no shift.
     robust : bool
         Whether windows that miss by far count for less. Default True.
+    least : float
+        A delay that is clearly shorter after one step is not refined [s]. Default 0.
     """
     rows, count = balance.columns.shape
     if rows < 3 * count + 20:
@@ -154,7 +171,7 @@ def fit_shift(balance: Balance, *, reach: float = 0.0, robust: bool = True) -> S
     delay = _least_misfit(balance, shifted, projection, reach) if reach > 0.0 else 0.0
     bound = 2.0 * reach if reach > 0.0 else 0.02
     weights = np.ones(rows)
-    step, level = 0.0, np.zeros(rows)
+    step, level, none = 0.0, np.zeros(rows), False
     for turn in range(_ROUNDS if robust else 1):
         for _ in range(_STEPS):
             level = shifted(delay)
@@ -170,9 +187,13 @@ def fit_shift(balance: Balance, *, reach: float = 0.0, robust: bool = True) -> S
             delay += step
             if abs(delay) > bound:
                 return None
-            if abs(step) < _NEAR:
+            if abs(step) < _NEAR or abs(delay) < _CLEARLY_SHORTER * least:
                 break
         missed = rest + step * total
+        noise = float(missed @ missed) / (rows - projection.rank)
+        none = abs(delay) + _CLEAR_ERRORS * np.sqrt(noise / energy) < least
+        if none:
+            break
         if robust and turn < _ROUNDS - 1:
             size = np.abs(missed)
             weights = 1.0 / np.maximum(1.0, size / (_CLIPPED * float(np.median(size)) + 1e-300))
@@ -181,7 +202,7 @@ def fit_shift(balance: Balance, *, reach: float = 0.0, robust: bool = True) -> S
     own = _errors(total[:, None], missed, weights, groups, projection.rank)
     spread = level - level.mean()
     parts = ((delay, float(own[0])),) * 2
-    if slopes.shape[1] > 1:
+    if slopes.shape[1] > 1 and not none:
         matrix = slopes.T @ (weights[:, None] * slopes)
         apart = -np.linalg.pinv(matrix) @ (slopes.T @ (weights * rest))
         errors = _errors(slopes, rest + slopes @ apart, weights, groups, projection.rank)
@@ -259,7 +280,8 @@ def _errors(
     slopes: Array, missed: Array, weights: Array, groups: NDArray[np.int64], rank: int
 ) -> Array:
     """Standard errors: the larger of the classical ones and those clustered over pieces of the motion."""
-    inverse = np.linalg.pinv(slopes.T @ (weights[:, None] * slopes))
+    gram = slopes.T @ (weights[:, None] * slopes)
+    inverse = 1.0 / gram if gram.size == 1 else np.linalg.pinv(gram)
     scores = slopes * (weights * missed)[:, None]
     sums = np.column_stack([np.bincount(groups, column) for column in scores.T])
     used = max(2, int(np.count_nonzero(np.bincount(groups))))

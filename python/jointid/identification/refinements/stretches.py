@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.identification.refinements.smooth_windows import Stretch
+from jointid.identification.refinements.smooth_windows import Stretch, half_length
 from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
@@ -17,6 +19,7 @@ Array = NDArray[np.float64]
 _SHORTEST = 250  # samples
 _PIECE = 12_000  # samples
 _MOST = 60_000  # samples of all pieces: an hour of motion says it no better
+_PART, _PARTS = 1200, 2  # samples, and number, of the parts for a first look
 _UNEVEN = 1e-3  # of the period
 
 
@@ -42,6 +45,16 @@ class Piece:
     sensor: Array | None
     held: bool
 
+    @cached_property
+    def half(self) -> int:
+        """Half the length of a window, in samples."""
+        return half_length(self.stretch)
+
+    @cached_property
+    def circle(self) -> tuple[Array, Array]:
+        """Cosine and sine of the angle."""
+        return np.cos(self.angle), np.sin(self.angle)
+
 
 def pieces_of(problem: Problem) -> list[Piece]:
     """Return stretches of all recordings, evenly chosen where there is more than a minute's worth."""
@@ -59,6 +72,37 @@ def pieces_of(problem: Problem) -> list[Piece]:
         count = max(1, len(spans) * _MOST // total)
         spans = [spans[i] for i in np.linspace(0, len(spans) - 1, count).astype(int)]
     return [_piece(problem, *span) for span in spans]
+
+
+def few_of(pieces: Sequence[Piece]) -> list[Piece] | None:
+    """Return short parts of the pieces, evenly chosen, for a first look; None where there is little to leave out."""
+    cuts = [
+        (piece, first)
+        for piece in pieces
+        for first in range(0, len(piece.torque) - _PART + 1, _PART)
+    ]
+    if len(cuts) < 2 * _PARTS:
+        return None
+    places = np.linspace(0, len(cuts) - 1, 2 * _PARTS + 1).astype(int)[1::2]
+    return [_part(*cuts[i]) for i in places]
+
+
+def _part(piece: Piece, first: int) -> Piece:
+    cut = slice(first, first + _PART)
+    whole = piece.stretch
+    return Piece(
+        stretch=Stretch(
+            time=whole.time[cut],
+            position=whole.position[cut],
+            velocity=whole.velocity[cut],
+            usable=whole.usable[cut],
+            derived=whole.derived,
+        ),
+        angle=piece.angle[cut],
+        torque=piece.torque[cut],
+        sensor=None if piece.sensor is None else piece.sensor[cut],
+        held=piece.held,
+    )
 
 
 def _piece(problem: Problem, number: int, first: int, last: int) -> Piece:

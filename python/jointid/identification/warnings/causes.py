@@ -43,12 +43,22 @@ TYPES = {
 def _find(evidence: Evidence) -> Iterator[Finding]:
     if evidence.causes is None:
         return
-    causes = [each for each in evidence.causes.found if each.name != WRONG_SCALE.code]
+    # Their own checks say more.
+    causes = [
+        each
+        for each in evidence.causes.found
+        if each.name != WRONG_SCALE.code and not _is_known_delay(each, evidence)
+    ]
     uncertain = wide(evidence)
-    for number, cause in enumerate(causes):  # a wrong scale has its own check, which asks for more
+    for number, cause in enumerate(causes):
         # The misfit makes values uncertain beside those that a shift of first order shows.
         names = (*cause.relative, *(uncertain if number == 0 else ()))
         yield _finding(cause, with_partners(evidence, names))
+
+
+def _is_known_delay(cause: Cause, evidence: Evidence) -> bool:
+    delay = evidence.delays.get(cause.detail) if cause.name == "delay" else None
+    return delay is not None and delay.certain
 
 
 def _finding(cause: Cause, concerned: tuple[str, ...]) -> Finding:

@@ -39,11 +39,12 @@ class FindingType:
         *advice: Action,
         evidence: Mapping[str, Measured] | None = None,
         parameters: tuple[str, ...] = (),
+        severity: Severity | None = None,
     ) -> Finding:
-        """Return a finding of this type."""
+        """Return a finding of this type; its severity is the type's unless given."""
         return Finding(
             code=self.code,
-            severity=self.severity,
+            severity=severity or self.severity,
             parameters=parameters,
             evidence=evidence or {},
             cause=cause,

@@ -13,7 +13,7 @@ from jointid.identification.warnings.evidence import Evidence
 SIGNAL_LAG = FindingType(
     code="signal_lag",
     meaning="torque, sensor or velocity is late against the position, as a filter, a slow bus or a backward "
-    "difference makes it, and was not shifted",
+    "difference makes it, or early against a late position, and was not shifted, or by another delay",
     advice="shift the signal by the delay that is stated, or remove its cause",
 )
 DELAY_REMOVED = FindingType(
@@ -22,13 +22,14 @@ DELAY_REMOVED = FindingType(
     meaning="torque, sensor or velocity was late against the position, and was shifted before the identification",
     advice="nothing; to keep the signal as it is, shift it by 0",
 )
+_NONE = 3.0  # standard errors, below which there is no delay to shift by
 _HALF = 0.2  # of a sample period: so near to half a period early, a torque is one that is held
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
     certain = [delay for delay in evidence.delays.values() if delay.certain]
-    left = [delay for delay in certain if delay.applied != delay.value]
-    removed = [delay for delay in certain if delay.applied == delay.value]
+    left = [delay for delay in certain if delay.left]
+    removed = [delay for delay in certain if not delay.left]
     for delay in left:
         if not delay.fits:
             # A delay of one signal alone would make the balance worse: others are as late.
@@ -42,10 +43,21 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
                 parameters=_concerned(delay, evidence),
             )
             continue
+        if delay.signal == "torque" and delay.value < -_period(evidence) and not delay.applied:
+            yield SIGNAL_LAG.finding(
+                f"{_described(delay, evidence)}: the position is late, or coarse, or the torque early",
+                Action("inspect", text="the position's filter and resolution, and both clocks"),
+                evidence=_measured(delay, evidence),
+                parameters=_concerned(delay, evidence),
+            )
+            continue
         whole = {each.signal: each.applied for each in evidence.delays.values() if each.applied}
+        whole[delay.signal] = round(delay.value, 7)
+        if abs(delay.value) < _NONE * delay.stderr:
+            del whole[delay.signal]
         yield SIGNAL_LAG.finding(
             f"{_described(delay, evidence)}, which biases the values",
-            Action("call", {"shift": {**whole, delay.signal: round(delay.value, 7)}}),
+            Action("call", {"shift": whole}),
             evidence=_measured(delay, evidence),
             parameters=_concerned(delay, evidence),
         )
@@ -59,12 +71,20 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _described(delay: Delay, evidence: Evidence) -> str:
-    side = "late" if delay.value > 0.0 else "early"
-    periods = abs(delay.value) / _period(evidence)
+    size = _size(delay)
+    side = "late" if size > 0.0 else "early"
+    periods = abs(size) / _period(evidence)
+    shifted = delay.applied and delay.left
+    after = f" after the stated shift by {1e3 * delay.applied:.3g} ms" if shifted else ""
     return (
-        f"the {delay.signal} is {side} by {1e3 * abs(delay.value):.3g} ± {1e3 * delay.stderr:.2g} ms "
-        f"({periods:.1f} sample periods) against the position"
+        f"the {delay.signal} is {side} by {1e3 * abs(size):.3g} ± {1e3 * delay.stderr:.2g} ms "
+        f"({periods:.1f} sample periods) against the position{after}"
     )
+
+
+def _size(delay: Delay) -> float:
+    """What is left of a delay, or what was taken away where nothing is [s]."""
+    return delay.left or delay.value
 
 
 def _instead(delay: Delay, evidence: Evidence) -> tuple[Action, ...]:
@@ -83,9 +103,9 @@ def _period(evidence: Evidence) -> float:
 
 def _measured(delay: Delay, evidence: Evidence) -> dict[str, Measured]:
     return {
-        "lag": Measured(delay.value, "s"),
+        "lag": Measured(_size(delay), "s"),
         "lag_error": Measured(delay.stderr, "s"),
-        "lag_periods": Measured(delay.value / _period(evidence)),
+        "lag_periods": Measured(_size(delay) / _period(evidence)),
     }
 
 

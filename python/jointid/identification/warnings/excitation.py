@@ -147,13 +147,14 @@ class Excitation:
             f"{_two(needed)} s like it would do"
         )
         motion = f"about {_two(needed)} s of such motion"
+        measured = {"duration": Measured(duration, "s"), "duration.needed": Measured(needed, "s")}
         if needed > _LONGEST * duration:
             text = (
                 f"the noise hides it: {_two(duration)} s of motion would have to be {_two(needed / duration)} times as "
                 "long"
             )
+            measured["duration.factor"] = Measured(float(_two(needed / duration)))
             motion = "with less noise, or with motion that this parameter shows in more"
-        measured = {"duration": Measured(duration, "s"), "duration.needed": Measured(needed, "s")}
         return Lack("duration", text, motion, measured, needed)
 
     def noise(self) -> Lack:

@@ -1,7 +1,6 @@
 """A model that explains too little."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
@@ -29,13 +28,13 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     )
     measured = {"r_squared": Measured(explained)}
     if explained < 0.0:
-        found = POOR_FIT.finding(
+        yield POOR_FIT.finding(
             f"the model explains less of what was measured than its mean does (R² = {explained:.2f}): the values "
             "cannot be used",
             *actions,
             evidence=measured,
+            severity="blocking",
         )
-        yield replace(found, severity="blocking")
         return
     # Noise alone is no misfit, and the errors contain it, unless it is all that was measured.
     limit = _NOTHING if evidence.white else POORLY_EXPLAINED

@@ -1,0 +1,53 @@
+"""Load friction of the drive's torque where nothing tells the scale of the balance."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding
+from jointid.estimate.statistics import ParameterEstimate
+from jointid.identification.warnings.check import Check, FindingType
+from jointid.identification.warnings.evidence import Evidence
+
+LOAD_SCALE = FindingType(
+    code="load_scale",
+    severity="blocking",
+    meaning="load friction takes a share of the drive's torque, and neither the inertia nor gravity is known: a drive "
+    "that only drives fits as well with every value scaled",
+    advice="give the joint its inertia or its link",
+)
+
+
+def scale_is_free(parameters: Mapping[str, ParameterEstimate], terms: tuple[str, ...]) -> bool:
+    """Whether load friction may scale all other values.
+
+    With the load as the drive's torque, the balance of a joint that is driven is (1 - load_friction) times the torque:
+    any value of it fits, unless another coefficient is known.
+
+    Parameters
+    ----------
+    terms : tuple of str
+        Keys of the terms, of which load_friction is the one whose load is the drive's torque.
+    """
+    load = parameters.get("load_friction")
+    if "load_friction" not in terms or load is None or not load.vary:
+        return False
+    known = [parameters[name] for name in parameters if name.startswith(("inertia", "gravity"))]
+    return not any(not each.vary and each.value for each in known)
+
+
+def _find(evidence: Evidence) -> Iterator[Finding]:
+    if not scale_is_free(evidence.parameters, evidence.problem.choice.terms):
+        return
+    model = evidence.problem.choice.model.replace(load_friction=False)
+    yield LOAD_SCALE.finding(
+        "load_friction scales all other values, since neither the inertia nor gravity is known: none of them can be "
+        "told from the drive's torque alone",
+        Action("inspect", text="the joint's inertia or its link, and state it in the joint"),
+        Action("call", {"model": str(model)}),
+        parameters=tuple(name for name, each in evidence.parameters.items() if each.vary),
+    )
+
+
+CHECK = Check(_find, (LOAD_SCALE,))
