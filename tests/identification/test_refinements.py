@@ -1,5 +1,8 @@
 """Delays between signals, and motion that is too slow to be believed."""
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -181,3 +184,25 @@ def test_creep_that_contradicts_is_left_out(shared_data: Path) -> None:
         jid.load(path, columns=columns), joint, search="separable", min_speed=0
     )
     assert everything.parameters["viscous"].value < 0.9 * 2024.0
+
+
+def test_bits_do_not_depend_on_the_threads_of_blas() -> None:
+    """A library that runs products of tall arrays on its own threads changes their last bits."""
+    text = (
+        "import json, jointid as jid\n"
+        "from jointid.cli.demo import data_folder\n"
+        "found = json.loads(jid.identify(jid.load(data_folder() / 'well_excited.csv.gz')).to_json())\n"
+        "found.pop('seconds')\n"
+        "print(json.dumps(found))\n"
+    )
+    seen = {
+        subprocess.run(
+            [sys.executable, "-c", text],
+            env=os.environ | {"OPENBLAS_NUM_THREADS": count, "OMP_NUM_THREADS": count},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for count in ("1", "2")
+    }
+    assert len(seen) == 1

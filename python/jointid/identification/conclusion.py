@@ -153,7 +153,6 @@ def infer(
             at_best=at_best,
             causes=causes,
             white=noise,
-            structured=structured,
             velocity_effect=effect,
             correlations={
                 (domain.names[free[i]], domain.names[free[j]]): float(spread.correlation[i, j])

@@ -22,12 +22,12 @@ from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
+_LATE = 2.0  # standard errors of a delay that is none
 _NORMAL = 1.959964  # standard errors of half a 95 % interval
 _MOVED, _ERRORS = 0.04, 1.8  # share of a value, and standard errors, from which a cause matters
 _UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it must move by more
 _PART = 0.05  # of the variance of what was measured
 _KNOWN = 3e-4  # [s]; standard error of a delay that says whether one matters
-_BY_CHANCE = 3.0  # standard errors of a delay
 _LEAST = 0.003  # share of a value: a smaller change matters to nobody, however certain
 
 
@@ -38,7 +38,7 @@ def find_causes(
     *,
     torque_level: float,
     r_squared: float,
-    delays: Mapping[str, Delay] | None = None,
+    delays: Mapping[str, Delay],
     signals: Mapping[str, Array] | None = None,
 ) -> Causes:
     """Attribute the misfit of an estimate.
@@ -53,8 +53,8 @@ def find_causes(
         Root mean square of the torque [N·m or N]; what an offset is held against.
     r_squared : float
         Share of the variance that the model explains.
-    delays : mapping of str to Delay, optional
-        As measured against the position. Default: not measured.
+    delays : mapping of str to Delay
+        Of the signals against the position, as estimated before.
     signals : mapping of str to ndarray, optional
         Further signals of the first recording, one value a sample.
     """
@@ -65,7 +65,6 @@ def find_causes(
         for index, name in enumerate(names)
         if parameters[name].vary and parameters[name].at_bound is None
     )
-    delays = delays or {}
     late = "velocity" in delays and delays["velocity"].certain
     fit = Fitted.of(problem, penalty, best, free, signals, _prompt(delays), late)
     tried = listed_candidates(fit)
@@ -130,15 +129,15 @@ def attributed(
 
 
 def _prompt(delays: Mapping[str, Delay]) -> frozenset[str]:
-    """Signals whose delay is known well enough, and is none or was taken away.
+    """Signals that are not late, or no longer: much resembles a delay, and its own estimate says more.
 
     A torque of which only some parts seem late is not late: something else is amiss there.
     """
     found = set()
     for each in delays.values():
         left = abs(each.value - each.applied)
-        none = not each.certain and (each.signal == "torque" or left < _BY_CHANCE * each.stderr)
-        if each.stderr < _KNOWN and (none or left == 0.0):
+        parts = each.signal == "torque" and not each.certain and each.stderr < _KNOWN
+        if left <= _LATE * each.stderr or parts:
             found.add(each.signal)
     return frozenset(found)
 

@@ -1,12 +1,13 @@
 """Residuals that are not noise, where no cause has a name."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
-from jointid.identification.warnings.undetermined import wide, with_partners
+from jointid.identification.warnings.undetermined import listed, wide, with_partners
 
 STRUCTURED_RESIDUAL = FindingType(
     code="structured_residual",
@@ -17,7 +18,6 @@ STRUCTURED_RESIDUAL = FindingType(
     picture="windows",
 )
 _CORRELATED = 0.5
-_SHOWN = 2  # parameters in the sentence
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
@@ -25,25 +25,19 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if evidence.penalty.cumulative or named(evidence):
         return
     correlation = evidence.residuals.autocorrelation
-    uncertain = with_partners(evidence, wide(evidence)) if evidence.structured else ()
+    uncertain = with_partners(evidence, wide(evidence)) if evidence.causes is not None else ()
     if correlation <= _CORRELATED and not uncertain:
         return
-    # Where all intervals are narrow with what the misfit adds to them, it is worth knowing, no more.
-    makes = ""
-    if uncertain:
-        shown = ", ".join(uncertain[:_SHOWN]) + " and others" * (len(uncertain) > _SHOWN)
-        makes = f"; {shown} are uncertain"
-    yield STRUCTURED_RESIDUAL.finding(
+    makes = f"; uncertain: {listed(uncertain)}" if uncertain else ""
+    found = STRUCTURED_RESIDUAL.finding(
         f"the residuals are autocorrelated (r = {correlation:.2f}): the model misses a systematic effect"
         f"{excluded(evidence)}{makes}",
-        Action(
-            "inspect",
-            text="the residuals over time and over velocity",
-        ),
+        Action("inspect", text="the residuals over time and over velocity"),
         evidence={"autocorrelation": Measured(correlation)} | excluded_number(evidence),
         parameters=uncertain,
-        severity=None if uncertain else "info",
     )
+    # Where all intervals are narrow with what the misfit adds to them, it is worth knowing, no more.
+    yield found if uncertain else replace(found, severity="info")
 
 
 def named(evidence: Evidence) -> bool:
