@@ -9,7 +9,6 @@ from jointid.comparison.load_evidence import load_refusal
 from jointid.comparison.result import ComparedModel
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.student import quantile
-from jointid.identification.warnings.load_scale import LOAD_SCALE
 from jointid.problem.constant_torque import undivided
 
 _ONE_ERROR = 0.841345  # probability below one standard error of a normal distribution
@@ -76,7 +75,7 @@ def counted(estimate: Estimate) -> int:
 def refusal(estimate: Estimate) -> str | None:
     """Return why the data do not support a model, or None if they do."""
     for warning in estimate.warnings:
-        if warning.code in ("model_too_rich", LOAD_SCALE.code):
+        if warning.code in ("model_too_rich", "load_scale"):
             return f"not eligible: {warning.cause}"
     ended = [p for p in estimate.parameters.values() if p.at_bound is not None]
     if ended:
