@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.problem.problem import Problem
+from jointid.problem.recordings import output_torque
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -84,7 +85,8 @@ class Fitted:
 
         All of them, if most windows would be lost.
         """
-        resting = self.integral(lambda _, run: _on_a_limit(_present(run.torque))) > 0.0
+        joint = self.problem.joint
+        resting = self.integral(lambda _, run: _on_a_limit(output_torque(run, joint))) > 0.0
         return ~resting if resting.mean() < _MOST_RESTING else np.ones(len(resting), dtype=bool)
 
     @functools.cached_property
