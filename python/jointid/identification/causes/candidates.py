@@ -190,14 +190,14 @@ def _delay(fit: Fitted) -> Iterator[Candidate]:
     """
     if "torque" not in fit.prompt:
         runs = fit.problem.in_core
-        late = np.asarray(fit.penalty.torque_steps(runs, fit.problem.mask_standstill))
+        late = -np.asarray(fit.penalty.torque_steps(runs, fit.problem.mask_standstill))
         yield Candidate(name="delay", columns=late[:, None], detail="torque")
     if "sensor_gain" in fit.names and "sensor" not in fit.prompt:
         gain = fit.value("sensor_gain")
         rise = gain * fit.rise(lambda _, run: _present(run.sensor))
         yield Candidate(name="delay", columns=rise[:, None], detail="sensor")
     if not fit.problem.recordings[0].velocity_derived and "velocity" not in fit.prompt:
-        rise = -fit.rise(lambda _, run: _of_velocity(fit, run))
+        rise = fit.rise(lambda _, run: _of_velocity(fit, run))
         yield Candidate(name="delay", columns=rise[:, None], detail="velocity")
 
 

@@ -247,7 +247,8 @@ def _described(fit: Fitted, each: Attributed) -> tuple[str, str, dict[str, Measu
         size, numbers["torque"] = f"{found[0]:.3g} {torque}", Measured(float(found[0]), torque)
     elif name == "delay" and detail != FILTERED:
         late = float(found[0])
-        size, numbers["delay"] = f"by about {1e3 * late:.2g} ms", Measured(late, "s")
+        side = "late" if late > 0.0 else "early"
+        size, numbers["delay"] = f"{side} by about {1e3 * abs(late):.2g} ms", Measured(late, "s")
     elif name == "load_friction":
         size, numbers["coefficient"] = f"{found[0]:.3g} of the load", Measured(float(found[0]))
     elif name == "drift":
