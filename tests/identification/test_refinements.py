@@ -92,7 +92,7 @@ def test_a_shift_that_is_wrong_is_told_with_what_it_leaves(run: jid.Recording) -
     assert abs(gain.value - TRUTH["sensor_gain"]) < 2.0 * gain.systematic["lag"]
     (finding,) = (each for each in estimate.findings if each.code == "signal_lag")
     assert finding.evidence["lag"].value == found.left
-    assert "early by 3" in finding.cause
+    assert "the torque is early by" in finding.cause
     assert "after the stated shift by 3 ms" in finding.cause
     assert finding.advice[0].arguments["shift"] == {}
     # Nothing else in the report says another thing of the torque.

@@ -71,7 +71,7 @@ def find_causes(
     found: list[Cause] = []
     harmless: list[Cause] = []
     for each in attribute(fit, tried):
-        cause = _cause(fit, each, parameters, torque_level)
+        cause = _cause(fit, each, parameters, torque_level, delays)
         # A large part of what was measured matters, however badly the values are known without it.
         matters = cause.relative or cause.share * (1.0 - r_squared) > _PART
         (found if matters else harmless).append(cause)
@@ -147,6 +147,7 @@ def _cause(
     each: Attributed,
     parameters: Mapping[str, ParameterEstimate],
     torque_level: float,
+    delays: Mapping[str, Delay],
 ) -> Cause:
     shifts = {
         fit.names[index]: float(shift) for index, shift in zip(fit.free, each.shifts, strict=True)
@@ -158,7 +159,7 @@ def _cause(
         for name, shift in shifts.items()
         if (share := _matters(parameters[name], shift, 1.0 - each.share, scales[name])) is not None
     }
-    detail, size, numbers = _described(fit, each)
+    detail, size, numbers = _described(fit, each, delays)
     return Cause(
         name=each.candidate.name,
         detail=detail,
@@ -233,7 +234,9 @@ def _span(fit: Fitted) -> float:
     return max(run.duration for run in fit.problem.recordings)
 
 
-def _described(fit: Fitted, each: Attributed) -> tuple[str, str, dict[str, Measured]]:
+def _described(
+    fit: Fitted, each: Attributed, delays: Mapping[str, Delay]
+) -> tuple[str, str, dict[str, Measured]]:
     """Detail and size as texts, and their numbers."""
     name, found = each.candidate.name, each.coefficients
     prismatic = fit.problem.recordings[0].kind == "prismatic"
@@ -247,6 +250,9 @@ def _described(fit: Fitted, each: Attributed) -> tuple[str, str, dict[str, Measu
         size, numbers["torque"] = f"{found[0]:.3g} {torque}", Measured(float(found[0]), torque)
     elif name == "delay" and detail != FILTERED:
         late = float(found[0])
+        known = delays.get(detail)
+        if known is not None and known.certain and known.left:
+            late = known.left
         side = "late" if late > 0.0 else "early"
         size, numbers["delay"] = f"{side} by about {1e3 * abs(late):.2g} ms", Measured(late, "s")
     elif name == "load_friction":
