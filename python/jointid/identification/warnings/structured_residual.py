@@ -1,7 +1,6 @@
 """Residuals that are not noise, where no cause has a name."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
@@ -29,15 +28,15 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if correlation <= _CORRELATED and not uncertain:
         return
     makes = f"; uncertain: {listed(uncertain)}" if uncertain else ""
-    found = STRUCTURED_RESIDUAL.finding(
+    # Where all intervals are narrow with what the misfit adds to them, it is worth knowing, no more.
+    yield STRUCTURED_RESIDUAL.finding(
         f"the residuals are autocorrelated (r = {correlation:.2f}): the model misses a systematic effect"
         f"{excluded(evidence)}{makes}",
         Action("inspect", text="the residuals over time and over velocity"),
         evidence={"autocorrelation": Measured(correlation)} | excluded_number(evidence),
         parameters=uncertain,
+        severity=None if uncertain else "info",
     )
-    # Where all intervals are narrow with what the misfit adds to them, it is worth knowing, no more.
-    yield found if uncertain else replace(found, severity="info")
 
 
 def named(evidence: Evidence) -> bool:
