@@ -9,7 +9,7 @@ from plants import Bench, Law, Log, Plant, simulate, thesis
 import jointid as jid
 from jointid.estimate.causes import MEANINGS
 from jointid.estimate.delays import Delay
-from jointid.identification.causes.causes import _on_time
+from jointid.identification.causes.causes import _prompt
 from jointid.identification.causes.suspicion import correlated, suspicious
 from jointid.identification.warnings.inspection import inspect
 from jointid.identification.warnings.spikes import _without_kicks
@@ -81,13 +81,13 @@ def test_noise_that_is_louder_at_low_speed_is_not_correlated() -> None:
 def test_a_delay_within_its_error_is_none() -> None:
     def delay(value: float, applied: float = 0.0) -> Delay:
         return Delay(
-            signal="torque", value=value, stderr=1e-4, certain=False, fits=False, applied=applied
+            signal="sensor", value=value, stderr=1e-4, certain=False, fits=False, applied=applied
         )
 
-    assert _on_time(delay(1e-4))
-    assert _on_time(delay(1e-3, applied=1e-3))
-    assert not _on_time(delay(3e-4))
-    assert not _on_time(None)
+    assert _prompt({"sensor": delay(1e-4)}) == {"sensor"}
+    assert _prompt({"sensor": delay(1e-3, applied=1e-3)}) == {"sensor"}
+    assert not _prompt({"sensor": delay(3e-4)})
+    assert not _prompt({})
 
 
 @pytest.mark.parametrize(("place", "count"), [(2000, 0), (1000, 1)])
