@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -195,7 +196,7 @@ def identified(
     case: Case, recording: jid.Recording, sensor: bool, shift: dict[str, float] | None = None
 ) -> jid.Estimate:
     """The estimate with what one knows of a joint."""
-    given = {"inertia": float((recording.truth or {})["inertia"])} if sensor else {}
+    given: dict[str, Any] = {"inertia": float((recording.truth or {})["inertia"])} if sensor else {}
     model = jid.Model.parse("stribeck" if sensor else case.model)
     joint = jid.Joint(gear_ratio=101.0, sensor=sensor, model=model, **given)
     return jid.identify(recording, joint, search="separable", shift=shift)
@@ -329,7 +330,7 @@ def main() -> None:
     words = given.only.split() or [""]
     lines = [_TEXT.format(joints=given.joints, seed=given.seed)]
     for title, sensor in (("With a torque sensor", True), ("Without one", False)):
-        cases = WITH_SENSOR if sensor else WITHOUT
+        cases: tuple[Case, ...] = WITH_SENSOR if sensor else WITHOUT
         cases = tuple(case for case in cases if any(word in case.name for word in words))
         lines += [f"\n## {title}\n", HEAD]
         lines += table(cases, given.joints, sensor, given.seed, given.verbose)

@@ -31,9 +31,11 @@ def table(path: Path) -> dict[str, np.ndarray]:
     return dict(zip(names, values.T, strict=True))
 
 
-def joint(gravity: str, kind: str = "revolute") -> jid.Joint:
+def joint(gravity: str, kind: Any = "revolute") -> jid.Joint:
     """What is known before the identification."""
-    return jid.Joint(kind=kind, torque_offset=True, model=f"coulomb_viscous:gravity={gravity}")
+    return jid.Joint(
+        kind=kind, torque_offset=True, model=jid.Model.parse(f"coulomb_viscous:gravity={gravity}")
+    )
 
 
 def logs(data: Path) -> Iterator[tuple[str, jid.Recording, jid.Joint]]:

@@ -18,7 +18,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
-from plants import Bench, Law, Log, chirp, simulate, sines, thesis, trapezoids
+from plants import Bench, Law, Log, Motion, chirp, simulate, sines, thesis, trapezoids
 
 import jointid as jid
 from jointid.recording.derived import differences
@@ -36,7 +36,7 @@ class Case:
     every: int
 
 
-def motions(rng: np.random.Generator) -> Iterator[object]:
+def motions(rng: np.random.Generator) -> Iterator[Motion]:
     """Five motions, each a little larger or smaller with every seed."""
     size = float(rng.uniform(0.85, 1.15))
     yield thesis([np.radians(60.0) * size])
@@ -82,7 +82,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--differences", action="store_true")
     chosen = parser.parse_args()
-    joint = jid.Joint(model="stribeck:gravity=free")
+    joint = jid.Joint(model=jid.Model("stribeck", gravity="free"))
     head = " | ".join(f"{name}: median, 90 %, worst [%], coverage [%]" for name in NAMES)
     print(f"| counts, period [ms] | {head} | off and unnamed |")
     print("|" + "---|" * (len(NAMES) + 2))

@@ -206,7 +206,7 @@ def test_a_misfit_without_a_name_is_said_in_one_line() -> None:
         time=run.time,
         position=run.position,
         velocity=run.velocity,
-        torque=run.torque + wander,
+        torque=np.asarray(run.torque) + wander,
         sensor=run.sensor,
     )
     estimate = jid.identify(run, jid.thesis_joint(), search="separable")

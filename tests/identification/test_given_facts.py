@@ -62,7 +62,9 @@ def test_several_facts_add_as_squares(run: jid.Recording) -> None:
 def test_known_gravity_passes_its_tolerance_on() -> None:
     run = jid.load(data_folder() / "kr300_joint1.csv.gz")
     link = jid.Link(mass=100.0, centre_of_mass=0.5)
-    joint = jid.Joint(gear_ratio=256.86, link=link, model="coulomb_viscous:gravity=known")
+    joint = jid.Joint(
+        gear_ratio=256.86, link=link, model=jid.Model("coulomb_viscous", gravity="known")
+    )
     found = jid.identify(run, joint.replace(tolerances={"mass": "10 %"}), search="separable")
     cosine = found.parameters["gravity_cos"]
     assert cosine.systematic["given"] == pytest.approx(0.1 * cosine.value)

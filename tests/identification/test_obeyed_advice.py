@@ -82,8 +82,8 @@ def complaints(call: Call, truth: Truth) -> list[str]:
         told = f"{code}: {action}"
         try:
             after = again.run()
-        except jid.InputError as error:
-            wrong.append(f"{told}: {error}")
+        except jid.InputError as refused:
+            wrong.append(f"{told}: {refused}")
             continue
         old, new = errors(before, truth), errors(after, truth)
         for name, error in new.items():

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.simulated_joint import TRUTH, simulate
+from simulated_joint import TRUTH, simulate
 
 import jointid as jid
 from jointid import _core

@@ -7,7 +7,7 @@ from jointid.identification.inference.segments import Motion, motion_segments
 
 
 def motion(travel: np.ndarray, recording: np.ndarray | None = None) -> Motion:
-    start = 0.01 * np.arange(len(travel))
+    start = np.asarray(0.01 * np.arange(len(travel)), dtype=np.float64)
     which = np.zeros(len(travel), dtype=np.int64) if recording is None else recording
     return Motion(start=start, stop=start + 0.01, travel=travel, recording=which)
 

@@ -3,6 +3,7 @@
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -41,7 +42,7 @@ def home() -> jid.Estimate:
     return jid.identify(jid.load(EXAMPLES / "well_excited.csv.gz"))
 
 
-def chosen(*arguments: object, **keywords: object) -> Selection:
+def chosen(*arguments: Any, **keywords: Any) -> Selection:
     found = jid.identify(*arguments, **{"search": "separable", **keywords}).selection
     assert found is not None
     return found
@@ -79,11 +80,13 @@ def test_what_is_stated_stays() -> None:
     assert chosen(loaded, model=":gravity=none").model == "stribeck"
     assert chosen(loaded, model="auto:gravity=free").model == "stribeck:gravity=free"
     assert chosen(loaded, model=":harmonics=1").model == "stribeck:harmonics=1"
-    assert chosen(loaded, jid.Joint(model="coulomb_viscous"), model="auto").model.startswith(
-        "stribeck"
-    )
+    assert chosen(
+        loaded, jid.Joint(model=jid.Model("coulomb_viscous")), model="auto"
+    ).model.startswith("stribeck")
     assert (
-        jid.identify(loaded, jid.Joint(model="coulomb_viscous"), search="separable").selection
+        jid.identify(
+            loaded, jid.Joint(model=jid.Model("coulomb_viscous")), search="separable"
+        ).selection
         is None
     )
 
@@ -96,7 +99,7 @@ def test_a_parameter_of_the_call_has_its_model() -> None:
 
 
 def test_the_joint_names_what_was_chosen(tmp_path: Path) -> None:
-    joint = jid.Joint(name="elbow", inertia=1.5, model="auto")
+    joint = jid.Joint(name="elbow", inertia=1.5, model=jid.Model("auto"))
     found = jid.identify(recording(static=5.0), joint, search="separable")
     assert str(found.joint.model) == "stribeck:gravity=none"
     assert found.parameters["inertia"].value == 1.5

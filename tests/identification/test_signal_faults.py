@@ -122,7 +122,9 @@ def compensated(seed: int) -> jid.Recording:
     return jid.Recording(time=run.time, position=run.position, velocity=run.velocity, torque=torque)
 
 
-JOINT = jid.Joint(inertia=INERTIA + LINK_INERTIA, sensor=False, model="stribeck:gravity=free")
+JOINT = jid.Joint(
+    inertia=INERTIA + LINK_INERTIA, sensor=False, model=jid.Model("stribeck", gravity="free")
+)
 
 
 @pytest.mark.parametrize("seed", range(3))

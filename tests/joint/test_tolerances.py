@@ -54,9 +54,9 @@ def test_what_cannot_be_is_refused_by_its_place(tmp_path: Path, line: str, reaso
 
 
 def test_a_share_needs_no_fact() -> None:
-    joint = jid.Joint(tolerances={"torque_constant": "0.5%", "inertia": "+-10 %"})
+    joint = jid.Joint(tolerances={"torque_constant": "0.5%", "inertia": "+-10 %"})  # type: ignore[arg-type]
     assert joint.tolerances.given == {"torque_constant": "0.5 %", "inertia": "10 %"}
     assert joint.tolerances.size("torque_constant", None) is None
     assert joint.tolerances.size("inertia", 2.0) == pytest.approx(0.2)
     with pytest.raises(jid.InputError, match="did you mean 'mass'"):
-        jid.Joint(tolerances={"mas": "1 %"})
+        jid.Joint(tolerances={"mas": "1 %"})  # type: ignore[arg-type]

@@ -81,7 +81,7 @@ def test_a_sensor_with_a_known_zero_tells() -> None:
         torque=run.torque,
         sensor=(link - 15.0) / 2.4,
     )
-    joint = jid.Joint(inertia=0.8, sensor=True, model="coulomb_viscous:asymmetric")
+    joint = jid.Joint(inertia=0.8, sensor=True, model=jid.Model("coulomb_viscous", asymmetric=True))
     found = jid.identify(run, joint, parameters={"sensor_offset": 15.0})
     assert found.parameters["coulomb_positive"].value == pytest.approx(12.0, rel=0.01)
     assert found.parameters["coulomb_negative"].value == pytest.approx(8.0, rel=0.01)
