@@ -118,7 +118,7 @@ def test_the_lag_is_measured(well_excited: jid.Recording) -> None:
     make, _ = DEFECTS["sensor 3 ms late"]
     before = separable(well_excited).delays["sensor"]
     after = separable(make(well_excited)).delays["sensor"]
-    assert after.value - before.value == pytest.approx(3e-3, abs=3e-5)
+    assert after.value - before.value == pytest.approx(3e-3, abs=3e-4)
     assert after.value > 10 * after.stderr
 
 

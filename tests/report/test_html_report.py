@@ -37,7 +37,7 @@ def test_no_link_leads_to_a_picture_that_is_not_there() -> None:
     recording = jid.load(data_folder() / "well_excited.csv.gz")
     rough = jid.GaOptions(population=20, generations=3, polish=False)
     stopped = jid.identify(recording, jid.thesis_joint(), search=jid.Search(ga=rough))
-    assert stopped.findings[0].code == "stopped"
+    assert "stopped" in {found.code for found in stopped.findings}
     assert 'href="#convergence"' in html_report(stopped)
     plain = jid.identify(recording, jid.thesis_joint(), search="separable")
     page = html_report(plain)

@@ -11,7 +11,7 @@ from jointid.identification.causes.candidates import Candidate
 from jointid.identification.causes.events import LocalEvent, local_event
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.folds import Folds, summed
-from jointid.identification.causes.slow_rows import SlowRows, slow_rows
+from jointid.identification.causes.slow_passages import SlowRows, slow_rows
 
 Array = NDArray[np.float64]
 
