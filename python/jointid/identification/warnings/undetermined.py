@@ -175,7 +175,7 @@ def _kind(name: str) -> str:
 
 
 def scale_of(p: ParameterEstimate, evidence: Evidence) -> float:
-    """Reference of the 5 %: an offset, or one phase of a harmonic, may be zero."""
+    """Reference of the interval's width: an offset, or one phase of a harmonic, may be zero."""
     if "offset" in p.name:
         return max(abs(p.value), evidence.torque_level)
     if p.name == "load_friction":  # a joint may have none
