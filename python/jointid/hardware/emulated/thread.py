@@ -37,6 +37,9 @@ class EmulatorThread:
         none are.
     watch : callable, optional
         Called with the time [s] after each event and frame, for what wants to see the devices change.
+    rest : float
+        Shortest time between two looks at what the devices do by themselves [s]; frames end it. It happens at its
+        time all the same, only a machine that wakes slowly has less to do. Default 0.
 
     Examples
     --------
@@ -52,8 +55,9 @@ class EmulatorThread:
         *devices: Device,
         bitrate: float | None = None,
         watch: Callable[[float], object] | None = None,
+        rest: float = 0.0,
     ) -> None:
-        self._bus, self._devices, self._watch = bus, devices, watch
+        self._bus, self._devices, self._watch, self._rest = bus, devices, watch, rest
         self._stamped = "socketcan" in type(bus).__module__.split(".")
         self._moment: float | None = None  # of the event that is running [s]
         self._latest = 0.0  # event that has run [s]
@@ -138,7 +142,7 @@ class EmulatorThread:
             for device in self._devices:
                 device.attach(self)
             while not self._ending.is_set():
-                wait = max(0.0, min(self._agenda.next - self._clock(), _LONGEST_WAIT))
+                wait = min(max(self._agenda.next - self._clock(), self._rest), _LONGEST_WAIT)
                 self._read(wait)
                 self._run_due(self._clock())
         except BaseException as error:
