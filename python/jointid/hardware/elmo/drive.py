@@ -31,6 +31,7 @@ _IN_USE_ANSWER = (
 )
 _SEEN_OFF = 0.2  # [s] that switching off is tried for, at most
 _SOON = 3  # times that switching off is repeated in the next cycle
+_LOST = 1.5  # periods after which an answer is lost, not late: one cycle is spent waiting for it
 _UNREAD = 3  # questions for the sensor without an answer
 _ZERO, _OFF = Command(letters="TC", value=0.0), Command(letters="MO", value=0)
 _IN_USE = "the motor is on already: another program commands the drive; switch the motor off there"
@@ -380,7 +381,7 @@ class ElmoDrive:
         """Wait for the answer to the last SYNC before the next: an answer does not name its SYNC."""
         if self._seen.complete:
             return
-        if self._link.clock.now() - self._asked > self.options.heartbeat:
-            self._seen.forget()  # no answer comes so late, and the drive has stopped by itself
+        if self._link.clock.now() - self._asked > _LOST * self._period:
+            self._seen.forget()
         else:
             self._answered(timeout)

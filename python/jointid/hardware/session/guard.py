@@ -6,6 +6,7 @@ import math
 from collections import deque
 
 from jointid.hardware.session.drive import DriveSample
+from jointid.hardware.session.lateness import Lateness
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.stop import LimitError
 
@@ -28,10 +29,16 @@ class Guard:
         [s]
     resolution : float
         Output angle of an encoder count [rad].
+
+    Attributes
+    ----------
+    lateness : Lateness
+        Counts the cycles without a sample.
     """
 
     def __init__(self, limits: SessionLimits, period: float, resolution: float) -> None:
         self._limits, self._period = limits, period
+        self.lateness = Lateness(limits, period)
         self._largest_measured = limits.largest_measured
         self._largest_difference = limits.largest_difference
         self._moving = _MOVING * resolution / period

@@ -89,7 +89,7 @@ def recording_of(
     """Return the recording of the run; None when there are too few samples for one."""
     if follower is None or len(follower.rows) < _FEWEST:
         return None
-    time, position, torque, sensor, reference, current = map(
+    time, position, torque, sensor, reference, current, late = map(
         np.array, zip(*follower.rows, strict=True)
     )
     return Recording(
@@ -99,6 +99,7 @@ def recording_of(
         sensor=sensor if sensor.any() else None,  # 0 throughout: there is none
         reference=reference,
         current=None if np.isnan(current).any() else current,
+        late=late if late.any() else None,  # 0 throughout: nothing was
         torque_hold="zoh",
         name=name,
         metadata=metadata,
