@@ -13,6 +13,7 @@ from jointid.hardware.session.cycle import capped, held_torque, target_at
 from jointid.hardware.session.drive import Drive, DriveFaultError, DriveSample
 from jointid.hardware.session.guard import Guard
 from jointid.hardware.session.interruptions import Interruptions
+from jointid.hardware.session.lateness import Lateness
 from jointid.hardware.session.options import SessionOptions
 from jointid.hardware.session.recorder import Recorder
 from jointid.hardware.session.stop import LimitError
@@ -94,6 +95,11 @@ class Follower:
             None  # how long after a cycle's begin the first sample was taken
         )
         self._missing = 0.0  # cycles without a sample before the next one
+
+    @property
+    def lateness(self) -> Lateness:
+        """Counts the cycles without a sample."""
+        return self._guard.lateness
 
     def enter(self, phase: str) -> None:
         """Begin a phase: a stop names it and the time since."""

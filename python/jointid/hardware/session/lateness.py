@@ -28,7 +28,7 @@ class Lateness:
         self._most = max(limits.late_samples, limits.late_share * self._span)
         self._recent: deque[int] = deque()  # numbers of the late cycles of the last 5 s
         self._cycle = 0
-        self.in_row = 0
+        self.in_row = self.most_in_row = 0
         self.lost = self.skipped = 0  # in all
 
     def on_time(self) -> None:
@@ -61,6 +61,7 @@ class Lateness:
         limits, recent = self._limits, self._recent
         self._cycle += 1
         self.in_row += 1
+        self.most_in_row = max(self.most_in_row, self.in_row)
         recent.append(self._cycle)
         while recent[0] <= self._cycle - self._span:
             recent.popleft()

@@ -64,12 +64,18 @@ def ending_of(
     """Return the metadata that is known at the end of a session, of JSON's types."""
     late = np.array(() if follower is None else follower.late)
     timing = None
-    if len(late):
+    if follower is not None and len(late):
+        lateness = follower.lateness
         timing = {
             "cycles": len(late),
             "missed": int((late > 0.0).sum()),
             "slack_least": float(-late.max()),
             "slack_median": float(-np.median(late)),
+            "lost": lateness.lost,
+            "skipped": lateness.skipped,
+            "most_in_row": lateness.most_in_row,
+            "woke_late_median": float(np.median(follower.woke)),
+            "woke_late_most": float(max(follower.woke)),
         }
     measured = follower is not None and follower.velocity_measured
     return {
