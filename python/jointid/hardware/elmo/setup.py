@@ -48,7 +48,7 @@ def arm_watchdogs(link: ElmoLink, options: ElmoOptions) -> tuple[Reported, ...]:
         (0x1017, 0, round(1e3 * options.drive_heartbeat), 2),
         (0x6007, 0, 2, 2),
         (0x1029, 1, 1, 1),
-        (0x2F21, 0, _object(link, 0x2F21, 0) | _EMERGENCIES, 4),
+        (0x2F21, 0, _object(link, 0x2F21, 0) | _EMERGENCIES, 2),
     )
     armed = watchdog_objects(link, options)
     for each in armed:
