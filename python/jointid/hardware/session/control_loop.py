@@ -212,8 +212,8 @@ class Follower:
             if self.phase == "run" and math.isfinite(sample.position + sample.reading):
                 row = (elapsed, sample.position, held, sample.reading, target, sample.current)
                 self._keep((*row, self._missing), recorder)
-        # A command that acts only in the next cycle makes that one's torque uncertain.
-        self._missing = UNCONFIRMED if acted > period else 0.0
+        # A command that was lost, or acts only in the next cycle, makes the next one's torque uncertain, too.
+        self._missing = UNCONFIRMED if acted > period or not sample.confirmed else 0.0
         self._held = accepted
         if self._observer is not None:
             self._observer(self.phase, elapsed, sample, target, accepted)
