@@ -73,6 +73,7 @@ class CycleReader:
         self._last()
 
     def _begin(self, when: float) -> None:
+        self._last()  # the sample that ended a run, behind which the joint was braked
         if self._open and self.cycles:  # in a run no SYNC is without a command
             what = "command" if self._commanded is None else "host's heartbeat"
             raise InputError(self._missing(what, when))
@@ -119,8 +120,8 @@ class CycleReader:
         self._open = False
 
     def _last(self) -> None:
-        """The log is over: a sample without a command is the one that ended the session."""
-        if self._open and self.cycles and self._seen.complete:
+        """A sample without a command is the one that ended the run."""
+        if self._open and self.cycles and self._seen.complete and self._commanded in (None, 0.0):
             self._keep(self._watch.sampled, self.cycles[-1].torque)
             self._open = False
 

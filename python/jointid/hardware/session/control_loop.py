@@ -89,6 +89,7 @@ class Follower:
         self.late: list[float] = []  # the cycles' ends, against the begins of the next [s]
         self.woke: list[float] = []  # the cycles' begins, against when they were due [s]
         self.cycles = self.cycles_before = 0  # in which a torque was commanded; before the run
+        self.newest: DriveSample | None = None
         self.velocity_measured = False  # by the drive; the controller got it in some cycle
         self._held = 0.0  # of the last command [N·m]: enabling commands zero
         self._first: float | None = (
@@ -132,7 +133,7 @@ class Follower:
         """
         options, clock, lateness = self._options, self._drive.clock, self._guard.lateness
         period = options.period
-        timeout = 0.75 * period if options.answer_timeout is None else options.answer_timeout
+        timeout = options.timeout
         running = self.phase == "run"
         begin = clock.now() + period
         self._first, self._missing = None, 0.0
@@ -181,6 +182,7 @@ class Follower:
     ) -> None:
         """Check a sample, command a torque, keep the row; a sample that ends the session is kept, too."""
         guard, clock, period = self._guard, self._drive.clock, self._options.period
+        self.newest = sample
         estimated = self._estimate(sample.time, sample.position)
         measures = not math.isnan(sample.velocity)
         speed = sample.velocity if measures else estimated
@@ -201,8 +203,9 @@ class Follower:
         accepted, held = self._held, self._held
         try:
             guard.measured(sample, fastest, sample.position - target if self._feedback else None)
-            torque = self._asked(elapsed, sample, speed, (target, pace, acceleration))
-            guard.commanded(torque, self._law.saturations)
+            aim = target, pace, acceleration
+            torque = self._asked(elapsed, sample, speed, aim)
+            guard.commanded(torque, self._law.saturations, aim if self._feedback else None)
             accepted = self._accepted(torque)
             acted = clock.now() - sample.time + self._drive.command_latency
             self.cycles += 1

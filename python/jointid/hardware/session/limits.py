@@ -49,6 +49,10 @@ class SessionLimits:
         still. The last torque is held meanwhile, and the recording marks them (`Recording.late`).
     late_share : float
         Share of such cycles in the last 5 s; as many as `late_samples` are never too many.
+    torque_envelope : float, optional
+        How many times the torque that the reference needs by the joint's values (friction, inertia, weight)
+        may be commanded for longer than 50 ms; a twentieth of `torque` is added. Default: not watched;
+        `commission` takes 2 for runs with an identified joint.
 
     Raises
     ------
@@ -69,6 +73,7 @@ class SessionLimits:
     clipped_samples: int = 5
     late_samples: int = 4
     late_share: float = 0.01
+    torque_envelope: float | None = None
 
     def __post_init__(self) -> None:
         window = tuple(self.position) if isinstance(self.position, Iterable) else ()
