@@ -278,7 +278,10 @@ class ElmoDrive:
         return self._switch.off(self._period)
 
     def close(self) -> None:
-        """Leave the drive pre-operational, its watchdogs disarmed when its motor is off."""
+        """Leave the drive pre-operational, its watchdogs disarmed when its motor is off.
+
+        They stay armed where somebody else commands the drive, who may switch the motor on again.
+        """
         link = self._link
         link.up = False
         if not self._found_off:
@@ -287,7 +290,7 @@ class ElmoDrive:
         try:
             link.drain(0.01)
             link.forget_fault()
-            if self._switch.seen_off:
+            if self._switch.seen_off and not link.foreign.frames:
                 elmo_setup.disarm_watchdogs(link)
             link.send(canopen.NMT, canopen.network(canopen.PRE_OPERATIONAL, self.options.node))
             link.drain(0.01)

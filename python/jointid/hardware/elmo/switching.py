@@ -16,6 +16,7 @@ _ENABLE = 3.0  # [s] to wait for the motor: commutation and brake take their tim
 _LOOK = 0.02  # [s] between two questions whether it is on
 _SEEN_OFF = 0.2  # [s] that switching off is tried for, at most
 _SOON = 3  # times that switching off is repeated in the next cycle
+_NETWORK = 2  # tries after which the network is stopped, too
 _CONTROL, _STATUS = 0x6040, 0x6041  # words of CiA 402
 _SWITCHED_ON, _OPERATION = 0x02, 0x04  # bits of the status word
 ZERO, OFF = Command(letters="TC", value=0.0), Command(letters="MO", value=0)
@@ -87,7 +88,7 @@ class MotorSwitch:
             register = self._register("SR", pause)
             self.seen_off = register is not None and not DriveStatus.of(register).motor_on
             if tries and not self.seen_off:
-                self._otherwise(pause, last=tries >= _SOON)
+                self._otherwise(pause, last=tries >= _NETWORK)
             if register is None:  # it may have restarted, and ignores commands then
                 self._network(canopen.START)
             tries += 1
