@@ -132,7 +132,13 @@ def emulate(arguments: argparse.Namespace) -> int:
         devices = (*devices, journal)
     with (
         open_bus(interface=interface, channel=channel, bitrate=bench.bus.bitrate) as bus,
-        EmulatorThread(bus, *devices, watch=journal, rest=arguments.rest) as emulator,
+        EmulatorThread(
+            bus,
+            *devices,
+            bitrate=float(bench.bus.bitrate),
+            watch=journal,
+            rest=arguments.rest,
+        ) as emulator,
     ):
         said = f"emulated drive ({bench.drive_type}) on {interface} {channel}; Ctrl-C ends it"
         print(said, file=sys.stderr if arguments.json else sys.stdout, flush=True)

@@ -76,6 +76,11 @@ class SessionOptions:
                 )
         check_cycles("settle", self.settle, self.period)
 
+    @property
+    def timeout(self) -> float:
+        """For an answer in a cycle [s]."""
+        return 0.75 * self.period if self.answer_timeout is None else self.answer_timeout
+
 
 def check_cycles(name: str, time: float, period: float) -> None:
     """Check that a time [s] has no more cycles than a session can keep.

@@ -13,12 +13,14 @@ import numpy as np
 
 from jointid import _core
 from jointid.base.errors import InputError
+from jointid.hardware.session.braking import Braked, brake_after
 from jointid.hardware.session.control_loop import Course, Follower, Observer, unwritten
 from jointid.hardware.session.drive import Drive, DriveEnd, DriveFaultError, check_drive
+from jointid.hardware.session.foresight import foresight_of
 from jointid.hardware.session.guard import Guard
 from jointid.hardware.session.interruptions import Interruptions
 from jointid.hardware.session.limits import SessionLimits
-from jointid.hardware.session.metadata import session_metadata
+from jointid.hardware.session.metadata import plain, session_metadata
 from jointid.hardware.session.options import SessionOptions, check_cycles
 from jointid.hardware.session.outcome import ending_of, recording_of, stop_of
 from jointid.hardware.session.realtime import RealTime, RealTimeOptions
@@ -109,6 +111,7 @@ class Session:
         self._follower: Follower | None = None
         self._end: DriveEnd | None = None
         self._bug: Exception | None = None
+        self._braked: Braked | None = None
         self.recording: Recording | None = None
 
     def check(self) -> list[str]:
@@ -181,6 +184,7 @@ class Session:
         recorder: Recorder | None = None
         cause: Exception | KeyboardInterrupt | None = None
         self._follower, self._end, self._bug, self.recording = None, None, None, None
+        self._braked = None
         early: list[Frame] = []  # frames of bringing the drive up, before there is a recorder
         if self._output is not None and not dry_run:
             check_output(self._output)
@@ -277,7 +281,12 @@ class Session:
             follower = Follower(
                 self._drive,
                 law,
-                Guard(limits, options.period, options.resolution),
+                Guard(
+                    limits,
+                    options.period,
+                    options.resolution,
+                    foresight_of(self._drive, limits, options),
+                ),
                 options,
                 interruptions=interruptions,
                 observer=self._observer,
@@ -294,6 +303,7 @@ class Session:
             follower.follow(course, recorder)
         except (Exception, KeyboardInterrupt) as error:
             moment = self._drive.clock.now()
+            self._brake(error)
             self._switch_off()
             return error, moment
         moment = self._drive.clock.now()
@@ -315,6 +325,16 @@ class Session:
         return float(self._trajectory.sample(np.zeros(1))[0][0])
 
     # Ways out.
+
+    def _brake(self, cause: BaseException) -> None:
+        """Bring the joint to rest, where that is no risk; the motor goes off next in any case."""
+        try:
+            sample = None if self._follower is None else self._follower.newest
+            self._braked = brake_after(cause, self._drive, self._limits, self._options, sample)
+        except (DriveFaultError, OSError, KeyboardInterrupt):
+            return  # the drive has failed, or somebody is in a hurry
+        except Exception as bug:
+            self._note_bug(bug)
 
     def _switch_off(self) -> None:
         """Torque to zero, motor off; an exception of the drive must not prevent the following steps."""
@@ -355,7 +375,8 @@ class Session:
         )
 
     def _ending(self, stop: Stop | None) -> dict[str, Any]:
-        return ending_of(self._follower, self._end, stop, self._real_time.notes)
+        ending = ending_of(self._follower, self._end, stop, self._real_time.notes)
+        return ending if self._braked is None else {**ending, "braked": plain(self._braked)}
 
     def _recording(self, stop: Stop | None) -> Recording | None:
         metadata = {**self._metadata(), "session": True, **self._ending(stop)}
