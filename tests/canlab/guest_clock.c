@@ -14,7 +14,7 @@
 typedef long long nanoseconds;
 
 #define SECOND 1000000000LL
-#define MOST 500000LL /* half a millisecond */
+#define MOST 50000LL /* 50 µs */
 
 static nanoseconds guest, host, due; /* due: when the timer expires; 0: it is not armed */
 

@@ -1,45 +1,38 @@
-"""What the guest runs: scenarios, several at once, each a process with a vcan of its own."""
+"""What the guest runs: the scenarios that are named, and kills by their numbers, one after the other."""
 
 from __future__ import annotations
 
 import sys
 import time
-from collections import deque
 from collections.abc import Callable
 from pathlib import Path
 
+from canlab.kills import killed
 from canlab.programs import Program
 from canlab.scenarios import SCENARIOS
 from canlab.stage import Stage, play
 
 OUT = Path("/run/out")
-_AT_ONCE = 1
+LONGEST = 300.0  # [s] that a scenario may take
 
 
 def main(names: list[str]) -> int:
-    """Play what is named."""
+    """Play what is named; each in a process of its own, on a vcan of its own."""
     _load()
-    waiting = deque((name, SCENARIOS[name].act) for name in names)
-    count = len(waiting)
-    running: list[Program] = []
-    while waiting or running:
-        running = [program for program in running if program.ended() is None]
-        if waiting and len(running) < _AT_ONCE:
-            number = count - len(waiting)
-            running.append(_playing(*waiting.popleft(), f"vcan{number}"))
-        else:
-            time.sleep(0.02)
+    for number, name in enumerate(names):
+        begin = time.monotonic()
+        act = killed(int(name)) if name.isdecimal() else SCENARIOS[name].act
+        Program(name, OUT, _playing(OUT / name, f"vcan{number}", act)).wait(LONGEST)
+        print(f"{name}: {time.monotonic() - begin:.1f} s", flush=True)
     return 0
 
 
-def _playing(name: str, act: Callable[[Stage], None], channel: str) -> Program:
+def _playing(folder: Path, channel: str, act: Callable[[Stage], None]) -> Callable[[], int]:
     def run() -> int:
-        begin = time.monotonic()
-        play(OUT / name, channel, act)
-        print(f"{name}: {time.monotonic() - begin:.1f} s", file=sys.stderr)
+        play(folder, channel, act)
         return 0
 
-    return Program(f"play.{name}", OUT, run)
+    return run
 
 
 def _load() -> None:

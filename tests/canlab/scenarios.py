@@ -13,7 +13,6 @@ from canlab.stage import Stage, switched_off
 
 COMMAND = 0x37F
 TORQUE = bytes.fromhex("544300800000803F")  # TC = 1 A
-STATIONARY = "done", "stopped"
 _SOME = 20  # cycles of the run
 
 
@@ -50,7 +49,7 @@ def plain_checked(outcome: Outcome) -> None:
     assert session["ended"] == "done", session
     assert session["motor_off"] is True
     recording = outcome.recording()
-    assert len(recording) == 100
+    assert len(recording) == 50
     assert recording.metadata["motor_off"] is True
     outcome.off_by_the_session()
     assert outcome.notes["status"] == 130
@@ -99,8 +98,7 @@ def drive_killed(stage: Stage) -> None:
 
 
 def drive_killed_checked(outcome: Outcome) -> None:
-    said = outcome.stopped("stale_position", "heartbeat_lost", seen_off=False)
-    assert "THE MOTOR WAS NOT SEEN OFF" in said["message"]
+    outcome.stopped("late_samples", seen_off=False)
 
 
 def drive_stopped(stage: Stage) -> None:
@@ -114,7 +112,7 @@ def drive_stopped(stage: Stage) -> None:
 
 
 def drive_stopped_checked(outcome: Outcome) -> None:
-    outcome.stopped("stale_position", "heartbeat_lost", seen_off=False)
+    outcome.stopped("late_samples", seen_off=False)
     outcome.off_in_time()
 
 
@@ -129,7 +127,7 @@ def drive_restarted(stage: Stage) -> None:
 
 
 def drive_restarted_checked(outcome: Outcome) -> None:
-    outcome.stopped("drive_fault", seen_off=True)
+    outcome.stopped("late_samples", "drive_fault", seen_off=True)  # as long as it was away
     assert not any(event["motor_on"] for event in outcome.events("again"))
 
 
@@ -185,24 +183,24 @@ def flood(stage: Stage) -> None:
 def flood_checked(outcome: Outcome) -> None:
     session = outcome.session()
     if session["ended"] != "done":  # the kernel drops what a program does not read in time
-        outcome.stopped("stale_position", "command_echo", "host_heartbeat_lost", seen_off=True)
+        outcome.stopped("late_samples", "command_echo", "host_heartbeat_lost", seen_off=None)
     outcome.off_in_time()
 
 
 def lost_frames(stage: Stage) -> None:
     """Single answers of the drive are lost."""
-    bridged(stage, lambda number: None if number % 40 == 0 else 0.0)
+    bridged(stage, lambda number: None if number % 20 == 0 else 0.0)
     stage.session(changes=_tolerant).wait()
 
 
 def late_frames(stage: Stage) -> None:
     """Single answers of the drive come when their cycle is over."""
-    bridged(stage, lambda number: 1.2 * PERIOD if number % 40 == 0 else 0.0)
+    bridged(stage, lambda number: 1.2 * PERIOD if number % 20 == 0 else 0.0)
     stage.session(changes=_tolerant).wait()
 
 
 def _tolerant(bench: Any) -> Any:
-    return replace(bench, options=replace(bench.options, answer_timeout=0.9 * PERIOD))
+    return replace(bench, limits=replace(bench.limits, late_share=0.2))
 
 
 def flagged(outcome: Outcome) -> None:
