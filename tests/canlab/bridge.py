@@ -40,9 +40,7 @@ def bridged(stage: Stage, delay: Callable[[int], float | None]) -> None:
     stage.until(ready.exists, "the bridge does not begin")
 
 
-def _carry(
-    host: can.BusABC, drive: can.BusABC, delay: Callable[[int], float | None]
-) -> None:
+def _carry(host: can.BusABC, drive: can.BusABC, delay: Callable[[int], float | None]) -> None:
     """Carry frames until the process is ended; in the order of their times, as on one wire."""
     waiting: list[tuple[float, int, can.Message]] = []
     answers = count = 0

@@ -90,7 +90,9 @@ class Guest:
         try:
             self._process.wait(timeout)
         except subprocess.TimeoutExpired:
-            raise GuestError(f"the guest has not ended within {timeout:g} s\n{self.said()}") from None
+            raise GuestError(
+                f"the guest has not ended within {timeout:g} s\n{self.said()}"
+            ) from None
         finally:
             self.close()
         status = self.folder / "status"

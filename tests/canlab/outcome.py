@@ -9,6 +9,7 @@ import json
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -83,8 +84,11 @@ class Outcome:
         """The event in which the drive's motor, which was on, first went off; it is off at the end."""
         events = self.events()
         assert not events[-1]["motor_on"], "the motor is on"
-        pairs = zip(events, events[1:], strict=False)
-        offs = [later for earlier, later in pairs if earlier["motor_on"] and not later["motor_on"]]
+        offs = [
+            later
+            for earlier, later in pairwise(events)
+            if earlier["motor_on"] and not later["motor_on"]
+        ]
         assert offs, "the motor was never on"
         assert offs[0]["current"] == 0.0
         return offs[0]

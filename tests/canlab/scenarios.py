@@ -1,4 +1,4 @@
-"""The scenarios on vcan: what is done to drive, session and bus, inside the guest, and what must come of it, outside."""
+"""The scenarios on vcan: what is done to drive, session and bus in the guest, and what must come of it, outside."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from canlab.bridge import bridged
-from canlab.outcome import HEARTBEAT, MASTER, PERIOD, Outcome
+from canlab.outcome import MASTER, PERIOD, Outcome
 from canlab.stage import Stage, switched_off
 
 COMMAND = 0x37F

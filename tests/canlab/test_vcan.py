@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import ExitStack, closing
 from pathlib import Path
 
 import pytest
+
+import jointid as jid
 from canlab.kills import KILLS
 from canlab.machine import REQUIRED, Guest, missing
 from canlab.outcome import Outcome
 from canlab.scenarios import SCENARIOS
-
-import jointid as jid
 
 PATIENCE = 900.0  # [s] for what takes a tenth of that on a machine that is not busy
 NUMBERS = [str(number) for number in range(KILLS)]
@@ -23,7 +23,7 @@ NUMBERS = [str(number) for number in range(KILLS)]
 @pytest.fixture(scope="module")
 def guests(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[dict[str, Outcome]]:
+) -> dict[str, Outcome]:
     """Outcomes of the tests that were asked for; faults and kills in a guest each, at the same time."""
     lacking = missing()
     if lacking:
@@ -35,7 +35,7 @@ def guests(
         for item in request.session.items
         if isinstance(item, pytest.Function) and hasattr(item, "callspec")
     }
-    outcomes = {}
+    outcomes: dict[str, Outcome] = {}
     with ExitStack() as running:
         guests = []
         for every in (list(SCENARIOS), NUMBERS):
@@ -46,7 +46,7 @@ def guests(
                 outcomes |= {name: Outcome(folder / name) for name in names}
         for each in guests:
             each.wait(PATIENCE)
-    yield outcomes
+    return outcomes
 
 
 def guest(folder: Path, names: list[str]) -> Guest:
