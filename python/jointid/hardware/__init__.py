@@ -26,6 +26,7 @@ from jointid.hardware.proof.result import FirstMotion
 from jointid.hardware.session.clock import Clock, MonotonicClock
 from jointid.hardware.session.cycle import LoggedCycle
 from jointid.hardware.session.drive import Drive, DriveEnd, DriveFaultError, DriveSample
+from jointid.hardware.session.drive_report import DriveReport, Reported
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.realtime import RealTimeOptions
 from jointid.hardware.session.session import (
@@ -45,6 +46,7 @@ __all__ = [
     "Drive",
     "DriveEnd",
     "DriveFaultError",
+    "DriveReport",
     "DriveSample",
     "DriveType",
     "EmulatedBus",
@@ -57,6 +59,7 @@ __all__ = [
     "LoggedFrame",
     "MonotonicClock",
     "RealTimeOptions",
+    "Reported",
     "Session",
     "SessionLimits",
     "SessionOptions",

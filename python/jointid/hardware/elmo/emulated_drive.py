@@ -3,76 +3,28 @@
 from __future__ import annotations
 
 import math
-import struct
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
-
-import can
 
 from jointid.hardware.can import canopen_frames as canopen
 from jointid.hardware.elmo.emulated_interpreter import Interpreter
-from jointid.hardware.elmo.emulated_objects import ObjectDictionary
-from jointid.hardware.elmo.torque_source import SensorScaling
-from jointid.hardware.emulated.faults import drive_failure
+from jointid.hardware.elmo.emulated_network import MOTOR_EVENT, ElmoNetwork
+from jointid.hardware.elmo.emulated_objects import ElmoObjects
+from jointid.hardware.elmo.emulated_settings import ElmoSettings
+from jointid.hardware.emulated.faults import drive_failure, error_register
+from jointid.hardware.emulated.object_dictionary import WRONG_STATE, AccessError
+from jointid.hardware.emulated.power_states import PowerStates
 
 if TYPE_CHECKING:
+    import can
+
     from jointid._core import SteppedJoint
     from jointid.hardware.emulated.device import DeviceBus
 
+__all__ = ["ElmoSettings", "EmulatedElmo"]
+
 TWO_PI = 2.0 * math.pi
+_HEARTBEAT_LOST = 0x800  # in MF
 _PERIOD_OF_GUARDS = 0.5e-3  # [s] between looks at speed and heartbeat
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ElmoSettings:
-    """Properties and settings of an emulated drive.
-
-    Attributes
-    ----------
-    node : int
-    counts_per_turn : int
-        Encoder counts of a motor turn.
-    gear_ratio, torque_constant : float
-        Motor's angle per output angle; [N·m/A].
-    peak_current, continuous_current : float
-        PL[1], CL[1] [A].
-    speed_limit : float
-        HL[2], motor counts a second; beyond, it shuts down.
-    idle_loop : float
-        Time between two interpreter commands [s].
-    mantissa_bits : int
-        Of the current command that count; 24 is a float's own, 4 the thesis's link.
-    position_offset : float
-        Output angle at count 0 [rad].
-    analog : SensorScaling
-        Between the torque sensor's reading and the voltage at the analog input.
-    cob_command, cob_reply : int, optional
-        COB-IDs of interpreter commands and replies. Default: 0x300 and 0x280 plus the node.
-    """
-
-    node: int = 127
-    counts_per_turn: int = 8000
-    gear_ratio: float = 101.0
-    torque_constant: float = 0.198
-    peak_current: float = 8.0
-    continuous_current: float = 8.0
-    speed_limit: float = 1e9
-    idle_loop: float = 0.3e-3
-    mantissa_bits: int = 24
-    position_offset: float = 0.0
-    analog: SensorScaling = field(default_factory=SensorScaling)
-    cob_command: int | None = None
-    cob_reply: int | None = None
-
-    @property
-    def command_id(self) -> int:
-        """COB-ID of interpreter commands."""
-        return self.cob_command if self.cob_command is not None else 0x300 + self.node
-
-    @property
-    def reply_id(self) -> int:
-        """COB-ID of interpreter replies."""
-        return self.cob_reply if self.cob_reply is not None else 0x280 + self.node
 
 
 class EmulatedElmo:
@@ -88,8 +40,6 @@ class EmulatedElmo:
     def __init__(self, joint: SteppedJoint, settings: ElmoSettings | None = None) -> None:
         self.settings = settings if settings is not None else ElmoSettings()
         self.joint = joint
-        self.objects = ObjectDictionary(self.settings.node)
-        self.state = "pre-operational"
         self.motor_on = False
         self.unit_mode = 5
         self.reference_mode = 1
@@ -111,9 +61,14 @@ class EmulatedElmo:
         self._bus: DeviceBus | None = None
         self._interpreter = Interpreter(self)
         self._time = 0.0
-        self._syncs = 0
-        self._heartbeat_seen: float | None = None
-        self._next_heartbeat = 0.0
+        self.power = PowerStates(
+            lambda: self.motor_on,
+            lambda: bool(self.failure),
+            self._switch_by_word,
+            self.acknowledge,
+        )
+        self.objects = ElmoObjects(self)
+        self._network = ElmoNetwork(self, self._reset)
 
     @property
     def bus(self) -> DeviceBus:
@@ -121,32 +76,29 @@ class EmulatedElmo:
         assert self._bus is not None, "attach the drive to a bus"
         return self._bus
 
+    @property
+    def state(self) -> str:
+        """Of the network: "pre-operational", "operational" or "stopped"."""
+        return self._network.state
+
+    @state.setter
+    def state(self, state: str) -> None:
+        self._network.state = state
+
     def attach(self, bus: DeviceBus) -> None:
         """Power up: a boot-up message, then guards look at speed and heartbeat."""
         self._bus = bus
-        self._send(canopen.heartbeat_id(self.settings.node), b"\x00")
+        self._network.boot()
         bus.at(bus.now() + _PERIOD_OF_GUARDS, self._guard)
 
     def receive(self, message: can.Message) -> None:
         """A frame has arrived."""
         self.advance()
-        node, payload = self.settings.node, bytes(message.data)
-        identifier = message.arbitration_id
-        if identifier == canopen.NMT and len(payload) == 2 and payload[1] in (0, node):
-            self._network(payload[0])
-        elif identifier == canopen.SYNC:
-            self._synchronise()
-        elif identifier == self.settings.command_id and self.state == "operational":
-            self._interpreter.take(payload)
-        elif identifier == 0x600 + node and self.state != "stopped":
-            answer = self.objects.answer(payload)
-            if answer is not None:
-                self._send(0x580 + node, answer)
-        elif (
-            identifier == canopen.heartbeat_id(self.objects.master)
-            and self.objects.consumer_time > 0.0
-        ):
-            self._heartbeat_seen = self.bus.now()
+        self._network.receive(message)
+
+    def interpret(self, payload: bytes) -> None:
+        """Take a command of the binary interpreter's."""
+        self._interpreter.take(payload)
 
     def advance(self) -> None:
         """Bring the joint to the bus's time."""
@@ -189,16 +141,39 @@ class EmulatedElmo:
             | 0x2000 * (abs(self.current) > self.current_limits[1])
         )
 
+    @property
+    def rated_current(self) -> float:
+        """By which 6077h is scaled [A]."""
+        rated = self.settings.rated_current
+        return self.current_limits[1] if rated is None else rated
+
+    @property
+    def rated_torque(self) -> float:
+        """Of the motor at its rated current [N·m]."""
+        return self.rated_current * abs(self.settings.torque_constant)
+
+    def share_of_rated(self) -> int:
+        """The current in thousandths of the rated one; 0 where that is 0."""
+        if not self.rated_current:
+            return 0
+        share = 1000.0 * self.current / self.rated_current
+        return round(max(-32768.0, min(32767.0, share)))
+
     def switch(self, *, on: bool) -> None:
         """Motor on or off, at no current."""
         if on != self.motor_on:
             self.switchings.append((self.bus.now(), on))
         self.motor_on, self.current = on, 0.0
         if on:
-            self.failure = 0
+            self.acknowledge()
+
+    def acknowledge(self) -> None:
+        """Clear what the motor was shut down for, and say that it is gone."""
+        self.failure = 0
+        self._network.emergencies.vanish()
 
     def fail(self, kind: str) -> None:
-        """Shut the motor down, with a failure in MF and an emergency on the bus.
+        """Shut the motor down, with a failure in MF and, where 2F21h asks for it, an emergency.
 
         Parameters
         ----------
@@ -210,78 +185,51 @@ class EmulatedElmo:
         self.switch(on=False)
         self.failure = failure
         self.problem = failure >> 13 & 0x7 if failure & 0x1000 else 0
-        payload = struct.pack("<HBBHH", emergency, 0x81, 0, 0, 0)
-        self._send(canopen.emergency_id(self.settings.node), payload)
+        told = self.objects.emergency_wanted(MOTOR_EVENT)
+        self._network.emergencies.appear(emergency, error_register(emergency), told=told)
+
+    def lose_host(self) -> None:
+        """The host's heartbeat has stayed away: do with the motor what 6007h says."""
+        if self.objects.value(0x6007, 0):
+            self.advance()
+            self.switch(on=False)
+            self.failure = _HEARTBEAT_LOST
+
+    def abort_connection(self) -> None:
+        """The node is stopped or reset: do with the motor what 6007h says (CiA 402)."""
+        option = self.objects.value(0x6007, 0)
+        if option and self.motor_on:
+            self.switch(on=False)
+            if option == 1:
+                self.failure = _HEARTBEAT_LOST
 
     def restart(self) -> None:
         """As if its supply had failed for a moment."""
         self.advance()
         self.failure = self.problem = 0
-        self._network(canopen.RESET_NODE)
+        self._network.command(canopen.RESET_NODE)
 
     def reply(self, payload: bytes) -> None:
-        """Send a reply of the interpreter's."""
-        self._send(self.settings.reply_id, payload)
+        """Publish a result of the interpreter's."""
+        self._network.reply(payload)
 
-    # The network.
+    def _reset(self, application: bool) -> None:
+        self.objects.reset()
+        self._interpreter.forget()
+        if application:
+            self.switch(on=False)
+            self.power.forget()
+            self.unit_mode = 5
 
-    def _network(self, command: int) -> None:
-        node = self.settings.node
-        if command == canopen.START:
-            self.state = "operational"
-        elif command == canopen.STOP:
-            self.state = "stopped"
-        elif command == canopen.PRE_OPERATIONAL:
-            self.state = "pre-operational"
-        elif command in (canopen.RESET_NODE, canopen.RESET_COMMUNICATION):
-            self.state = "pre-operational"
-            self._heartbeat_seen = None
-            self.objects.reset()
-            self._interpreter.forget()
-            if command == canopen.RESET_NODE:
-                self.switch(on=False)
-                self.unit_mode = 5
-            self._send(canopen.heartbeat_id(node), b"\x00")
-
-    def _synchronise(self) -> None:
-        identifier = self.objects.position_id
-        if self.state != "operational" or identifier is None:
-            return
-        self._syncs += 1
-        if self._syncs % self.objects.sync_every == 0:
-            self._send(identifier, self._mapped())
-
-    def _mapped(self) -> bytes:
-        parts = []
-        for name in self.objects.mapping:
-            if name == "position":
-                parts.append(struct.pack("<i", self.counts()))
-            elif name == "velocity":
-                parts.append(struct.pack("<i", self.speed()))
-            else:
-                share = 1000.0 * self.current / self.settings.continuous_current
-                parts.append(struct.pack("<h", round(max(-32768.0, min(32767.0, share)))))
-        return b"".join(parts)[:8]
-
-    # Guards.
+    def _switch_by_word(self, on: bool) -> None:
+        if on and self.problem:
+            raise AccessError(WRONG_STATE)
+        self.switch(on=on)
 
     def _guard(self) -> None:
         self.advance()
         now = self.bus.now()
         if self.motor_on and abs(self.speed()) > self.settings.speed_limit:
             self.fail("speed limit")
-        seen, allowed = self._heartbeat_seen, self.objects.consumer_time
-        if seen is not None and allowed and now - seen > allowed:
-            self._heartbeat_seen = None
-            self.fail("host heartbeat lost")
-        if self.objects.producer_time and now >= self._next_heartbeat:
-            self._next_heartbeat = now + self.objects.producer_time
-            if not self.silent_heartbeat:
-                state = next(n for n, name in canopen.STATES.items() if name == self.state)
-                self._send(canopen.heartbeat_id(self.settings.node), bytes((state,)))
+        self._network.look(now)
         self.bus.at(now + _PERIOD_OF_GUARDS, self._guard)
-
-    def _send(self, identifier: int, payload: bytes) -> None:
-        self.bus.transmit(
-            can.Message(arbitration_id=identifier, data=payload, is_extended_id=False)
-        )

@@ -61,8 +61,6 @@ class Interpreter:
             self._refuse(command.letters, command.index, error)
             return
         value = self._act(command)
-        if command.letters == "TC" and not drive.objects.get(0x2F20, 2, 0x80000000):
-            return
         drive.reply(_payload(command, value))
 
     def _error(self, command: Command) -> int:

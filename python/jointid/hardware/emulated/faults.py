@@ -70,6 +70,14 @@ def drive_failure(kind: str) -> tuple[int, int]:
     return DRIVE_FAILURES[kind]
 
 
+def error_register(emergency: int) -> int:
+    """Bits of the error register 1001h that belong to an emergency's code (CiA 301)."""
+    by_class = {0x2: 0x03, 0x3: 0x05, 0x4: 0x09}  # current, voltage, temperature
+    if emergency == 0x8130:
+        return 0x11  # communication
+    return by_class.get(emergency >> 12, 0x81)  # else the manufacturer's
+
+
 def mangled(
     message: can.Message, faults: Sequence[BusFault], now: float, *, from_host: bool
 ) -> Iterator[tuple[can.Message, float]]:
