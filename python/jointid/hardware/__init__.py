@@ -21,6 +21,8 @@ from jointid.hardware.emulated.faults import BusFault
 from jointid.hardware.emulated.thread import EmulatorThread
 from jointid.hardware.live.console import ConsoleLine
 from jointid.hardware.live.plot import LivePlot
+from jointid.hardware.proof.certificate import Certificate, certificate_path
+from jointid.hardware.proof.check import BenchCheck, check_bench
 from jointid.hardware.proof.procedure import first_motion
 from jointid.hardware.proof.result import FirstMotion
 from jointid.hardware.session.clock import Clock, MonotonicClock
@@ -39,8 +41,10 @@ from jointid.hardware.session.stop import Stop
 
 __all__ = [
     "Bench",
+    "BenchCheck",
     "BusFault",
     "BusOptions",
+    "Certificate",
     "Clock",
     "ConsoleLine",
     "Drive",
@@ -67,6 +71,8 @@ __all__ = [
     "SessionStoppedError",
     "Stop",
     "Table",
+    "certificate_path",
+    "check_bench",
     "drive_type",
     "drive_type_names",
     "emulated_devices",

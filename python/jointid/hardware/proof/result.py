@@ -89,14 +89,17 @@ class FirstMotion:
 
     def report(self) -> str:
         """Return the steps, the verdict, and what is left to check, in lines."""
-        lines = list(self.steps)
+        return "\n".join((*self.steps, self.verdict()))
+
+    def verdict(self) -> str:
+        """Return whether it is passed, why not, and what is left to check, in lines."""
         if self.passed:
-            lines.append(f"passed, in {self.duration:.1f} s of bench time")
+            lines = [f"passed, in {self.duration:.1f} s of bench time"]
         else:
-            lines.append(f"REFUSED ({self.reason}): {self.message}")
+            lines = [f"REFUSED ({self.reason}): {self.message}"]
         if self.motor_off is False:
             lines.append("THE MOTOR WAS NOT SEEN OFF")
         if self.unchecked:
-            lines += ["", "not checked:"]
+            lines.append("not checked:")
             lines += [f"  {code}: {UNCHECKED.get(code, code)}" for code in self.unchecked]
         return "\n".join(lines)
