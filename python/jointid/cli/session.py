@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from jointid.base.errors import InputError
 from jointid.cli.arguments import TEXT, decimal, whole, whole_seed
 from jointid.cli.outputs import check_folder, check_output_folder
+from jointid.cli.proof import missing_certificate
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
@@ -47,6 +48,11 @@ def add_run(commands: Any) -> None:
         "--dry-run", action="store_true", help="only run the pre-flight checks; the motor stays off"
     )
     run.add_argument("--yes", action="store_true", help="do not ask before a real joint moves")
+    run.add_argument(
+        "--force",
+        action="store_true",
+        help="move a real joint whose bench has no valid certificate of `jointid first-motion`",
+    )
     run.add_argument(
         "--seed",
         type=whole_seed,
@@ -143,6 +149,11 @@ def run(arguments: argparse.Namespace) -> int:
                 ).run(dry_run=True)
             print("all pre-flight checks passed")
             return 0
+        if not (arguments.emulate or arguments.force):
+            refused = missing_certificate(arguments.joint, bench)
+            if refused:
+                print(f"jointid run: {refused}", file=sys.stderr)
+                return STOPPED
         if not (arguments.emulate or arguments.yes or _agreed(bench)):
             print("jointid run: not started", file=sys.stderr)
             return STOPPED
