@@ -40,7 +40,9 @@ def add_run(commands: Any) -> None:
         formatter_class=TEXT,
     )
     run.add_argument("joint", type=Path, help="joint file (.toml) with a table [session]")
-    run.add_argument("--cycles", type=whole, default=2, help="number of cycles (default 2)")
+    run.add_argument(
+        "--cycles", type=whole, default=2, help="number of cycles (default 2); 0: only record"
+    )
     run.add_argument(
         "--emulate", action="store_true", help="an emulated drive and joint on virtual time"
     )
@@ -183,14 +185,19 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         print(result.report())
         if arguments.output is not None:
-            print(f"\nrecordings, frame logs, estimates and tracking_error.png: {arguments.output}")
+            written = "recordings, frame logs" + (", estimates" if result.estimates else "")
+            print(f"\n{written} and tracking_error.png: {arguments.output}")
     return 0
 
 
 def _check(arguments: argparse.Namespace) -> None:
     """Before the joint moves: refuse outputs that cannot be written."""
-    if arguments.cycles < 1:
-        raise InputError("at least 1 is expected", argument="cycles", value=arguments.cycles)
+    if arguments.cycles < 0:
+        raise InputError("at least 0 is expected", argument="cycles", value=arguments.cycles)
+    if arguments.cycles == 0 and arguments.save is not None:
+        raise InputError(
+            "with 0 cycles nothing is identified", argument="save", value=arguments.save
+        )
     if arguments.save is not None and arguments.save.suffix != ".toml":
         raise InputError("a joint file ends in .toml", argument="save", value=arguments.save)
     check_folder("save", arguments.save)
@@ -268,6 +275,7 @@ def _write(result: Commissioning, folder: Path) -> None:
         tracking_error(result.recordings(), axes)
         figure.savefig(folder / "tracking_error.png", dpi=150, bbox_inches="tight")
         pyplot.close(figure)
-    save_report(result.estimates[-1], folder / "report.html", action=ADVICE.of_action)
+    if result.estimates:
+        save_report(result.estimates[-1], folder / "report.html", action=ADVICE.of_action)
     write_whole(folder / "ring.txt", (result.report() + "\n").encode())
     write_whole(folder / "ring.json", json.dumps(result.to_dict(), indent=1).encode())

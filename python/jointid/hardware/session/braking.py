@@ -47,18 +47,18 @@ class Braked:
 def brake_after(
     cause: BaseException,
     drive: Drive,
+    joint: MovingJoint | None,
     limits: SessionLimits,
     options: SessionOptions,
     sample: DriveSample | None,
 ) -> Braked | None:
-    """Brake behind a stop that allows it; None where it does not, or the drive's joint is not known.
+    """Brake behind a stop that allows it; None where it does not, or the joint's inertia is not known.
 
     Raises
     ------
     DriveFaultError
         The drive fails.
     """
-    joint = MovingJoint.of(getattr(drive, "joint", None))
     if joint is None or sample is None:
         return None
     if not isinstance(cause, LimitError) or cause.limit not in BRAKED:

@@ -138,9 +138,10 @@ class Foresight:
             )
 
 
-def foresight_of(drive: Drive, limits: SessionLimits, options: SessionOptions) -> Foresight | None:
-    """Return the checks for a drive whose joint states its inertia; None for another."""
-    joint = MovingJoint.of(getattr(drive, "joint", None))
+def foresight_of(
+    joint: MovingJoint | None, drive: Drive, limits: SessionLimits, options: SessionOptions
+) -> Foresight | None:
+    """Return the checks for a joint whose inertia is known; None for another."""
     if joint is None:
         return None
     return Foresight(limits, options.period, joint, drive.command_latency)
