@@ -102,7 +102,7 @@ def test_a_joint_that_gets_faster_is_not_braked_for_long() -> None:
 def foresight(**changes: Any) -> Foresight:
     """Of a joint of 2 kg·m² without weight."""
     joint = MovingJoint(inertia=2.0, dry=10.0, viscous=5.0)
-    within = {"position": (-1.0, 1.0), "torque": 100.0} | changes
+    within: dict[str, Any] = {"position": (-1.0, 1.0), "torque": 100.0} | changes
     return Foresight(SessionLimits(**within), PERIOD, joint, 0.0)
 
 
@@ -127,9 +127,7 @@ def driven(ahead: Foresight, sign: float, cycles: int) -> int:
         try:
             ahead.driven(position, velocity, 20.0)
         except LimitError as error:
-            assert error.limit == "torque_sign"
-            assert "opposite signs" in str(error)
-            return cycle
+            return cycle if error.limit == "torque_sign" else -1
         velocity += sign * 10.0 * PERIOD
         position += velocity * PERIOD
     return cycles
@@ -137,7 +135,7 @@ def driven(ahead: Foresight, sign: float, cycles: int) -> int:
 
 def test_energy_from_nowhere_is_a_wrong_sign() -> None:
     assert driven(foresight(), 1.0, 100) == 100
-    assert driven(foresight(), -1.0, 100) < 25
+    assert 0 <= driven(foresight(), -1.0, 100) < 25
 
 
 def held_beyond(ahead: Foresight, torque: float, cycles: int) -> int:
@@ -146,8 +144,7 @@ def held_beyond(ahead: Foresight, torque: float, cycles: int) -> int:
         try:
             ahead.commanded(torque, 0.0, 1.0, 3.0)
         except LimitError as error:
-            assert error.limit == "torque_envelope"
-            return cycle
+            return cycle if error.limit == "torque_envelope" else -1
     return cycles
 
 
