@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from jointid.hardware.can import canopen_frames as canopen
 from jointid.hardware.elmo.emulated_interpreter import Interpreter
@@ -144,6 +144,20 @@ class EmulatedElmo:
             return self.stuck_voltage
         reading = self.joint.observe().reading
         return self.settings.analog.voltage(reading, self.joint.position)
+
+    def condition(self) -> dict[str, Any]:
+        """What a `Journal` tells: state, motor and failure (MF) as events, and where the joint is."""
+        return {
+            "events": {
+                "state": self.state,
+                "motor_on": self.motor_on,
+                "failure": self.failure,
+            },
+            "current": self.current,
+            "position": self.joint.position,
+            "velocity": self.joint.velocity,
+            "commands": len(self.torque_commands),
+        }
 
     def status(self) -> int:
         """SR."""
