@@ -314,7 +314,6 @@ def foreign(
         def send(when: float) -> None:
             message = can.Message(arbitration_id=identifier, data=payload, is_extended_id=False)
             bench.bus.transmit(message)
-            bench.elmo.receive(message)
             bench.bus.at(when + every, lambda: send(when + every))
 
         bench.bus.at(begin, lambda: send(begin))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from types import TracebackType
 from typing import Self
 
@@ -16,7 +16,7 @@ from jointid.hardware.emulated.faults import BusFault
 from jointid.hardware.emulated.wire import Wire
 
 _LONGEST_WAIT = 0.02  # [s]: so soon the thread sees that it is to end
-_OLDEST = 5.0  # [s]: a frame that is stamped earlier bears the time of another clock
+_OLDEST = 60.0  # [s]: a frame that is stamped earlier bears the time of another clock, or of one that was set
 _MOST_WAITING = 10_000  # frames that are read at once
 _SENDING = 0.01  # [s] that a full queue may take: the devices' own guards wait meanwhile
 
@@ -40,6 +40,8 @@ class EmulatorThread:
         bus of its own that takes its time. Default 500 000.
     faults : sequence of BusFault
         What goes wrong on the wire, and when since the start. "down" and "bus_off" lose all frames.
+    watch : callable, optional
+        Called with the time [s] after each event and frame, for what wants to see the devices change.
 
     Attributes
     ----------
@@ -62,8 +64,9 @@ class EmulatorThread:
         *devices: Device,
         bitrate: float | None = 500_000.0,
         faults: Sequence[BusFault] = (),
+        watch: Callable[[float], object] | None = None,
     ) -> None:
-        self._bus, self._devices = bus, devices
+        self._bus, self._devices, self._watch = bus, devices, watch
         self._wire = Wire(self.now, self.at, bitrate, faults)
         self._agenda = Agenda()
         self._failure: BaseException | None = None
@@ -187,6 +190,8 @@ class EmulatorThread:
             self._latest = self._moment = max(self._latest, when)
             try:
                 event()
+                if self._watch is not None:
+                    self._watch(self._moment)
             finally:
                 self._moment = None
 
