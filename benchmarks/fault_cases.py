@@ -314,7 +314,6 @@ def foreign(
         def send(when: float) -> None:
             message = can.Message(arbitration_id=identifier, data=payload, is_extended_id=False)
             bench.bus.transmit(message)
-            bench.elmo.receive(message)
             bench.bus.at(when + every, lambda: send(when + every))
 
         bench.bus.at(begin, lambda: send(begin))
@@ -362,8 +361,16 @@ CASES = (
          says="finite"),
     Case(name="command jumps", stop="torque_rate", script=_controller(lambda t: t + 150.0),
          limits={"torque_rate": 6e4}, says="N·m/s"),
-    Case(name="command is cut for long", stop="saturated_samples", script=_slips(0.2), limits=_WIDE,
-         says="21 times", detected=30 * PERIOD),
+    Case(name="command is cut for long", stop="saturated_samples", script=_set("stage_gain", 0.2),
+         limits={"torque_difference": 1e3, **_WIDE}, says="21 times", detected=100 * PERIOD),
+    Case(name="joint would leave its window", stop="position", script=_controller(lambda _: 150.0), limits=_WIDE,
+         says="if it were braked now", detected=300 * PERIOD),
+    Case(name="command beyond what the joint needs", stop="torque_envelope", script=_set("stage_gain", 0.3),
+         limits={"torque_envelope": 1.0, "torque_difference": 1e3, "saturated_samples": 1000, **_WIDE},
+         says="is commanded where", detected=60 * PERIOD),
+    Case(name="torque has the wrong sign", stop="torque_sign", script=_set("stage_gain", -1.0),
+         limits={"torque_difference": 1e3, "saturated_samples": 1000, **_WIDE},
+         says="opposite signs", detected=40 * PERIOD),
     Case(name="current beyond the command", stop="measured_torque", script=_set("stage_gain", 4.0),
          limits={"torque_difference": 1e3, **_WIDE}, says="more than", detected=50 * PERIOD),
     Case(name="no current", stop="torque_difference", script=_set("stage_gain", 0.0), limits=_WIDE,

@@ -108,7 +108,7 @@ def test_the_command_writes_runs_and_saves_the_bench(
 @pytest.mark.parametrize(
     ("words", "code", "wording"),
     [
-        (["--emulate", "--cycles", "0"], 2, "--cycles 0: at least 1"),
+        (["--emulate", "--cycles", "-1"], 2, "--cycles -1: at least 0"),
         (["--emulate", "--save", "x.csv"], 2, "a joint file ends in .toml"),
         (["--emulate", "--output", "no/such/folder"], 2, "no/such"),
         (["--emulate", "--dry-run"], 0, ""),

@@ -7,7 +7,7 @@ from typing import Any
 
 import can
 import pytest
-from session_bench import JOINT, PERIOD, devices, joint, session
+from session_bench import JOINT, PERIOD, EchoingBus, devices, joint, session
 
 import jointid as jid
 from jointid.hardware import SessionRefusedError, SessionStoppedError
@@ -15,7 +15,6 @@ from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.elmo.emulated_converter import EmulatedConverter
 from jointid.hardware.elmo.emulated_drive import ElmoSettings, EmulatedElmo
 from jointid.hardware.elmo.options import ElmoOptions
-from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.session.drive import DriveFaultError
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
@@ -126,18 +125,6 @@ def test_a_node_that_cannot_be_ours_is_refused(options: Any, says: str) -> None:
 @pytest.mark.parametrize(("node", "ours"), [(1, 2), (2, 1), (127, 1)])
 def test_our_node_is_the_first_that_is_not_the_drives(node: int, ours: int) -> None:
     assert ElmoOptions(node=node).master_node == ours
-
-
-class EchoingBus(EmulatedBus):
-    """Gives the host its own frames back, as udp_multicast does."""
-
-    def send(self, msg: can.Message, timeout: float | None = None) -> None:
-        super().send(msg, timeout)
-        self.transmit(
-            can.Message(
-                arbitration_id=msg.arbitration_id, data=bytes(msg.data), is_extended_id=False
-            )
-        )
 
 
 def test_where_our_own_frames_come_back_a_foreign_one_is_told_from_them() -> None:

@@ -77,6 +77,13 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "output": "--output",
         "save": "--save",
     },
+    "check": {"emulate": "--emulate", "seed": "--seed"},
+    "first-motion": {
+        "emulate": "--emulate",
+        "seed": "--seed",
+        "compare_friction": "--unknown-friction",
+        "largest_torque": "--largest-torque",
+    },
     "emulate": {
         "interface": "--interface",
         "channel": "--channel",
@@ -112,7 +119,7 @@ FILES: Mapping[str, str] = {
 FLAGS = frozenset(
     {
         *("--drop-copies", "--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run"),
-        *("--selftest", "--causes"),
+        *("--selftest", "--causes", "--unknown-friction"),
     }
 )
 """Options that may stand without a value."""

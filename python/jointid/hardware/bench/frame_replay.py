@@ -98,7 +98,7 @@ def replay(
         if stamped is not None:
             identity["stamped_frames"] = stamped
         every = adapter.decode(logged_frames(file), joint, drive_options, identity)
-        kept = np.array([k for k in range(before, len(every)) if not every[k].lost], dtype=np.intp)
+        kept = _recorded(every, before)
         late = _late(every, kept, before, session)
         _check_count(len(kept), before, session)
     except InputError as error:
@@ -161,6 +161,14 @@ def _check_count(found: int, before: int, session: Recording | None) -> None:
         raise InputError(
             f"{max(0, found)} cycles after the first {before}; at least {_LEAST} are expected"
         )
+
+
+def _recorded(every: Sequence[LoggedCycle], before: int) -> npt.NDArray[np.intp]:
+    """Cycles of the run that a session keeps: those with a sample, but the first behind one without."""
+    lost = np.array([bool(cycle.lost) for cycle in every], dtype=np.bool_)
+    waited = np.concatenate([[False], lost[:-1]])
+    waited[before : before + 1] = False
+    return np.flatnonzero(~lost[before:] & ~waited[before:]) + before
 
 
 def _late(

@@ -63,10 +63,9 @@ class MotorSwitch:
         while not self._status().motor_on:
             if link.clock.now() > end:
                 raise DriveFaultError("drive_fault", "the motor does not come on (MO=1, SR bit 4)")
-            self._pause(_LOOK)
-        self.beat()
+            link.clock.sleep_until(link.clock.now() + self._beat_in_time())
         link.ask(ZERO, meanwhile=self._beat_in_time)
-        self.beat()
+        self.beat()  # the whole time is left until the first cycle
         link.echoes.begin()
 
     def off(self, period: float) -> DriveEnd:
@@ -127,13 +126,6 @@ class MotorSwitch:
         if now - self._beaten >= every:
             self.beat()
         return every
-
-    def _pause(self, duration: float) -> None:
-        """Wait while our heartbeat goes on."""
-        clock = self._link.clock
-        end = clock.now() + duration
-        while clock.now() < end:
-            clock.sleep_until(min(end, clock.now() + self._beat_in_time()))
 
     def _network(self, command: int) -> None:
         self._try(canopen.NMT, canopen.network(command, self._options.node))

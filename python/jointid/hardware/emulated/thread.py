@@ -16,7 +16,7 @@ from jointid.hardware.emulated.faults import BusFault
 from jointid.hardware.emulated.wire import Wire
 
 _LONGEST_WAIT = 0.02  # [s]: so soon the thread sees that it is to end
-_OLDEST = 5.0  # [s]: a frame that is stamped earlier bears the time of another clock
+_OLDEST = 60.0  # [s]: a frame that is stamped earlier bears the time of another clock, or of one that was set
 _MOST_WAITING = 10_000  # frames that are read at once
 _SENDING = 0.01  # [s] that a full queue may take: the devices' own guards wait meanwhile
 

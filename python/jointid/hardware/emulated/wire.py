@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import can
 
@@ -12,6 +13,8 @@ from jointid.hardware.can.canopen_frames import bits_on_wire
 from jointid.hardware.emulated.device import Event
 from jointid.hardware.emulated.faults import BusFault, mangled
 
+_NETWORKS = Path("/sys/class/net")
+_WITHOUT_WIRE = ("virtual", "udp_multicast")
 Arrive = Callable[[can.Message], None]
 
 
@@ -95,3 +98,23 @@ def _priority(message: can.Message) -> tuple[int, bool]:
     """The lower wins, bit by bit; of two with one identifier the one with content."""
     identifier = message.arbitration_id
     return (identifier if message.is_extended_id else identifier << 18), message.is_remote_frame
+
+
+def bitrate_to_emulate(interface: str, channel: str | None, bitrate: float) -> float | None:
+    """Return the bit rate by which an emulator's frames are to take their time on a bus.
+
+    Parameters
+    ----------
+    interface, channel : str
+        As python-can names them.
+    bitrate : float
+        Of the bus that is emulated [bit/s].
+
+    Returns
+    -------
+    float or None
+        None where a controller sends the frames, on a wire that takes its own time.
+    """
+    if interface == "socketcan":
+        return None if (_NETWORKS / str(channel) / "device").exists() else bitrate
+    return bitrate if interface in _WITHOUT_WIRE else None

@@ -22,7 +22,7 @@ _AT_REST = 0.02  # [rad/s]
 _LONGEST = 2.0  # times as long as it should take
 _SHORTEST = 0.05  # [s]
 _TRIED = 5  # cycles, after which the joint must be slower
-_LOST = 3  # samples
+_LOST = 3  # samples in a row
 _CREDIBLE = 1.5  # of the velocity limit
 
 
@@ -47,25 +47,23 @@ class Braked:
 def brake_after(
     cause: BaseException,
     drive: Drive,
+    joint: MovingJoint | None,
     limits: SessionLimits,
     options: SessionOptions,
     sample: DriveSample | None,
 ) -> Braked | None:
-    """Brake behind a stop that allows it; None where it does not, or the drive's joint is not known.
+    """Brake behind a stop that allows it; None where it does not, or the joint's inertia is not known.
 
     Raises
     ------
     DriveFaultError
         The drive fails.
     """
-    joint = MovingJoint.of(getattr(drive, "joint", None))
     if joint is None or sample is None:
         return None
     if not isinstance(cause, LimitError) or cause.limit not in BRAKED:
         return None
-    return brake(
-        *(drive, joint, limits, sample), period=options.period, timeout=options.timeout
-    )
+    return brake(*(drive, joint, limits, sample), period=options.period, timeout=options.timeout)
 
 
 def brake(
@@ -121,6 +119,7 @@ def brake(
             if error.kind != "stale_position" or lost > _LOST:
                 raise
             continue
+        lost = 0
         if not sample.time > last.time:
             break
         velocity = (sample.position - last.position) / (sample.time - last.time)

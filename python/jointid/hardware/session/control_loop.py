@@ -96,6 +96,7 @@ class Follower:
             None  # how long after a cycle's begin the first sample was taken
         )
         self._missing = 0.0  # cycles without a sample before the next one
+        self._waited = False  # for a sample, in the last cycle
 
     @property
     def lateness(self) -> Lateness:
@@ -136,7 +137,7 @@ class Follower:
         timeout = options.timeout
         running = self.phase == "run"
         begin = clock.now() + period
-        self._first, self._missing = None, 0.0
+        self._first, self._missing, self._waited = None, 0.0, False
         if running and recorder is not None:
             recorder.begin({"cycles_before": self.cycles})
         if running:
@@ -152,6 +153,8 @@ class Follower:
             passed = int(woke / period)
             k += passed
             if k >= len(course.reference):
+                self._sample(timeout)  # a drive that has stopped meanwhile says why
+                lateness.skip(passed, woke)
                 break
             if settled is not None and self.phase == "move" and k * period > settled:
                 self.enter("settle")
@@ -162,11 +165,15 @@ class Follower:
             if isinstance(sample, str):
                 lateness.late(sample)
                 self._missing += 1.0
+                self._waited = True
                 self._hold()
             else:
+                # Behind a late answer the bus is not quiet: when this sample was taken is known less well.
+                kept = running and not self._waited
+                self._waited = False
                 lateness.on_time()
                 wanted = (course.reference[k] + offset, course.velocity[k], course.acceleration[k])
-                self._answer(sample, k * period, begin, wanted, recorder if running else None)
+                self._answer(sample, k * period, begin, wanted, recorder if kept else None, kept)
             k += 1
             missed = clock.now() - (begin + k * period)
             self.late.append(missed)
@@ -179,6 +186,7 @@ class Follower:
         begin: float,
         wanted: tuple[float, float, float],
         recorder: Recorder | None,
+        kept: bool,
     ) -> None:
         """Check a sample, command a torque, keep the row; a sample that ends the session is kept, too."""
         guard, clock, period = self._guard, self._drive.clock, self._options.period
@@ -212,11 +220,14 @@ class Follower:
             held = held_torque(self._held, accepted, acted, period)
             guard.accepted(torque, accepted)
         finally:
-            if self.phase == "run" and math.isfinite(sample.position + sample.reading):
+            if kept and math.isfinite(sample.position + sample.reading):
                 row = (elapsed, sample.position, held, sample.reading, target, sample.current)
                 self._keep((*row, self._missing), recorder)
         # A command that was lost, or acts only in the next cycle, makes the next one's torque uncertain, too.
-        self._missing = UNCONFIRMED if acted > period or not sample.confirmed else 0.0
+        doubtful = acted > period or not sample.confirmed
+        self._missing = (UNCONFIRMED if doubtful else 0.0) + (
+            0.0 if kept else math.floor(self._missing) + 1.0
+        )
         self._held = accepted
         if self._observer is not None:
             self._observer(self.phase, elapsed, sample, target, accepted)

@@ -12,10 +12,9 @@ from jointid.hardware.session.stop import LimitError
 
 # From the sample that shows the need until braking acts: the next cycle's command, and its way.
 _REACTION = 2.0  # periods
-_WATCHED = 0.05  # [s] over which work and energy are compared
+_WATCHED = 0.02  # [s] over which work and energy are compared, and for which they must differ
 _NOTICED = 0.05  # [rad/s]: the energy of a slower motion is no evidence
 _DOUBT = 0.1  # of the link's weight
-_OFTEN = 5  # cycles in a row
 _BEYOND = 0.05  # [s] that a torque may be beyond the envelope
 _SMALL = 0.05  # of the torque limit, which is added to the envelope
 
@@ -39,7 +38,8 @@ class Foresight:
         self._limits, self._joint = limits, joint
         self._reaction = _REACTION * period + latency
         self._braking = joint.braking(limits.torque)
-        self._watched: deque[tuple[float, float]] = deque(maxlen=max(2, round(_WATCHED / period)))
+        self._often = max(2, round(_WATCHED / period))
+        self._watched: deque[tuple[float, float]] = deque(maxlen=self._often + 1)
         self._work = 0.0  # of the motor since the beginning [J]
         self._place: float | None = None
         self._against = self._beyond = 0
@@ -104,7 +104,7 @@ class Foresight:
             + _DOUBT * self._joint.weight * abs(velocity) * _WATCHED
         )
         self._against = self._against + 1 if work < -doubt and gained > doubt else 0
-        if self._against >= _OFTEN:
+        if self._against >= self._often:
             raise LimitError(
                 "torque_sign",
                 f"in the last {1e3 * _WATCHED:.0f} ms the joint has gained {gained:.3g} J, though the commanded torque "
@@ -138,9 +138,10 @@ class Foresight:
             )
 
 
-def foresight_of(drive: Drive, limits: SessionLimits, options: SessionOptions) -> Foresight | None:
-    """Return the checks for a drive whose joint states its inertia; None for another."""
-    joint = MovingJoint.of(getattr(drive, "joint", None))
+def foresight_of(
+    joint: MovingJoint | None, drive: Drive, limits: SessionLimits, options: SessionOptions
+) -> Foresight | None:
+    """Return the checks for a joint whose inertia is known; None for another."""
     if joint is None:
         return None
     return Foresight(limits, options.period, joint, drive.command_latency)

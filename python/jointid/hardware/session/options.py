@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 from jointid.base.argument_checks import whole_number
 from jointid.base.errors import InputError
@@ -97,3 +97,22 @@ def check_cycles(name: str, time: float, period: float) -> None:
             argument=name,
             value=time,
         )
+
+
+def with_resolution(options: SessionOptions, drive: object) -> SessionOptions:
+    """Return options whose resolution is known: their own, or the drive's.
+
+    Raises
+    ------
+    InputError
+        Neither is known.
+    """
+    if options.resolution is not None:
+        return options
+    resolution = getattr(drive, "resolution", None)
+    if resolution is None:
+        raise InputError(
+            "not known: neither the session's options nor the drive give the output angle of an encoder count",
+            argument="resolution",
+        )
+    return replace(options, resolution=float(resolution))

@@ -21,7 +21,8 @@ from jointid.hardware.session.guard import Guard
 from jointid.hardware.session.interruptions import Interruptions
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.metadata import plain, session_metadata
-from jointid.hardware.session.options import SessionOptions, check_cycles
+from jointid.hardware.session.moving_joint import MovingJoint
+from jointid.hardware.session.options import SessionOptions, check_cycles, with_resolution
 from jointid.hardware.session.outcome import ending_of, recording_of, stop_of
 from jointid.hardware.session.realtime import RealTime, RealTimeOptions
 from jointid.hardware.session.recorder import Frame, Recorder, check_output
@@ -38,6 +39,7 @@ from jointid.hardware.session.stop import (
     Stop,
     is_bug,
 )
+from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
 from jointid.simulation.arguments import Controller
 from jointid.simulation.trajectory import Trajectory
@@ -74,6 +76,8 @@ class Session:
     real_time : RealTimeOptions, optional
         What to ask of the operating system while the motor is on; what it does not grant is in the
         recording's metadata. Default: nothing.
+    joint : Joint, optional
+        What limits that look ahead believe of inertia, friction and weight. Default: the drive's `joint`.
 
     Attributes
     ----------
@@ -98,13 +102,13 @@ class Session:
         output: str | Path | None = None,
         observer: Observer | None = None,
         real_time: RealTimeOptions | None = None,
+        joint: Joint | None = None,
     ) -> None:
         check_drive(drive)
         self._drive, self._controller, self._trajectory = drive, controller, trajectory
         self._limits = limits
-        self._options = _with_resolution(
-            options if options is not None else SessionOptions(), drive
-        )
+        self._moved = MovingJoint.of(getattr(drive, "joint", None) if joint is None else joint)
+        self._options = with_resolution(options if options is not None else SessionOptions(), drive)
         self._output = None if output is None else Path(output)
         self._observer = observer
         self._real_time = RealTime(real_time)
@@ -285,7 +289,7 @@ class Session:
                     limits,
                     options.period,
                     options.resolution,
-                    foresight_of(self._drive, limits, options),
+                    foresight_of(self._moved, self._drive, limits, options),
                 ),
                 options,
                 interruptions=interruptions,
@@ -330,7 +334,9 @@ class Session:
         """Bring the joint to rest, where that is no risk; the motor goes off next in any case."""
         try:
             sample = None if self._follower is None else self._follower.newest
-            self._braked = brake_after(cause, self._drive, self._limits, self._options, sample)
+            self._braked = brake_after(
+                cause, self._drive, self._moved, self._limits, self._options, sample
+            )
         except (DriveFaultError, OSError, KeyboardInterrupt):
             return  # the drive has failed, or somebody is in a hurry
         except Exception as bug:
@@ -389,16 +395,3 @@ def _noted(error: Exception, note: str) -> Exception:
     if note:
         error.add_note(note)
     return error
-
-
-def _with_resolution(options: SessionOptions, drive: object) -> SessionOptions:
-    """Options whose resolution is known: their own, or the drive's."""
-    if options.resolution is not None:
-        return options
-    resolution = getattr(drive, "resolution", None)
-    if resolution is None:
-        raise InputError(
-            "not known: neither the session's options nor the drive give the output angle of an encoder count",
-            argument="resolution",
-        )
-    return replace(options, resolution=float(resolution))
