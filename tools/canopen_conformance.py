@@ -40,7 +40,7 @@ class Finding:
 
 def _dictionary() -> canopen.ObjectDictionary:
     """What `canopen` must know of the fourth PDO and of two objects, to map them by itself."""
-    found = canopen.ObjectDictionary()
+    found = canopen.ObjectDictionary()  # type: ignore[no-untyped-call]
     kinds = canopen.objectdictionary
     wide, short, byte = kinds.UNSIGNED32, kinds.UNSIGNED16, kinds.UNSIGNED8
     parts = {
@@ -168,12 +168,12 @@ def mandatory(node: Node) -> Iterator[Finding]:
         yield Finding(
             name=f"{index:04X}h:{subindex} is there", passed=len(found) == size, said=said
         )
-    for name, found, wanted in (
+    for name, number, wanted in (
         ("1018h:0 counts four", node.number_of(0x1018), 4),
         ("1014h is the emergency's", node.number_of(0x1014) & 0x7FF, 0x80 + node.number),
         ("1001h shows no error", node.number_of(0x1001), 0),
     ):
-        yield equal(name, found, wanted)
+        yield equal(name, number, wanted)
 
 
 def texts(node: Node) -> Iterator[Finding]:
@@ -260,7 +260,7 @@ def mapping(node: Node) -> Iterator[Finding]:
     refuse("a count while it is on", 0x1A03, 0, b"\0")
     refuse("another identifier while it is on", 0x1803, 1, entry.pack(0x40000000 | cob - 1))
     yield from _all_refused(node, refused)
-    node.remote.tpdo.read()
+    node.remote.tpdo.read()  # type: ignore[no-untyped-call]
     names = [each.name for each in node.remote.tpdo[4].map]
     yield equal("the client's library reads the mapping", names, ["6064h", "6077h"])
     node.remote.tpdo[4].save()
