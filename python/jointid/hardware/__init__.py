@@ -23,6 +23,7 @@ from jointid.hardware.live.plot import LivePlot
 from jointid.hardware.session.clock import Clock, MonotonicClock
 from jointid.hardware.session.cycle import LoggedCycle
 from jointid.hardware.session.drive import Drive, DriveEnd, DriveFaultError, DriveSample
+from jointid.hardware.session.drive_report import DriveReport, Reported
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.realtime import RealTimeOptions
 from jointid.hardware.session.session import (
@@ -42,6 +43,7 @@ __all__ = [
     "Drive",
     "DriveEnd",
     "DriveFaultError",
+    "DriveReport",
     "DriveSample",
     "DriveType",
     "EmulatedBus",
@@ -52,6 +54,7 @@ __all__ = [
     "LoggedFrame",
     "MonotonicClock",
     "RealTimeOptions",
+    "Reported",
     "Session",
     "SessionLimits",
     "SessionOptions",

@@ -39,7 +39,7 @@ class CycleReader:
         self._per_ampere = constant * joint.gear_ratio
         self._seen = ElmoDecoder(joint, options)
         self._seen.rated_current = rated_current
-        self._ours = canopen.heartbeat_id(options.master)
+        self._ours = canopen.heartbeat_id(options.master_node)
         self._sent_by_us = {canopen.NMT, options.command_id, 0x600 + options.node, self._ours}
         self._watch = SyncWatch(options.bitrate, stamped=stamped)
         self._synced = math.nan

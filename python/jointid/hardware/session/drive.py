@@ -18,6 +18,8 @@ FAULT_KINDS = (
     "host_heartbeat_lost",
     "bus",
     "sensor",
+    "foreign_master",
+    "command_echo",
 )
 
 
@@ -33,7 +35,9 @@ class DriveFaultError(RuntimeError):
     kind : str
         "stale_position": no new state within the time allowed; "drive_fault": the drive has shut down or
         refuses a command; "heartbeat_lost": it does not answer any more; "host_heartbeat_lost": it reports that
-        the host does not; "bus": the bus has failed; "sensor": a reading is missing or not finite.
+        the host does not; "bus": the bus has failed; "sensor": a reading is missing or not finite;
+        "foreign_master": somebody else commands the drive, or feeds its watchdog; "command_echo": the drive
+        acknowledges another torque than was commanded, or none.
     message : str
         One sentence: what happened, with the numbers.
     measured, allowed : float, optional
@@ -124,7 +128,8 @@ class Drive(Protocol):
     for the frame log. It may have an attribute `resolution`, the output angle of an encoder count [rad],
     which `SessionOptions` must give otherwise; an attribute `joint`, a `Joint`; and a method `metadata`,
     which returns ``{"drive_type": name, "drive_options": …}``, of JSON's types. Both are kept in the
-    recording, so that a replay of the frame log finds them.
+    recording, so that a replay of the frame log finds them. It may have a method `report`, which returns a
+    `DriveReport` once it is connected, its motor off.
     """
 
     @property
