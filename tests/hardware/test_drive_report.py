@@ -10,7 +10,7 @@ from session_bench import JOINT, PERIOD, devices, session
 import jointid as jid
 from jointid.hardware import DriveFaultError, DriveReport, Reported
 from jointid.hardware.can.canopen_frames import SdoAbortError
-from jointid.hardware.can.sdo_upload import sdo_upload
+from jointid.hardware.can.sdo_upload import upload
 from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.elmo.emulated_drive import ElmoSettings, EmulatedElmo
 from jointid.hardware.elmo.options import ElmoOptions
@@ -135,13 +135,13 @@ def test_an_object_in_segments() -> None:
         b"\x00" + b"0123456",
         b"\x19" + b"789" + bytes(4),  # toggled, four bytes unused, the last
     )
-    assert sdo_upload(server, 0x100A, 0) == b"0123456789"
+    assert upload(server, 0x100A, 0) == b"0123456789"
     assert [request[0] for request in server.requests] == [0x40, 0x60, 0x70]
 
 
 def test_an_expedited_object() -> None:
-    assert sdo_upload(Server(b"\x4b" + HEAD + b"ab\0\0"), 0x100A, 0) == b"ab"
-    assert sdo_upload(Server(b"\x42" + HEAD + b"abcd"), 0x100A, 0) == b"abcd"
+    assert upload(Server(b"\x4b" + HEAD + b"ab\0\0"), 0x100A, 0) == b"ab"
+    assert upload(Server(b"\x42" + HEAD + b"abcd"), 0x100A, 0) == b"abcd"
 
 
 @pytest.mark.parametrize(
@@ -157,9 +157,9 @@ def test_an_expedited_object() -> None:
 )
 def test_answers_that_are_none_to_it(answers: tuple[bytes, ...], says: str) -> None:
     with pytest.raises(jid.InputError, match=says):
-        sdo_upload(Server(*answers), 0x100A, 0)
+        upload(Server(*answers), 0x100A, 0)
 
 
 def test_a_refused_object() -> None:
     with pytest.raises(SdoAbortError, match="the object does not exist"):
-        sdo_upload(Server(b"\x80" + HEAD + struct.pack("<I", 0x06020000)), 0x100A, 0)
+        upload(Server(b"\x80" + HEAD + struct.pack("<I", 0x06020000)), 0x100A, 0)
