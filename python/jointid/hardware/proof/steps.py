@@ -315,7 +315,8 @@ class Steps:
             raise RefusedBenchError(
                 "sensor_sign",
                 f"the torque sensor's reading falls where the link is accelerated in the positive direction "
-                f"({abs(z):.0f} standard errors): it is inverted, or sensor_gain has the wrong sign",
+                f"({abs(z):.0f} standard errors): it is inverted, sensor_gain has the wrong sign, "
+                "or torque and encoder are both inverted",
             )
         self._say(f"torque sensor: right sign ({z:.0f} standard errors)")
 
