@@ -2,7 +2,6 @@
 
 import json
 import shutil
-from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
@@ -23,7 +22,7 @@ KEYS = {
 
 
 @pytest.fixture
-def joint(tmp_path: Path) -> Iterator[Path]:
+def joint(tmp_path: Path) -> Path:
     """A copy of the example, whose bus is none of this machine's."""
     path = tmp_path / "joint.toml"
     text = EXAMPLE.read_text(encoding="utf-8")

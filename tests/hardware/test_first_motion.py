@@ -16,6 +16,7 @@ from jointid.hardware.elmo.emulated_bench import ElmoEmulation, elmo_devices
 from jointid.hardware.elmo.emulated_drive import EmulatedElmo
 from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.emulated.faults import BusFault
+from jointid.hardware.proof.expected import expected_of
 from jointid.hardware.proof.result import UNCHECKED, FirstMotion
 from jointid.simulation.plant import Bristle
 from jointid.simulation.stepped import stepped_joint
@@ -49,7 +50,7 @@ class Spy:
 def bench_with(
     friction: tuple[dict[str, float], dict[str, float]] = THESIS,
     position: float = 0.0,
-    **wrong: float,
+    **wrong: Any,
 ) -> Bench:
     """The example's bench, wrong in some way."""
     bench = Bench.load(EXAMPLE)
@@ -281,6 +282,22 @@ def test_a_few_lost_answers_are_stood_and_a_dead_bus_is_not() -> None:
 def test_each_code_of_what_is_unchecked_is_explained() -> None:
     result = FirstMotion(passed=True, unchecked=tuple(UNCHECKED))
     assert all(f"{code}: " in result.report() for code in UNCHECKED)
+
+
+def test_breakaway_is_stated_by_the_models_own_terms() -> None:
+    joint = bench_with().joint
+    assert expected_of(joint).breakaway == pytest.approx(30.0)
+    free = joint.replace(model=joint.model.replace(asymmetric=True), parameters={})
+    assert expected_of(free).breakaway is None
+    sides = {
+        "coulomb_positive": 10.0,
+        "coulomb_negative": 14.0,
+        "static_positive": 2.0,
+        "static_negative": 4.0,
+    }
+    assert expected_of(free.replace(parameters=sides)).breakaway == pytest.approx(15.0)
+    simple = free.replace(model=jid.Model.parse("coulomb_viscous"), parameters={"coulomb": 7.0})
+    assert expected_of(simple).breakaway == pytest.approx(7.0)
 
 
 def test_options_are_checked() -> None:
