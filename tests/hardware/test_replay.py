@@ -25,7 +25,7 @@ COARSE = ElmoOptions(mantissa_bits=4)
 WIRINGS = {"converter": CONVERTER, "analog": ANALOG, "none": NO_SENSOR, "coarse": COARSE}
 ROUNDING = 1e-9  # [s] of a stamp in the log
 
-_BEFORE_CYCLES = 3  # heartbeats of ours while the motor is switched on
+_BEFORE_CYCLES = 2  # heartbeats of ours while the motor is switched on
 
 
 def ran(path: Path, drive: ElmoOptions = CONVERTER, **more: Any) -> jid.Recording:

@@ -100,6 +100,11 @@ def add_emulate(commands: Any) -> None:
     emulate.add_argument(
         "--seed", type=whole_seed, default=0, help="seed of the sensor's noise (default 0)"
     )
+    emulate.add_argument(
+        "--json",
+        action="store_true",
+        help="print what happens to the drive (state, motor, failure), a line of JSON each",
+    )
 
 
 def emulate(arguments: argparse.Namespace) -> int:
@@ -110,7 +115,9 @@ def emulate(arguments: argparse.Namespace) -> int:
     from jointid.hardware.bench.bench import Bench
     from jointid.hardware.bench.opened_drive import emulated_devices
     from jointid.hardware.can.bus import open_bus
+    from jointid.hardware.emulated.journal import Journal
     from jointid.hardware.emulated.thread import EmulatorThread
+    from jointid.hardware.emulated.wire import bitrate_to_emulate
 
     bench = Bench.load(arguments.joint)
     duration = math.inf if arguments.duration is None else arguments.duration
@@ -118,13 +125,17 @@ def emulate(arguments: argparse.Namespace) -> int:
         raise InputError("more than 0 s is expected", argument="duration", value=duration)
     interface = arguments.interface or bench.bus.interface
     channel = arguments.channel or bench.bus.channel
-    devices = emulated_devices(bench, arguments.seed)
+    devices: tuple[Any, ...] = emulated_devices(bench, arguments.seed)
+    bitrate = bitrate_to_emulate(interface, channel, float(bench.bus.bitrate))
+    journal = Journal(devices[0], sys.stdout) if arguments.json else None
+    if journal is not None:
+        devices = (*devices, journal)
     with (
         open_bus(interface=interface, channel=channel, bitrate=bench.bus.bitrate) as bus,
-        EmulatorThread(bus, *devices) as emulator,
+        EmulatorThread(bus, *devices, bitrate=bitrate, watch=journal) as emulator,
     ):
-        kind = bench.drive_type
-        print(f"emulated drive ({kind}) on {interface} {channel}; Ctrl-C ends it", flush=True)
+        said = f"emulated drive ({bench.drive_type}) on {interface} {channel}; Ctrl-C ends it"
+        print(said, file=sys.stderr if arguments.json else sys.stdout, flush=True)
         end = time.monotonic() + duration
         while emulator.running and time.monotonic() < end:
             time.sleep(min(0.05, max(0.0, end - time.monotonic())))

@@ -12,7 +12,7 @@ _MOST_SEGMENTS = 256  # a text of 1.8 kB; a server that never ends is left
 _LAST, _TOGGLE, _ABORTED = 0x01, 0x10, 0x80
 
 
-def sdo_upload(exchange: Callable[[bytes], bytes], index: int, subindex: int) -> bytes:
+def upload(exchange: Callable[[bytes], bytes], index: int, subindex: int) -> bytes:
     """Return an object's bytes.
 
     Parameters

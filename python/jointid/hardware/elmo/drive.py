@@ -19,7 +19,7 @@ from jointid.hardware.elmo.link import ElmoLink, Tap
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.elmo.recorded_options import elmo_options_document
 from jointid.hardware.elmo.report import elmo_report
-from jointid.hardware.elmo.start_problems import IN_USE, start_problems
+from jointid.hardware.elmo.start_problems import IN_USE, reasons_not_to_start
 from jointid.hardware.elmo.switching import CYCLES, OFF, MotorSwitch
 from jointid.hardware.elmo.timing import command_latency
 from jointid.hardware.elmo.torque_source import AnalogInput, SyncedConverter
@@ -205,7 +205,7 @@ class ElmoDrive:
 
     def problems(self, torque_limit: float) -> list[str]:
         """Reasons not to enable the motor."""
-        return start_problems(
+        return reasons_not_to_start(
             self._link,
             self.options,
             peak=self._peak,
@@ -277,7 +277,10 @@ class ElmoDrive:
         return self._switch.off(self._period)
 
     def close(self) -> None:
-        """Leave the drive pre-operational, its watchdogs disarmed when its motor is off."""
+        """Leave the drive pre-operational, its watchdogs disarmed when its motor is off.
+
+        They stay armed where somebody else commands the drive, who may switch the motor on again.
+        """
         link = self._link
         link.up = False
         if not self._found_off:
@@ -286,7 +289,7 @@ class ElmoDrive:
         try:
             link.drain(0.01)
             link.forget_fault()
-            if self._switch.seen_off:
+            if self._switch.seen_off and not link.foreign.frames:
                 elmo_setup.disarm_watchdogs(link)
             link.send(canopen.NMT, canopen.network(canopen.PRE_OPERATIONAL, self.options.node))
             link.drain(0.01)

@@ -12,7 +12,7 @@ from jointid.hardware.bench.bench import Bench, BusOptions
 from jointid.hardware.bench.drive_types import DriveType
 from jointid.hardware.can.bus import open_bus
 from jointid.hardware.elmo.drive import ElmoDrive
-from jointid.hardware.elmo.emulated_bench import ElmoEmulation, elmo_devices
+from jointid.hardware.elmo.emulated_bench import ElmoEmulation, elmo_devices, elmo_emulation
 from jointid.hardware.elmo.logged_cycles import CycleReader
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.elmo.recorded_options import elmo_options_document, elmo_options_of
@@ -66,7 +66,14 @@ class ElmoType(DriveType):
     @contextmanager
     def emulate(self, bench: Bench, seed: int) -> Iterator[ElmoDrive]:
         """Yield the drive on an emulated bus with a clock of its own."""
-        with EmulatedBus(*elmo_devices(bench, seed), bitrate=float(bench.bus.bitrate)) as emulated:
+        emulation = elmo_emulation(bench)
+        with EmulatedBus(
+            *elmo_devices(bench, seed),
+            bitrate=float(bench.bus.bitrate),
+            clock_drift=emulation.clock_drift,
+            jitter=emulation.jitter,
+            seed=seed,
+        ) as emulated:
             yield ElmoDrive(emulated, bench.joint, bench.drive)
 
     def emulation(self, table: Table) -> ElmoEmulation:

@@ -25,6 +25,14 @@ class ElmoEmulation:
         Time between two interpreter commands of the drive [s]. Default 0.0003.
     mantissa_bits : int
         Of a current command that count: 24 for a float, 4 for the thesis's link. Default 24.
+    idle_jitter : float
+        How much longer that may be, each time anew [s]. Default 0.
+    enable_time : float
+        From MO=1 until the motor is on [s]: a brake opens, commutation is found. Default 0.
+    clock_drift : float
+        By what share the host's clock is faster than the drive's: 1e-4 are 100 ppm. Default 0.
+    jitter : float
+        So much later than it wanted the host goes on, at most, whenever it has waited [s]. Default 0.
     torque_sign : float
         1, or -1: a positive current gives a negative torque. Default 1.
     encoder_sign : float
@@ -44,6 +52,10 @@ class ElmoEmulation:
 
     idle_loop: float = 0.3e-3
     mantissa_bits: int = 24
+    idle_jitter: float = 0.0
+    enable_time: float = 0.0
+    clock_drift: float = 0.0
+    jitter: float = 0.0
     torque_sign: float = 1.0
     encoder_sign: float = 1.0
     torque_scale: float = 1.0
@@ -64,10 +76,25 @@ class ElmoEmulation:
             raise InputError("0.001 to 1e6 is expected", argument="gear_ratio", value=ratio)
         if not 0.0 <= self.idle_loop <= 0.01:
             raise InputError("0 to 0.01 s is expected", argument="idle_loop", value=self.idle_loop)
+        if not -0.01 <= self.clock_drift <= 0.01:
+            raise InputError(
+                "-0.01 to 0.01 is expected", argument="clock_drift", value=self.clock_drift
+            )
+        for name, most in (("idle_jitter", 0.01), ("enable_time", 2.0), ("jitter", 0.1)):
+            if not 0.0 <= getattr(self, name) <= most:
+                raise InputError(
+                    f"0 to {most:g} s is expected", argument=name, value=getattr(self, name)
+                )
         if not 1 <= self.mantissa_bits <= 24:
             raise InputError(
                 "1 to 24 is expected", argument="mantissa_bits", value=self.mantissa_bits
             )
+
+
+def elmo_emulation(bench: Bench) -> ElmoEmulation:
+    """Return what a bench's emulated drive does; the defaults where its joint file says nothing."""
+    found = bench.emulation.drive if bench.emulation is not None else None
+    return found if found is not None else ElmoEmulation()
 
 
 def elmo_devices(
@@ -86,9 +113,7 @@ def elmo_devices(
     InputError
         The bench does not describe an emulated joint, or not completely.
     """
-    emulation = bench.emulation.drive if bench.emulation is not None else None
-    if emulation is None:
-        emulation = ElmoEmulation()
+    emulation = elmo_emulation(bench)
     joint = true_joint(bench, gear_ratio=emulation.gear_ratio)
     stepped = emulated_joint(
         bench,
@@ -116,6 +141,8 @@ def elmo_devices(
         peak_current=largest,
         continuous_current=largest,
         idle_loop=emulation.idle_loop,
+        idle_jitter=emulation.idle_jitter,
+        enable_time=emulation.enable_time,
         mantissa_bits=emulation.mantissa_bits,
         position_offset=bench.drive.position_offset,
         cob_command=bench.drive.cob_command,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from jointid.hardware.can import canopen_frames as canopen
 from jointid.hardware.elmo.emulated_interpreter import Interpreter
@@ -24,6 +24,7 @@ __all__ = ["ElmoSettings", "EmulatedElmo"]
 
 TWO_PI = 2.0 * math.pi
 _HEARTBEAT_LOST = 0x800  # in MF
+_WIDEST = 2**31  # counts that 32 bits hold, each way
 _PERIOD_OF_GUARDS = 0.5e-3  # [s] between looks at speed and heartbeat
 
 
@@ -45,6 +46,11 @@ class EmulatedElmo:
         self.reference_mode = 1
         self.current = 0.0
         self.current_limits = [self.settings.peak_current, self.settings.continuous_current]
+        self.speed_bounds: list[float | None] = [
+            None,
+            None,
+        ]  # LL[2], HL[2]; None: as in the settings
+        self.modulo = list(self.settings.modulo)
         self.failure = 0
         self.problem = 0  # of the power stage, as in SR
         # Faults on demand; set them at a time with the bus's `at`.
@@ -59,7 +65,6 @@ class EmulatedElmo:
         self.torque_commands: list[tuple[float, float]] = []
         self.switchings: list[tuple[float, bool]] = []
         self._bus: DeviceBus | None = None
-        self._interpreter = Interpreter(self)
         self._time = 0.0
         self.power = PowerStates(
             lambda: self.motor_on,
@@ -69,6 +74,7 @@ class EmulatedElmo:
         )
         self.objects = ElmoObjects(self)
         self._network = ElmoNetwork(self, self._reset)
+        self._interpreter = Interpreter(self)
 
     @property
     def bus(self) -> DeviceBus:
@@ -96,6 +102,11 @@ class EmulatedElmo:
         self.advance()
         self._network.receive(message)
 
+    @property
+    def interpreter(self) -> Interpreter:
+        """Of its commands, binary and of text."""
+        return self._interpreter
+
     def interpret(self, payload: bytes) -> None:
         """Take a command of the binary interpreter's."""
         self._interpreter.take(payload)
@@ -111,17 +122,21 @@ class EmulatedElmo:
             self._time = now
 
     def counts(self) -> int:
-        """Encoder counts of the motor; an encoder that hangs repeats them."""
+        """Encoder counts of the motor; an encoder that hangs repeats them. They wrap as the drive's do."""
         if self.stuck_encoder is not None:
             return self.stuck_encoder
         angle = self.joint.position - self.settings.position_offset
         per_turn = self.settings.counts_per_turn * self.settings.gear_ratio
-        return math.floor(angle / TWO_PI * per_turn) + self.slipped_counts + self.count_offset
+        found = math.floor(angle / TWO_PI * per_turn) + self.slipped_counts + self.count_offset
+        lowest, highest = self.modulo
+        if highest <= lowest:
+            lowest, highest = -_WIDEST, _WIDEST
+        return (found - lowest) % (highest - lowest) + lowest
 
     def speed(self) -> int:
         """Of the motor [counts/s]."""
         per_radian = self.settings.counts_per_turn * self.settings.gear_ratio / TWO_PI
-        return round(self.joint.velocity * per_radian)
+        return max(-_WIDEST, min(_WIDEST - 1, round(self.joint.velocity * per_radian)))
 
     def voltage(self) -> float:
         """At the analog input [V]."""
@@ -129,6 +144,20 @@ class EmulatedElmo:
             return self.stuck_voltage
         reading = self.joint.observe().reading
         return self.settings.analog.voltage(reading, self.joint.position)
+
+    def condition(self) -> dict[str, Any]:
+        """What a `Journal` tells: state, motor and failure (MF) as events, and where the joint is."""
+        return {
+            "events": {
+                "state": self.state,
+                "motor_on": self.motor_on,
+                "failure": self.failure,
+            },
+            "current": self.current,
+            "position": self.joint.position,
+            "velocity": self.joint.velocity,
+            "commands": len(self.torque_commands),
+        }
 
     def status(self) -> int:
         """SR."""
@@ -138,7 +167,7 @@ class EmulatedElmo:
             | 0x10 * self.motor_on
             | 0x40 * bool(self.failure)
             | self.unit_mode << 7
-            | 0x2000 * (abs(self.current) > self.current_limits[1])
+            | 0x2000 * self.current_limited
         )
 
     @property
@@ -158,6 +187,23 @@ class EmulatedElmo:
             return 0
         share = 1000.0 * self.current / self.rated_current
         return round(max(-32768.0, min(32767.0, share)))
+
+    @property
+    def current_limited(self) -> bool:
+        """Whether the current is more than the drive gives for long."""
+        return abs(self.current) > self.current_limits[1]
+
+    def command_current(self, current: float) -> None:
+        """Let a current flow [A], as the power stage does it."""
+        self.current = self.stage_gain * current
+        self.torque_commands.append((self.bus.now(), self.current))
+
+    def limit_current(self) -> None:
+        """Cut the current that flows, when PL[1] is set below it."""
+        peak = self.current_limits[0]
+        if abs(self.current) > peak:
+            self.current = math.copysign(peak, self.current)
+            self.torque_commands.append((self.bus.now(), self.current))
 
     def switch(self, *, on: bool) -> None:
         """Motor on or off, at no current."""
@@ -229,7 +275,10 @@ class EmulatedElmo:
     def _guard(self) -> None:
         self.advance()
         now = self.bus.now()
-        if self.motor_on and abs(self.speed()) > self.settings.speed_limit:
+        low, high = self.speed_bounds
+        limit = self.settings.speed_limit
+        least, most = -limit if low is None else low, limit if high is None else high
+        if self.motor_on and not least <= self.speed() <= most:
             self.fail("speed limit")
         self._network.look(now)
         self.bus.at(now + _PERIOD_OF_GUARDS, self._guard)

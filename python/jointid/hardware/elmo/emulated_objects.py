@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from jointid.hardware.elmo.emulated_interpreter import VERSION
 from jointid.hardware.emulated.object_dictionary import (
     INCOMPATIBLE,
     NOT_STORED,
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from jointid.hardware.elmo.emulated_drive import EmulatedElmo
 
 VENDOR, PRODUCT, REVISION = 0x9A, 0x00030924, 0x01010301
-VERSION = "Cello 2.02.00.00 emulated"
 _SERVO = 0x00020192  # 1000h: a servo drive after CiA 402
 _NO_REMOTE = 0x40000000  # in a PDO's COB-ID: no remote frames
 _TYPES_SENT = frozenset({*range(241), *EVENT})
@@ -110,6 +110,11 @@ class ElmoObjects(ObjectDictionary):
         """Whether a PDO, counted from 0, is sent when the interpreter has a result."""
         return bool(self.value(0x2F20, number + 1) & _BINARY_RESULT)
 
+    def number(self, index: int, subindex: int) -> int:
+        """The number that an object holds."""
+        entry = self.entry(index, subindex)
+        return int.from_bytes(self.read(index, subindex), "little", signed=entry.signed)
+
     def emergency_wanted(self, bit: int) -> bool:
         """Whether 2F21h lets an event's emergency through."""
         return bool(self.value(0x2F21, 0) >> bit & 1)
@@ -181,6 +186,14 @@ class ElmoObjects(ObjectDictionary):
         self.add(
             0x6061, 0, Entry(size=1, signed=True, read=lambda: self.value(0x6060, 0), sent=True)
         )
+        # The text interpreter: command, status, reply (1023h).
+        self.constant(0x1023, 0, 1, 3)
+        self.add(
+            *(0x1023, 1),
+            Entry(size=0, write_bytes=lambda given: drive.interpreter.take_text(given)),
+        )
+        self.add(0x1023, 2, Entry(size=1, read=lambda: drive.interpreter.text_status))
+        self.add(0x1023, 3, Entry(size=0, read=lambda: drive.interpreter.text))
         self.add(0x2012, 0, Entry(size=8, write_bytes=drive.interpret, received=True))
         self.add(0x2013, 0, Entry(size=8, read=lambda: self.result, sent=True))
 

@@ -26,8 +26,10 @@ class ElmoSettings:
         6075h, by which 6077h is scaled [A]. Default: CL[1].
     speed_limit : float
         HL[2], and LL[2] with the other sign: motor counts a second; beyond, it shuts down.
-    idle_loop : float
-        Time between two interpreter commands [s].
+    idle_loop, idle_jitter : float
+        Time between two interpreter commands, and how much more it may be each time [s].
+    enable_time : float
+        From MO=1 until the motor is on and says so: brake, commutation [s].
     mantissa_bits : int
         Of the current command that count; 24 is a float's own, 4 the thesis's link.
     position_offset : float
@@ -41,6 +43,8 @@ class ElmoSettings:
     abort_option, error_behaviour, emergency_events : int
         6007h, 1029h:1 and 2F21h after a reset of the communication. Default 0: a lost heartbeat stops no
         motor, the drive leaves the state operational, and no emergency is sent.
+    modulo : tuple of int
+        XM[1], XM[2]: between these the counts wrap; two equal ones: at 32 bits.
     supply, temperature : float
         [V], [°C].
     """
@@ -54,6 +58,8 @@ class ElmoSettings:
     rated_current: float | None = None
     speed_limit: float = 1e9
     idle_loop: float = 0.3e-3
+    idle_jitter: float = 0.0
+    enable_time: float = 0.0
     mantissa_bits: int = 24
     position_offset: float = 0.0
     analog: SensorScaling = field(default_factory=SensorScaling)
@@ -63,6 +69,7 @@ class ElmoSettings:
     abort_option: int = 0
     error_behaviour: int = 0
     emergency_events: int = 0
+    modulo: tuple[int, int] = (0, 0)
     supply: float = 48.0
     temperature: float = 30.0
 

@@ -10,8 +10,8 @@ import can
 
 from jointid.base.errors import InputError
 from jointid.hardware.can import canopen_frames as canopen
+from jointid.hardware.can import sdo_upload
 from jointid.hardware.can.bus_errors import error_frame_meaning
-from jointid.hardware.can.sdo_upload import sdo_upload
 from jointid.hardware.elmo.codec import Command, DriveError, Reply
 from jointid.hardware.elmo.decoder import ElmoDecoder
 from jointid.hardware.elmo.echoes import CommandEchoes
@@ -193,7 +193,7 @@ class ElmoLink:
             self.wait(lambda: bool(self._answers), _ANSWER, f"no answer to object {index:04X}h")
             return self._answers[0]
 
-        return sdo_upload(exchange, index, subindex)
+        return sdo_upload.upload(exchange, index, subindex)
 
     # From the drive.
 

@@ -29,13 +29,8 @@ def map_position(link: ElmoLink, options: ElmoOptions) -> None:
     )
 
 
-def arm_watchdogs(link: ElmoLink, options: ElmoOptions) -> tuple[Reported, ...]:
+def arm_watchdogs(link: ElmoLink, options: ElmoOptions) -> None:
     """Let the drive stop by itself when our heartbeat is missing, and send its own.
-
-    Returns
-    -------
-    tuple of Reported
-        The objects as the drive has them now, read back.
 
     Raises
     ------
@@ -50,14 +45,12 @@ def arm_watchdogs(link: ElmoLink, options: ElmoOptions) -> tuple[Reported, ...]:
         (0x1029, 1, 1, 1),
         (0x2F21, 0, _object(link, 0x2F21, 0) | _EMERGENCIES, 2),
     )
-    armed = watchdog_objects(link, options)
-    for each in armed:
+    for each in watchdog_objects(link, options):
         if each.differs:
             raise DriveFaultError(
                 "drive_fault",
                 f"the drive's watchdog is not armed: object {each}; it would go on when this program has died",
             )
-    return armed
 
 
 def watchdog_objects(link: ElmoLink, options: ElmoOptions) -> tuple[Reported, ...]:

@@ -12,7 +12,7 @@ from jointid.hardware.elmo.options import ElmoOptions
 IN_USE = "the motor is on already: another program commands the drive; switch the motor off there"
 
 
-def start_problems(
+def reasons_not_to_start(
     link: ElmoLink,
     options: ElmoOptions,
     *,

@@ -16,6 +16,7 @@ _ENABLE = 3.0  # [s] to wait for the motor: commutation and brake take their tim
 _LOOK = 0.02  # [s] between two questions whether it is on
 _SEEN_OFF = 0.2  # [s] that switching off is tried for, at most
 _SOON = 3  # times that switching off is repeated in the next cycle
+_NETWORK = 2  # tries after which the network is stopped, too
 _CONTROL, _STATUS = 0x6040, 0x6041  # words of CiA 402
 _SWITCHED_ON, _OPERATION = 0x02, 0x04  # bits of the status word
 ZERO, OFF = Command(letters="TC", value=0.0), Command(letters="MO", value=0)
@@ -62,10 +63,9 @@ class MotorSwitch:
         while not self._status().motor_on:
             if link.clock.now() > end:
                 raise DriveFaultError("drive_fault", "the motor does not come on (MO=1, SR bit 4)")
-            self._pause(_LOOK)
-        self.beat()
+            link.clock.sleep_until(link.clock.now() + self._beat_in_time())
         link.ask(ZERO, meanwhile=self._beat_in_time)
-        self.beat()
+        self.beat()  # the whole time is left until the first cycle
         link.echoes.begin()
 
     def off(self, period: float) -> DriveEnd:
@@ -87,7 +87,7 @@ class MotorSwitch:
             register = self._register("SR", pause)
             self.seen_off = register is not None and not DriveStatus.of(register).motor_on
             if tries and not self.seen_off:
-                self._otherwise(pause, last=tries >= _SOON)
+                self._otherwise(pause, last=tries >= _NETWORK)
             if register is None:  # it may have restarted, and ignores commands then
                 self._network(canopen.START)
             tries += 1
@@ -126,13 +126,6 @@ class MotorSwitch:
         if now - self._beaten >= every:
             self.beat()
         return every
-
-    def _pause(self, duration: float) -> None:
-        """Wait while our heartbeat goes on."""
-        clock = self._link.clock
-        end = clock.now() + duration
-        while clock.now() < end:
-            clock.sleep_until(min(end, clock.now() + self._beat_in_time()))
 
     def _network(self, command: int) -> None:
         self._try(canopen.NMT, canopen.network(command, self._options.node))
