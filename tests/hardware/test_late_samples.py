@@ -271,3 +271,28 @@ def test_at_a_long_period_as_many_as_in_a_row_are_no_excess() -> None:
     with pytest.raises(LimitError) as stopped:
         watched.late("why")
     assert stopped.value.limit == "late_share"
+
+
+def test_a_loop_that_stands_still_beyond_the_end_has_not_done_its_motion() -> None:
+    """The drive has stopped by itself meanwhile: that is not the end of the motion."""
+    with EmulatedBus(*devices()) as bus:
+
+        def stand_still(phase: str, time: float, *_: object) -> None:
+            if phase == "run" and 0.9 <= time < 0.9 + PERIOD:
+                bus.sleep_until(bus.now() + 0.3)
+
+        with pytest.raises(SessionStoppedError) as stopped:
+            session(bus, 1.0, observer=stand_still).run()
+    assert stopped.value.stop.limit == "host_heartbeat_lost"
+
+
+def test_cycles_that_are_skipped_at_the_end_count() -> None:
+    with EmulatedBus(*devices()) as bus:
+
+        def stand_still(phase: str, time: float, *_: object) -> None:
+            if phase == "run" and 0.98 <= time < 0.98 + PERIOD:
+                bus.sleep_until(bus.now() + 0.03)
+
+        with pytest.raises(SessionStoppedError, match="skipped 1[0-9] cycles") as stopped:
+            session(bus, 1.0, observer=stand_still).run()
+    assert stopped.value.stop.limit == "late_samples"

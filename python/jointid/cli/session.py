@@ -107,6 +107,12 @@ def add_emulate(commands: Any) -> None:
         action="store_true",
         help="print what happens to the drive (state, motor, failure), a line of JSON each",
     )
+    emulate.add_argument(
+        "--rest",
+        type=decimal,
+        default=0.0,
+        help="on a machine that wakes slowly: wake so seldom [s]; frames are so much later (default 0)",
+    )
 
 
 def emulate(arguments: argparse.Namespace) -> int:
@@ -125,16 +131,26 @@ def emulate(arguments: argparse.Namespace) -> int:
     duration = math.inf if arguments.duration is None else arguments.duration
     if not duration > 0.0:
         raise InputError("more than 0 s is expected", argument="duration", value=duration)
+    if not 0.0 <= arguments.rest <= 0.02:
+        raise InputError("0 to 0.02 s is expected", argument="rest", value=arguments.rest)
     interface = arguments.interface or bench.bus.interface
     channel = arguments.channel or bench.bus.channel
     devices: tuple[Any, ...] = emulated_devices(bench, arguments.seed)
     bitrate = bitrate_to_emulate(interface, channel, float(bench.bus.bitrate))
-    journal = Journal(devices[0], sys.stdout) if arguments.json else None
-    if journal is not None:
+    journal = None
+    if arguments.json:
+        if not hasattr(devices[0], "condition"):
+            raise InputError(
+                f"the emulated drive of the type {bench.drive_type!r} does not tell what happens to it",
+                argument="json",
+            )
+        journal = Journal(devices[0], sys.stdout)
         devices = (*devices, journal)
     with (
         open_bus(interface=interface, channel=channel, bitrate=bench.bus.bitrate) as bus,
-        EmulatorThread(bus, *devices, bitrate=bitrate, watch=journal) as emulator,
+        EmulatorThread(
+            bus, *devices, bitrate=bitrate, watch=journal, rest=arguments.rest
+        ) as emulator,
     ):
         said = f"emulated drive ({bench.drive_type}) on {interface} {channel}; Ctrl-C ends it"
         print(said, file=sys.stderr if arguments.json else sys.stdout, flush=True)

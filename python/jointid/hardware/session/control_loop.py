@@ -153,6 +153,8 @@ class Follower:
             passed = int(woke / period)
             k += passed
             if k >= len(course.reference):
+                self._sample(timeout)  # a drive that has stopped meanwhile says why
+                lateness.skip(passed, woke)
                 break
             if settled is not None and self.phase == "move" and k * period > settled:
                 self.enter("settle")
