@@ -23,7 +23,9 @@ PATIENT: dict[str, Any] = {
     "period": SLOW,
     "answer_timeout": 5.0,
     "drive": ElmoOptions(heartbeat=10.0),
-    "limits": limits(missed_deadlines=10**6, saturated_samples=10**6),
+    "limits": limits(
+        missed_deadlines=10**6, saturated_samples=10**6, late_samples=10**6, late_share=1.0
+    ),
     "law": law().replace(bandwidth=15.0, robust_term=False),
 }
 
