@@ -19,10 +19,14 @@ class FirstMotionOptions:
     ----------
     largest_torque : float, optional
         The cap, by the joint file's constants [N·m]: without motion, the torque ends there. Default: five
-        times the breakaway that the joint file states, and never more than the session's torque limit.
+        times the breakaway that the joint file states, twice where there is no torque sensor to watch, and never more
+        than the session's torque limit.
     compare_friction : bool
         The joint file states the joint's friction within a factor of 1.5, and the measured breakaway is held
         against it. False where its values are only guesses. Default True.
+    watch_sensor : bool
+        A torque sensor that leaves its reading at rest while the encoder stands ends the search for motion.
+        Default True.
     counts : int
         Encoder counts that are a motion, beside `more_counts`. Default 5.
     more_counts : int
@@ -50,6 +54,7 @@ class FirstMotionOptions:
 
     largest_torque: float | None = None
     compare_friction: bool = True
+    watch_sensor: bool = True
     counts: int = 5
     more_counts: int = 10
     growth_time: float = 2.0
@@ -62,18 +67,17 @@ class FirstMotionOptions:
     def __post_init__(self) -> None:
         for item in fields(self):
             value = getattr(self, item.name)
-            if item.name in ("compare_friction", "moves") or (
+            if item.name in ("compare_friction", "watch_sensor", "moves") or (
                 value is None and item.default is None
             ):
                 continue
             if not is_number(value) or not 0.0 < value < math.inf:
                 raise InputError("more than 0 is expected", argument=item.name, value=value)
-        if not isinstance(self.compare_friction, bool):
-            raise InputError(
-                "true or false is expected",
-                argument="compare_friction",
-                value=self.compare_friction,
-            )
+        for name in ("compare_friction", "watch_sensor"):
+            if not isinstance(getattr(self, name), bool):
+                raise InputError(
+                    "true or false is expected", argument=name, value=getattr(self, name)
+                )
         for name in ("counts", "more_counts"):
             if not (
                 isinstance(getattr(self, name), int) and 2 <= getattr(self, name) <= _MOST_COUNTS

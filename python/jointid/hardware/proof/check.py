@@ -102,7 +102,7 @@ class BenchCheck:
         lines += [f"DIFFERENT: {each}" for each in self.differences]
         lines += [f"PROBLEM: {each}" for each in self.problems]
         if self.passed:
-            lines.append("nothing speaks against a first motion: jointid first-motion")
+            lines.append("nothing speaks against a first motion")
         return "\n".join(lines)
 
 
@@ -137,13 +137,13 @@ def check_bench(
     """
     require_kind("bench", bench, Bench)
     if drive is not None:
-        return _checked(bench, drive)
+        return _checked(bench, drive, bench.address)
     with open_drive(bench, emulate=emulate, seed=seed) as opened:
-        return _checked(bench, opened)
+        return _checked(bench, opened, "emulated" if emulate else bench.address)
 
 
-def _checked(bench: Bench, drive: Drive) -> BenchCheck:
-    found: dict[str, Any] = {"address": bench.address}
+def _checked(bench: Bench, drive: Drive, address: str) -> BenchCheck:
+    found: dict[str, Any] = {"address": address}
     try:
         _read(bench, drive, found)
     except DriveFaultError as error:

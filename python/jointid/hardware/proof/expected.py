@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
+from jointid import _core
 from jointid.joint.joint import Joint
 
 LARGEST_RATIO = math.sqrt(3.0)
 """Between measured and stated values: midway between one that is stated within 1.5 and a fault of 3."""
 
+_CREEP, _NOTHING = 1e-6, 1e-3  # [rad/s]; a basis that is nothing there
 _APART = 2.0  # two explanations that foretell inertias closer than this cannot be told apart
 
 
@@ -47,30 +51,45 @@ class Expected:
 
 def expected_of(joint: Joint) -> Expected:
     """Return what a joint states."""
-
-    def value(name: str) -> float | None:
-        parameter = joint.parameters.get(name)
-        return None if parameter is None else parameter.value
-
-    def mean(name: str) -> float | None:
-        sides = [value(f"{name}_positive"), value(f"{name}_negative")]
-        known = [side for side in sides if side is not None]
-        return 0.5 * (known[0] + known[1]) if len(known) == 2 else value(name)
-
-    coulomb, static = mean("coulomb"), mean("static")
-    stated = None if coulomb is None else coulomb + (static or 0.0)
-    identified = value("inertia")
+    stated = _stated_breakaway(joint)
+    identified = _value(joint, "inertia")
     drive = joint.reflected_inertia
     if identified is not None:  # without a sensor it includes the link's
         drive = identified if joint.sensor else max(identified - joint.link_inertia, 0.0)
-    gain = value("sensor_gain")
+    gain = _value(joint, "sensor_gain")
     return Expected(
         breakaway=stated if stated is not None and stated > 0.0 else None,
         drive_inertia=drive,
         link_inertia=None if joint.link is None else joint.link_inertia,
-        sensor=joint.sensor is not None and joint.sensor is not False,
+        sensor=joint.sensor,
         sensor_sign=math.copysign(1.0, gain) if gain else 1.0,
     )
+
+
+def _value(joint: Joint, name: str) -> float | None:
+    parameter = joint.parameters.get(name)
+    return None if parameter is None else parameter.value
+
+
+def _stated_breakaway(joint: Joint) -> float | None:
+    """Friction at the lowest speed, the mean of both directions [N·m]; None where a value of it is not stated."""
+    model = joint.model.resolved
+    speeds = np.array([_CREEP, -_CREEP])
+    total = np.zeros(2)
+    for key in _core.model_terms(model.name, asymmetric=model.asymmetric):
+        term = _core.term(key)
+        if not term.friction:
+            continue
+        # How friction fades with speed does not matter where there is none.
+        shapes = np.array([_value(joint, shape) or 1.0 for shape in term.shapes])
+        basis = _core.friction_basis(key, speeds, shapes)
+        if np.abs(basis).max() < _NOTHING:
+            continue
+        value = _value(joint, term.name)
+        if value is None:
+            return None
+        total += value * basis
+    return 0.5 * float(total[0] - total[1])
 
 
 def scale_fault(expected: Expected, friction: float, inertia: float) -> str | None:

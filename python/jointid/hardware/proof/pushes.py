@@ -13,6 +13,7 @@ from jointid.hardware.proof.axis import Axis, Trace
 STRENGTH = 1.15  # of the breakaway in its direction
 _LONGEST = 0.4  # [s] of a push
 _DEGREE = 5  # of the polynomial that stands for what the sensor reads at a position
+_UNKNOWN = 8  # rows at least, for four unknowns
 _FEWEST = 50  # samples in motion, to say anything
 
 
@@ -29,6 +30,17 @@ class Push:
 
     trace: Trace
     direction: float
+
+    @property
+    def width(self) -> float:
+        """Angle that it took [rad]."""
+        return float(np.ptp(self.trace.position))
+
+    @property
+    def fastest(self) -> float:
+        """Highest speed between two samples [rad/s]."""
+        steps = np.abs(np.diff(self.trace.position)) / np.diff(self.trace.time)
+        return float(steps.max(initial=0.0))
 
 
 def push(axis: Axis, direction: float, torque: float, reach: float) -> Push:
@@ -57,18 +69,21 @@ class Motion:
         [kg·m²]; not a number where it cannot be told.
     friction, viscous : float
         While it slides [N·m], [N·m·s/rad].
+    load : float
+        That hinders the positive and helps the negative direction: gravity, above all [N·m].
     """
 
     inertia: float
     friction: float
     viscous: float
+    load: float = 0.0
 
 
 def motion_of(pushes: list[Push], latency: float, resolution: float) -> Motion:
     """Fit inertia and sliding friction to some pushes, by the torque balance integrated twice.
 
-    inertia · x = ∬ torque - friction · ∬ 1 - viscous · ∫ x, from the first cycle of each push, in which the torque
-    steps from 0, until the last count.
+    inertia · x = ∬ torque - (friction ± load) · ∬ 1 - viscous · ∫ x, from the first cycle of each push, in which
+    the torque steps from 0, until the last count.
 
     Parameters
     ----------
@@ -87,17 +102,18 @@ def motion_of(pushes: list[Push], latency: float, resolution: float) -> Motion:
         inner = slice(1, moving + 1)
         elapsed = times[inner] - times[0]
         area = np.concatenate(((0.0,), np.cumsum(0.5 * (x[1:] + x[:-1]) * np.diff(times))))
-        rows.append(np.stack((x[inner], 0.5 * elapsed**2, area[inner]), axis=1))
+        held = 0.5 * elapsed**2
+        rows.append(np.stack((x[inner], held, area[inner], each.direction * held), axis=1))
         wanted.append(twice[inner])
     if not rows:
         return Motion(math.nan, math.nan, math.nan)
     matrix, target = np.concatenate(rows), np.concatenate(wanted)
-    if len(matrix) < 4:
+    if len(matrix) < _UNKNOWN:
         return Motion(math.nan, math.nan, math.nan)
     scale = np.abs(matrix).max(axis=0)
     found, *_ = np.linalg.lstsq(matrix / np.where(scale > 0.0, scale, 1.0), target, rcond=1e-9)
-    inertia, friction, viscous = (float(value) for value in found / scale)
-    return Motion(inertia if inertia > 0.0 else math.nan, friction, viscous)
+    inertia, friction, viscous, load = (float(value) for value in found / scale)
+    return Motion(inertia if inertia > 0.0 else math.nan, friction, viscous, load)
 
 
 def _integrated(
@@ -156,7 +172,8 @@ def sensor_response(
         sliding[1 : moving + 1] = True
         acting = np.concatenate(((0.0,), each.direction * trace.torque[:-1]))
         speed = np.gradient(x, trace.time) if len(x) > 2 else np.zeros(len(x))
-        acceleration = (acting - motion.friction - motion.viscous * speed) / motion.inertia
+        against = motion.friction + each.direction * motion.load
+        acceleration = (acting - against - motion.viscous * speed) / motion.inertia
         accelerations.append(each.direction * np.where(sliding, acceleration, 0.0))
         positions.append(trace.position)
         readings.append(trace.reading)
