@@ -9,6 +9,7 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -81,8 +82,6 @@ class Certificate:
         """
         if not result.passed:
             raise InputError("only one that was passed is certified", argument="first motion")
-        from jointid import __version__
-
         low, high = bench.limits.position
         found = {
             **result.to_dict(),
@@ -103,7 +102,7 @@ class Certificate:
                     "torque": bench.limits.torque,
                 }
             ),
-            versions={"jointid": __version__, "python": platform.python_version()},
+            versions={"jointid": version("jointid"), "python": platform.python_version()},
         )
 
     def save(self, path: str | Path) -> None:
