@@ -9,10 +9,10 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from jointid import _core
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
 from jointid.base.schema import Number, Plain, Record, TableOf, Text, read_text
@@ -102,7 +102,7 @@ class Certificate:
                     "torque": bench.limits.torque,
                 }
             ),
-            versions={"jointid": version("jointid"), "python": platform.python_version()},
+            versions={"jointid": _core.__version__, "python": platform.python_version()},
         )
 
     def save(self, path: str | Path) -> None:
