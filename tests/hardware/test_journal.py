@@ -7,12 +7,15 @@ import itertools
 import json
 import threading
 import uuid
+from pathlib import Path
 from typing import Any
 
 import can
 import pytest
 from session_bench import devices
 
+from jointid.cli import main
+from jointid.hardware.bench import opened_drive
 from jointid.hardware.can import canopen_frames as canopen
 from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.emulated.device import DeviceBus
@@ -71,3 +74,24 @@ def test_what_is_due_happens_at_its_time(rest: float) -> None:
     times = device.times[:50]
     assert [b - a for a, b in itertools.pairwise(times)] == pytest.approx([1e-3] * 49)
     assert seen[:49] == times[1:50]
+
+
+JOINT = Path(__file__).resolve().parents[1] / "canlab" / "bench.toml"
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        (("--rest", "0.5"), "--rest"),
+        (("--json",), "does not tell what happens to it"),
+    ],
+)
+def test_bad_input_of_emulate_is_refused(
+    options: tuple[str, ...],
+    complaint: str,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(opened_drive, "emulated_devices", lambda *_: (object(),))
+    assert main(["emulate", str(JOINT), *options]) == 2
+    assert complaint in capsys.readouterr().err
