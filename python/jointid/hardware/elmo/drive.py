@@ -279,7 +279,8 @@ class ElmoDrive:
     def close(self) -> None:
         """Leave the drive pre-operational, its watchdogs disarmed when its motor is off.
 
-        They stay armed where somebody else commands the drive, who may switch the motor on again.
+        Where somebody else commands the drive it is stopped: its motor goes off again if it is on, and it
+        takes no commands.
         """
         link = self._link
         link.up = False
@@ -289,9 +290,10 @@ class ElmoDrive:
         try:
             link.drain(0.01)
             link.forget_fault()
-            if self._switch.seen_off and not link.foreign.frames:
+            if self._switch.seen_off:
                 elmo_setup.disarm_watchdogs(link)
-            link.send(canopen.NMT, canopen.network(canopen.PRE_OPERATIONAL, self.options.node))
+            state = canopen.STOP if link.foreign.frames else canopen.PRE_OPERATIONAL
+            link.send(canopen.NMT, canopen.network(state, self.options.node))
             link.drain(0.01)
         except DriveFaultError:
             return
