@@ -292,9 +292,13 @@ class ElmoDrive:
             link.forget_fault()
             if self._switch.seen_off:
                 elmo_setup.disarm_watchdogs(link)
-            state = canopen.STOP if link.foreign.frames else canopen.PRE_OPERATIONAL
-            link.send(canopen.NMT, canopen.network(state, self.options.node))
+            link.send(canopen.NMT, canopen.network(canopen.PRE_OPERATIONAL, self.options.node))
             link.drain(0.01)
+            if (
+                link.foreign.frames
+            ):  # a command of theirs that still waited in the drive is done by now
+                link.send(canopen.NMT, canopen.network(canopen.STOP, self.options.node))
+                link.drain(0.01)
         except DriveFaultError:
             return
         finally:
