@@ -14,6 +14,7 @@ from jointid.hardware import SessionRefusedError, SessionStoppedError
 from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.elmo.emulated_converter import EmulatedConverter
 from jointid.hardware.elmo.emulated_drive import ElmoSettings, EmulatedElmo
+from jointid.hardware.elmo.foreign import ForeignWatch
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.session.drive import DriveFaultError
 
@@ -144,6 +145,22 @@ def test_where_our_own_frames_come_back_a_foreign_one_is_told_from_them() -> Non
     with pytest.raises(DriveFaultError, match="beats as node 1") as found:
         drive.read(0.5 * PERIOD)
     assert found.value.kind == "foreign_master"
+
+
+def test_a_foreign_frame_that_looks_like_our_first_one_blinds_not_for_long() -> None:
+    watch = ForeignWatch(ElmoOptions())
+    watch.begin()
+    watch.sent(0.0, COMMAND, b"SR\x00\x00")
+    assert watch.is_own(0.001, COMMAND, b"SR\x00\x00")  # somebody else's, in truth
+    watch.decide()
+    seen = []
+    for k in range(2000):
+        watch.sent(2e-3 * k, OURS, b"\x05")
+        if k % 10 == 0:
+            seen.append(watch.is_own(2e-3 * k + 1e-3, OURS, b"\x05"))
+    assert seen[0]
+    assert not seen[-1]
+    assert not watch.is_own(5.0, OURS, b"\x05")
 
 
 def test_a_session_where_our_own_frames_come_back() -> None:
