@@ -12,6 +12,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
+from jointid import _core
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
 from jointid.base.schema import Number, Plain, Record, TableOf, Text, read_text
@@ -81,8 +82,6 @@ class Certificate:
         """
         if not result.passed:
             raise InputError("only one that was passed is certified", argument="first motion")
-        from jointid import __version__
-
         low, high = bench.limits.position
         found = {
             **result.to_dict(),
@@ -103,7 +102,7 @@ class Certificate:
                     "torque": bench.limits.torque,
                 }
             ),
-            versions={"jointid": __version__, "python": platform.python_version()},
+            versions={"jointid": _core.__version__, "python": platform.python_version()},
         )
 
     def save(self, path: str | Path) -> None:
