@@ -233,7 +233,7 @@ class Steps:
             pushes = self._pushes(
                 axis, breakaway, _FEW_PUSHES, _REACH / max(1.0, friction / stated)
             )
-            inertia = motion_of(pushes, axis.latency, axis.resolution).inertia
+            inertia = motion_of(pushes).inertia
             self.found["inertia"] = inertia if math.isfinite(inertia) else None
         code = scale_fault(expected, friction, inertia)
         assert code is not None
@@ -268,10 +268,10 @@ class Steps:
                 reach = min(reach + _REACH, _FARTHEST)
             if pair + 1 < _FEWEST:
                 continue
-            motion = motion_of(pushes, axis.latency, axis.resolution)
+            motion = motion_of(pushes)
             if not expected.sensor:
                 break
-            response = sensor_response(pushes, motion, axis.latency, axis.resolution)
+            response = sensor_response(pushes, motion)
             if abs(response.significance) > _CLEAR or axis.now > _PUSHED * self._options.longest:
                 break
         if math.isfinite(motion.inertia):
