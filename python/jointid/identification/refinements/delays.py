@@ -15,7 +15,8 @@ from jointid.estimate.delays import Delay
 from jointid.identification.refinements.balance_columns import conservative, friction, stacked
 from jointid.identification.refinements.balance_misfit import fits_better
 from jointid.identification.refinements.command_noise import delay_in_command
-from jointid.identification.refinements.shift_fit import Balance, Shift, fit_shift
+from jointid.identification.refinements.sample_fit import delay_by_samples
+from jointid.identification.refinements.shift_fit import Balance, Shift, coefficients, fit_shift
 from jointid.identification.refinements.smooth_windows import SmoothWindows, half_length
 from jointid.identification.refinements.stretches import Piece, few_of, pieces_of
 from jointid.problem.problem import Problem
@@ -27,6 +28,7 @@ _SURE = 5.0  # standard errors
 _SURE_OF_VELOCITY = 8.0  # standard errors; no friction stands between velocity and position
 _VELOCITY = 0.35  # sample periods; a backward difference has 0.5
 _LEAST_IN_COMMAND = 0.3  # sample periods
+_BEYOND_ANSWER = 3.0  # times the joint's answer to noise of the torque
 _SUSPECT = 0.6  # of what would be long enough: look closer
 _CLEARLY = 4.0  # standard errors: a first look at parts of the motion is enough
 _ALIKE, _BARELY_ALIKE = 0.5, 0.7  # of the delay: how far estimates of it may be apart
@@ -179,9 +181,19 @@ def _sensor(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
     found = _searched(balance(1), period, _SMALL)
     if found is None or abs(found.value) + 2.0 * found.stderr > _SMALL:
         told = delay_in_command(pieces)
-        late = told is not None and told.value > max(_SMALL, _LEAST_IN_COMMAND * period)
-        if told is not None and late and (found is None or found.agrees(told, _ALIKE)):
-            return told, True
+        late = told is not None and told.shift.value > max(_SMALL, _LEAST_IN_COMMAND * period)
+        if told is not None and late and (found is None or found.agrees(told.shift, _ALIKE)):
+            # Noise of the torque that the joint answers comes before the reading, too.
+            answer = _answer(balance(1), pieces) * told.torque_size / told.reading_size
+            if told.share > _BEYOND_ANSWER * abs(answer):
+                return told.shift, True
+            told = None
+        possible = found is not None and found.value + found.stderr > _SMALL
+        if told is None and found is not None and possible and found.unexplained <= _MOST_LEFT:
+            by_samples = delay_by_samples(pieces, found, max(_REACH, 3.0 * period))
+            if by_samples is not None:
+                # Jumps are those of the acceleration alone: neither a varying inertia nor slow motion has them.
+                return by_samples, _is_long(by_samples, _SMALL)
     if found is None or found.unexplained > _MOST_LEFT:
         return None
     # An early reading is one that is not of a control cycle, up to half a sample.
@@ -203,51 +215,56 @@ def _torque(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
     varies, and with and without the reversals: pre-sliding fakes a delay at the reversals only, a varying
     inertia away from them.
     """
-
-    def windows(clear: bool) -> list[SmoothWindows]:
-        result = []
-        for piece in pieces:
-            half, margin = piece.half, _margin(piece)
-            result.append(
-                SmoothWindows(
-                    stretch=piece.stretch,
-                    half=half,
-                    stride=half,
-                    margin=margin,
-                    clear=half + margin if clear else 0,
-                )
-            )
-        return result
-
-    def balance(clear: bool = False, varying: bool = False) -> Balance:
-        each = list(zip(windows(clear), pieces, strict=True))
-        first = [conservative(w, piece.circle, varying=varying) for w, piece in each]
-        rest = [friction(w, piece.circle) for w, piece in each]
-        return Balance(
-            windows=[w for w, _ in each],
-            signals=[piece.torque for piece in pieces],
-            columns=stacked([[*a, *b] for a, b in zip(first, rest, strict=True)]),
-            conservative=len(first[0]),
-            held=pieces[0].held,
-        )
-
     if not pieces:
         return None
     period = pieces[0].stretch.period
-    found = _searched(balance(), period, _SMALL)
+    found = _searched(_torque_balance(pieces), period, _SMALL)
     if found is None or found.unexplained > _MOST_LEFT:
         return None
     if not _is_long(found, _SMALL) or not found.is_of_all(_BARELY_ALIKE):
         return found, False
     others: tuple[tuple[Callable[[], Balance], float], ...] = (
-        (lambda: balance(varying=True), _ALIKE),
-        (lambda: balance(clear=True), _ALIKE),
+        (lambda: _torque_balance(pieces, varying=True), _ALIKE),
+        (lambda: _torque_balance(pieces, clear=True), _ALIKE),
     )
     for other, share in others:
         compared = _searched(other(), period, 0.0)
         if compared is None or not found.agrees(compared, share):
             return found, False
     return found, True
+
+
+def _torque_balance(
+    pieces: Sequence[Piece], *, clear: bool = False, varying: bool = False
+) -> Balance:
+    """The torque by inertia, gravity and friction; without the reversals, if they shall be clear."""
+    windows, columns, count = [], [], 0
+    for piece in pieces:
+        half, margin = piece.half, _margin(piece)
+        each = SmoothWindows(
+            stretch=piece.stretch,
+            half=half,
+            stride=half,
+            margin=margin,
+            clear=half + margin if clear else 0,
+        )
+        first = conservative(each, piece.circle, varying=varying)
+        windows.append(each)
+        columns.append([*first, *friction(each, piece.circle)])
+        count = len(first)
+    return Balance(
+        windows=windows,
+        signals=[piece.torque for piece in pieces],
+        columns=stacked(columns),
+        conservative=count,
+        held=pieces[0].held,
+    )
+
+
+def _answer(reading: Balance, pieces: Sequence[Piece]) -> float:
+    """What the reading changes by where the torque changes by 1: the link's share of the inertia."""
+    torque = float(coefficients(_torque_balance(pieces))[0])
+    return float(coefficients(reading)[0]) / torque if torque else 0.0
 
 
 def _searched(balance: Balance, period: float, least: float) -> Shift | None:
