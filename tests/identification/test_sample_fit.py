@@ -65,17 +65,13 @@ def test_without_a_delay_none_is_found(plain: list[jid.Recording]) -> None:
 
 def test_a_reading_of_an_instant_may_be_later_than_its_jumps_say() -> None:
     """A held torque's jump shows at a whole sample, whatever part of a sample the reading is late by."""
-    delay = 1.7e-3
-    for run, shown in zip(
-        recordings(sensor_delay=1e-3, offset=0.0), recordings(offset=0.0), strict=True
-    ):
-        gravity = 3.0 * 9.817 * 0.25 / 2.4
-        earlier = np.interp(run.time - delay, run.time, run.position)
-        at_jumps = np.interp(run.time - 1e-3, run.time, run.position)
+    delay, gravity = 1.7e-3, 3.0 * 9.817 * 0.25 / 2.4
+    for run in recordings(sensor_delay=1e-3):
         assert run.sensor is not None
-        moved = run.sensor + gravity * (np.sin(earlier) - np.sin(at_jumps))
-        found = delay_of(with_sensor(run, moved))
-        assert shown.sensor is not None
+        earlier, at_jumps = (np.interp(run.time - d, run.time, run.position) for d in (delay, 1e-3))
+        found = delay_of(
+            with_sensor(run, run.sensor + gravity * (np.sin(earlier) - np.sin(at_jumps)))
+        )
         assert abs(found.value - delay) < 2.5 * found.stderr
         assert found.stderr > 1e-4
 

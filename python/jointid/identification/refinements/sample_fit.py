@@ -30,13 +30,13 @@ _NEAR = 3  # samples from a jump
 _AS_ELSEWHERE = 1.25  # how much more variance a pure delay may leave near the jumps
 _LEAST_ERROR = 0.02  # samples
 _GRID = 4001
-_STUCK = 1e-3  # of the peak speed
-_DECAYS = (0.02, 0.05, 0.1, 0.2)  # Stribeck speeds, of the peak speed
 _UNLIKE = 3.5  # standard errors between both estimates
 _RIDGE = 1e-12
 
 
-def delay_by_samples(pieces: Sequence[Piece], smooth: Shift, reach: float) -> Shift | None:
+def delay_by_samples(
+    pieces: Sequence[Piece], smooth: Shift, reach: float, inertia: float
+) -> Shift | None:
     """Return the reading's delay; None where the motion's noise, an elastic gear or few samples forbid it.
 
     Parameters
@@ -44,16 +44,18 @@ def delay_by_samples(pieces: Sequence[Piece], smooth: Shift, reach: float) -> Sh
     pieces : sequence of Piece
         Each with a sensor.
     smooth : Shift
-        The delay of the reading's smooth part.
+        The delay of the reading's smooth part; its part of friction is gravity's.
     reach : float
         Longest delay [s].
+    inertia : float
+        Of drive and link.
     """
     pieces = [piece for piece in pieces if not piece.stretch.derived]
-    if not pieces or sum(len(piece.torque) for piece in pieces) < _FEW:
+    if not pieces or not inertia > 0.0 or sum(len(piece.torque) for piece in pieces) < _FEW:
         return None
     period = pieces[0].stretch.period
     most = int(np.ceil(reach / period)) + 1
-    signals = [_Samples(piece, most) for piece in pieces]
+    signals = [_Samples(piece, most, inertia) for piece in pieces]
     noise = sum(each.noise for each in signals)
     if not 2.0 * noise < _NOISE_SHARE * sum(each.change for each in signals):
         return None
@@ -101,25 +103,27 @@ def _near_over_elsewhere(missed: Array, near: NDArray[np.bool_]) -> float:
 
 
 def _combined(value: float, stderr: float, smooth: Shift, period: float) -> Shift | None:
-    """The delay that both the samples and the smooth part ask for; None where no delay does for both.
+    """The delay that both the samples and gravity ask for; None where no delay does for both.
 
     A reading that was interpolated spreads a jump over two samples, and so tells any delay. The reading of an
-    instant shows a jump of a held torque at a whole sample: the delay is then anywhere up to the next one. Each is
-    as likely beforehand.
+    instant shows the acceleration of a held torque at a whole sample: the delay is then anywhere up to the next
+    one, and only gravity tells where. Each is as likely beforehand.
     """
     stderr = max(stderr, _LEAST_ERROR * period)
-    low = min(value, smooth.value) - _UNLIKE * smooth.stderr - period
-    high = max(value, smooth.value) + _UNLIKE * smooth.stderr + period
+    gravity, error = smooth.friction
+    low = min(value, gravity) - _UNLIKE * error - period
+    high = max(value, gravity) + _UNLIKE * error + period
     delay = np.linspace(low, high, _GRID)
     spread = (delay - value) / stderr
     whole = (np.floor(delay / period) * period - value) / stderr
-    apart = (delay - smooth.value) / smooth.stderr
+    apart = (delay - gravity) / error
     chance = (np.exp(-0.5 * spread**2) + np.exp(-0.5 * whole**2)) * np.exp(-0.5 * apart**2)
     if not chance.max() > np.exp(-0.5 * _UNLIKE**2):
         return None
     chance /= chance.sum()
     mean = float(chance @ delay)
-    return _shift(mean, float(np.sqrt(chance @ (delay - mean) ** 2)), smooth)
+    error = max(stderr, float(np.sqrt(chance @ (delay - mean) ** 2)))
+    return _shift(mean, error, smooth)
 
 
 def _shift(value: float, stderr: float, smooth: Shift) -> Shift:
@@ -135,10 +139,10 @@ def _shift(value: float, stderr: float, smooth: Shift) -> Shift:
 class _Samples:
     """One piece: what explains the reading, at every sample, and the reading of those that can be shifted."""
 
-    def __init__(self, piece: Piece, most: int) -> None:
+    def __init__(self, piece: Piece, most: int, inertia: float) -> None:
         assert piece.sensor is not None
         velocity = piece.stretch.velocity
-        self._columns = np.column_stack([_acceleration(piece), *piece.circle])
+        self._columns = np.column_stack([_acceleration(piece, inertia), *piece.circle])
         self._most = most + 2
         self._used = slice(self._most, len(velocity) - self._most)
         self.reading = piece.sensor[self._used]
@@ -160,7 +164,7 @@ class _Samples:
         return np.asarray(counts > 0.5)
 
 
-def _acceleration(piece: Piece) -> Array:
+def _acceleration(piece: Piece, inertia: float) -> Array:
     """At each sample, of a held torque at the end of the interval before it.
 
     The velocity's differences are means over intervals. Of both beside a sample, what the torque jumps by is taken
@@ -170,8 +174,7 @@ def _acceleration(piece: Piece) -> Array:
     mean = np.diff(velocity) / period
     jump = np.diff(piece.torque[:-1]) if piece.held else np.zeros(len(mean) - 1)
     turned = velocity[1:] * velocity[:-1] <= 0.0
-    lightness = _of_torque(piece, mean, turned) if piece.held else 0.0
-    after = mean[1:] - lightness * jump
+    after = mean[1:] - jump / inertia
     stuck = (velocity[1:-1] == 0.0) | (velocity[2:] == 0.0)
     after[stuck] = np.where(velocity[1:-1][stuck] == 0.0, 0.0, after[stuck])
     before = mean[:-1]
@@ -180,28 +183,6 @@ def _acceleration(piece: Piece) -> Array:
     found = np.where(turned[1:] & ~turned[:-1], before, found)
     found = np.where(velocity[1:-1] == 0.0, 0.0, found)
     return np.concatenate([found[:1], found, found[-1:]])
-
-
-def _of_torque(piece: Piece, mean: Array, turned: NDArray[np.bool_]) -> float:
-    """Acceleration for a torque of 1, beside friction of any shape and gravity."""
-    velocity = 0.5 * (piece.stretch.velocity[1:] + piece.stretch.velocity[:-1])
-    peak = float(np.abs(velocity).max())
-    moving = np.convolve(turned, np.ones(3), mode="same") < 0.5
-    moving &= np.abs(velocity) > _STUCK * peak
-    used = np.flatnonzero(moving)
-    v = velocity[used]
-    sign = np.sign(v)
-    decays = [sign * np.exp(-((v / (share * peak)) ** 2)) for share in _DECAYS]
-    circle = [each[used] for each in piece.circle]
-    rows = np.column_stack(
-        [piece.torque[used], v, sign, *decays, *circle, np.ones(len(v)), mean[used]]
-    )
-    gram = _gram(rows, rows)
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(gram), 1e-300))
-    scaled = gram * np.outer(scale, scale)
-    known = scaled[:-1, :-1] + _RIDGE * np.eye(len(gram) - 1)
-    found = np.linalg.solve(known, scaled[:-1, -1])
-    return float(found[0] * scale[0] / scale[-1])
 
 
 class _Neighbours:
