@@ -22,7 +22,7 @@ def recordings(**fields: Any) -> list[jid.Recording]:
         motion=sines(amplitude, rate, phase),
         plant=Plant(link_inertia=0.4, **fields.pop("plant", {})),
         law=Law(stiffness=60.0, on_reference=fields.pop("on_reference", 1.0)),
-        log=Log(sensor_noise=NOISE, **fields),
+        log=Log(**{"sensor_noise": NOISE} | fields),
     )
     return simulate(Bench.stack([bench]), duration=12.0, seed=21)
 
@@ -74,6 +74,17 @@ def test_a_reading_of_an_instant_may_be_later_than_its_jumps_say() -> None:
         )
         assert abs(found.value - delay) < 2.5 * found.stderr
         assert found.stderr > 1e-4
+
+
+def test_a_delay_that_is_not_sharp_is_stated_as_an_interval() -> None:
+    """A late reading with more noise, of which the jumps say little."""
+    run = recordings(sensor_noise=1.0, sensor_delay=4e-3)[0]
+    estimate = jid.identify(run, jid.thesis_joint(), search="separable")
+    delay = estimate.delays["sensor"]
+    assert 1.96 * delay.stderr > 3e-4
+    (found,) = (each for each in estimate.findings if each.code == "delay_removed")
+    low, high = (1e3 * (delay.value + side * 1.96 * delay.stderr) for side in (-1.0, 1.0))
+    assert f"with 95 % between {low:.2f} and {high:.2f} ms" in found.cause
 
 
 def test_an_elastic_gear_is_no_delay() -> None:

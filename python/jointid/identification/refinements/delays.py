@@ -11,6 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from jointid.estimate.delays import Delay
 from jointid.identification.refinements.balance_columns import stacked
 from jointid.identification.refinements.balance_misfit import fits_better
@@ -29,6 +31,7 @@ _SURE_OF_VELOCITY = 8.0  # standard errors; no friction stands between velocity 
 _VELOCITY = 0.35  # sample periods; a backward difference has 0.5
 _LEAST_IN_COMMAND = 0.3  # sample periods
 _BEYOND_ANSWER = 3.0  # times the joint's answer to noise of the torque
+_WITHIN_SAMPLE = 0.06  # sample periods: friction and torque jump between samples
 _SUSPECT = 0.6  # of what would be long enough: look closer
 _CLEARLY = 4.0  # standard errors: a first look at parts of the motion is enough
 _ALIKE, _BARELY_ALIKE = 0.5, 0.7  # of the delay: how far estimates of it may be apart
@@ -102,7 +105,13 @@ def _measured(signal: str, motion: Motion) -> tuple[Shift, bool] | None:
     if signal == "sensor":
         return _sensor(motion)
     if signal == "torque":
-        return _torque(motion)
+        measured = _torque(motion)
+        if measured is None:
+            return None
+        error = float(
+            np.hypot(measured[0].stderr, _WITHIN_SAMPLE * motion.pieces[0].stretch.period)
+        )
+        return replace(measured[0], stderr=error), measured[1]
     pieces = motion.pieces
     few = few_of(pieces)
     first = _velocity(few, glance=True) if few else None

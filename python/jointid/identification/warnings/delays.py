@@ -22,6 +22,8 @@ DELAY_REMOVED = FindingType(
     meaning="torque, sensor or velocity was late against the position, and was shifted before the identification",
     advice="nothing; to keep the signal as it is, shift it by 0",
 )
+_NORMAL = 1.96  # standard errors of a 95 % interval
+_SHARP = 3e-4  # [s]
 _NONE = 3.0  # standard errors, below which there is no delay to shift by
 _HALF = 0.2  # of a sample period: so near to half a period early, a torque is one that is held
 
@@ -78,8 +80,17 @@ def _described(delay: Delay, evidence: Evidence) -> str:
     after = f" after the stated shift by {1e3 * delay.applied:.3g} ms" if shifted else ""
     return (
         f"the {delay.signal} is {side} by {1e3 * abs(size):.3g} ± {1e3 * delay.stderr:.2g} ms "
-        f"({periods:.1f} sample periods) against the position{after}"
+        f"({periods:.1f} sample periods{_interval(delay)}) against the position{after}"
     )
+
+
+def _interval(delay: Delay) -> str:
+    """Where the number is not sharp, what it may be."""
+    reach = _NORMAL * delay.stderr
+    if reach < _SHARP:
+        return ""
+    size = abs(_size(delay))
+    return f"; with 95 % between {1e3 * (size - reach):.2f} and {1e3 * (size + reach):.2f} ms"
 
 
 def _size(delay: Delay) -> float:
