@@ -28,7 +28,7 @@ _ROUNDS = 3  # of weights
 _JUMP = 1.0  # standard deviations of the reading's noise
 _NEAR = 3  # samples from a jump
 _AS_ELSEWHERE = 1.25  # how much more variance a pure delay may leave near the jumps
-_LEAST_ERROR = 0.02  # samples
+_LEAST_ERROR = 0.05  # samples, beside chance: what changes within a sample
 _GRID = 4001
 _UNLIKE = 3.5  # standard errors between both estimates
 _RIDGE = 1e-12
@@ -109,7 +109,7 @@ def _combined(value: float, stderr: float, smooth: Shift, period: float) -> Shif
     instant shows the acceleration of a held torque at a whole sample: the delay is then anywhere up to the next
     one, and only gravity tells where. Each is as likely beforehand.
     """
-    stderr = max(stderr, _LEAST_ERROR * period)
+    stderr = float(np.hypot(stderr, _LEAST_ERROR * period))
     gravity, error = smooth.friction
     low = min(value, gravity) - _UNLIKE * error - period
     high = max(value, gravity) + _UNLIKE * error + period
