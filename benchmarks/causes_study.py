@@ -203,18 +203,36 @@ def identified(
 
 
 def named(case: Case, recording: jid.Recording, estimate: jid.Estimate) -> list[str]:
-    """Causes that are named, the first one first; a delay that was taken away is named before the others."""
-    found = [f"delay of {each.signal}" for each in estimate.delays.values() if each.certain]
+    """Causes that are named, the first one first; a delay that was taken away is named before the others.
+
+    A note of a cause that is there and harmless is no name, nor is that of a delay whose removal moved nothing.
+    """
+    found = _late(estimate)
     if case.name == "coupling":
         plant = recording.metadata["plant"]
         signal = np.sin(plant["coupling_rate"] * recording.time + plant["coupling_phase"])
         causes = estimate.causes({"other axis": signal}).found
         return found + [_full(each.name, each.detail) for each in causes]
     for finding in estimate.findings:
-        if finding.code in MEANINGS:
+        if finding.code in MEANINGS and finding.severity != "info":
             detail = finding.message.partition(" (")[2].partition(",")[0]
             found.append(_full(finding.code, detail))
     return found
+
+
+def _late(estimate: jid.Estimate) -> list[str]:
+    """Delays that are left, or whose removal moved a value."""
+    texts = [
+        finding.message
+        for finding in estimate.findings
+        if (finding.code == "delay_removed" and finding.parameters)
+        or (finding.code == "signal_lag" and finding.severity != "info")
+    ]
+    return [
+        f"delay of {each.signal}"
+        for each in estimate.delays.values()
+        if any(text.startswith(f"the {each.signal} ") for text in texts)
+    ]
 
 
 def _full(name: str, detail: str) -> str:

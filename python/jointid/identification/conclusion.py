@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from jointid import _core
 from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence
-from jointid.identification.causes.causes import find_causes
+from jointid.identification.causes.causes import cause_of, find_causes
 from jointid.identification.causes.suspicion import correlated, suspicious, testable
 from jointid.identification.inference.covariance import parameter_covariance
 from jointid.identification.inference.inference import (
@@ -128,7 +129,6 @@ def infer(
             penalty,
             parameters,
             torque_level=torque_level,
-            r_squared=statistics.r_squared,
             delays=refinements.delays,
         )
         if not causes.found and testable(run) and not correlated(table.residual, run):
@@ -152,6 +152,7 @@ def infer(
             inspections=inspections,
             at_best=at_best,
             causes=causes,
+            cause_of=partial(cause_of, problem, penalty, parameters, torque_level),
             white=noise,
             velocity_effect=effect,
             correlations={

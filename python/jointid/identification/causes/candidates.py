@@ -50,9 +50,10 @@ class Candidate:
     finest: bool = False
 
 
-def listed_candidates(fit: Fitted) -> list[Candidate]:
-    """Return all candidates that the model lacks and the recordings can show."""
-    return [each for family in FAMILIES for each in family(fit) if np.any(each.columns)]
+def listed_candidates(fit: Fitted, only: str = "") -> list[Candidate]:
+    """Return all candidates that the model lacks and the recordings can show, or those of one family."""
+    families = [family for family in FAMILIES if only in ("", family.__name__[1:])]
+    return [each for family in families for each in family(fit) if np.any(each.columns)]
 
 
 def _gravity(fit: Fitted) -> Iterator[Candidate]:
