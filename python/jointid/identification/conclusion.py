@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.estimate.causes import Causes
 from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence
@@ -41,6 +42,7 @@ Array = NDArray[np.float64]
 
 # Parameters with a smaller component of the weakest direction are not named.
 _NAMED = 0.3
+_SOMETHING = 0.5  # of the variance is left beside a cause that makes sense of a model that had none
 
 
 def infer(
@@ -121,9 +123,8 @@ def infer(
     )
     # Running integrals of white noise are correlated by themselves.
     noise = not structured and testable(run) and not penalty.cumulative
-    # A misfit of values that are no estimate, or of a gain whose sign is a guess, is not the model's.
-    meant = statistics.r_squared >= 0.0 and not domain.guessed_sign
-    if structured and meant and not (penalty.cumulative or not free):
+    # A misfit of a gain whose sign is a guess is not the model's.
+    if structured and not domain.guessed_sign and not (penalty.cumulative or not free):
         causes = find_causes(
             problem,
             penalty,
@@ -131,7 +132,9 @@ def infer(
             torque_level=torque_level,
             delays=refinements.delays,
         )
-        if not causes.found and testable(run) and not correlated(table.residual, run):
+        if statistics.r_squared < 0.0 and not _explains(causes, statistics.r_squared):
+            causes = None  # values that are no estimate
+        elif not causes.found and testable(run) and not correlated(table.residual, run):
             # Louder at low speed, but no cause and nothing that lasts: noise, of the velocity or of a reversal.
             causes, noise = None, True
     findings = diagnose(
@@ -184,6 +187,12 @@ def infer(
         delays=refinements.delays,
         slow_motion=refinements.slow_motion,
     )
+
+
+def _explains(causes: Causes, r_squared: float) -> bool:
+    """Whether the first cause turns a model that says nothing into one that says something."""
+    left = (1.0 - causes.found[0].share if causes.found else 1.0) * (1.0 - r_squared)
+    return left < _SOMETHING
 
 
 def _unknown(delay: Delay) -> float:

@@ -176,7 +176,7 @@ def _ripple(fit: Fitted) -> Iterator[Candidate]:
     """Over longer windows only the ripple at reversals is left, which any cause at reversals resembles."""
     joint = fit.problem.joint
     gear = abs(joint.gear_ratio) if joint is not None else 1.0
-    if gear == 1.0 or not _revolute(fit):
+    if gear == 1.0 or not _revolute(fit) or fit.group > 1:
         return
     for order in (0.5, 1.0, 2.0, 3.0, 4.0):
         if not _has_order(fit, "ripple", order):
@@ -191,7 +191,7 @@ def _delay(fit: Fitted) -> Iterator[Candidate]:
     """
     if "torque" not in fit.prompt:
         runs = fit.problem.in_core
-        late = -np.asarray(fit.penalty.torque_steps(runs, fit.problem.mask_standstill))
+        late = -fit.summed(fit.penalty.torque_steps(runs, fit.problem.mask_standstill))
         yield Candidate(name="delay", columns=late[:, None], detail="torque")
     if "sensor_gain" in fit.names and "sensor" not in fit.prompt:
         gain = fit.value("sensor_gain")

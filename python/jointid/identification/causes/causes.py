@@ -22,6 +22,7 @@ from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
+_MOST = 60_000  # windows of an attribution: of a long recording, neighbours are summed
 _LATE = 2.0  # standard errors of a delay that is none
 _NORMAL = 1.959964  # standard errors of half a 95 % interval
 _MOVED, _ERRORS = 0.05, 2.0  # share of a value, and standard errors, from which a cause does harm
@@ -57,7 +58,7 @@ def find_causes(
         Further signals of the first recording, one value a sample.
     """
     late = "velocity" in delays and delays["velocity"].certain
-    fit = _fitted(problem, penalty, parameters, signals, _prompt(delays), late)
+    fit = _fitted(problem, penalty, parameters, signals, _prompt(delays), late, _MOST)
     tried = listed_candidates(fit)
     found: list[Cause] = []
     harmless: list[Cause] = []
@@ -118,6 +119,7 @@ def _fitted(
     signals: Mapping[str, Array] | None = None,
     prompt: frozenset[str] = frozenset(),
     filtered: bool = False,
+    most: int | None = None,
 ) -> Fitted:
     names = list(penalty.names)
     best = np.array([parameters[name].value for name in names])
@@ -126,7 +128,7 @@ def _fitted(
         for index, name in enumerate(names)
         if parameters[name].vary and parameters[name].at_bound is None
     )
-    return Fitted.of(problem, penalty, best, free, signals, prompt, filtered)
+    return Fitted.of(problem, penalty, best, free, signals, prompt, filtered, most)
 
 
 def attributed(
@@ -216,7 +218,7 @@ def _cause(
         name=each.candidate.name,
         detail=detail,
         share=each.share,
-        scale=each.factor * float(fit.penalty.window_duration),
+        scale=each.factor * fit.group * float(fit.penalty.window_duration),
         size=size,
         numbers=numbers,
         shifts=shifts,

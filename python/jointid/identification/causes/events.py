@@ -94,7 +94,7 @@ def _stretches(power: Array, length: int) -> list[tuple[int, int]]:
 
 
 def _when(fit: Fitted, stretches: list[tuple[int, int]]) -> str:
-    bounds = np.asarray(fit.penalty.windows)
+    bounds = fit.bounds
     texts = []
     for low, high in sorted(stretches):
         run = int(fit.run[low])
