@@ -67,16 +67,15 @@ def _inertia_varies(fit: Fitted) -> Iterator[Candidate]:
     """From Lagrange's equation of an inertia M(q): M a + M' v² / 2, integrated without the acceleration."""
     if not _revolute(fit):
         return
+    parts = {}
+    for order in (1.0, 2.0):
+        mean = inertia_basis(fit, order).mean(axis=0)
+        momentum = fit.rise(functools.partial(_momentum, order=order, mean=mean))
+        parts[order] = momentum - 0.5 * fit.integral(functools.partial(_centrifugal, order=order))
     for orders in ((1.0,), (2.0,), (1.0, 2.0)):
-        parts = []
-        for order in orders:
-            mean = inertia_basis(fit, order).mean(axis=0)
-            parts.append(
-                fit.rise(functools.partial(_momentum, order=order, mean=mean))
-                - 0.5 * fit.integral(functools.partial(_centrifugal, order=order))
-            )
         detail = " and ".join(f"{order:g}" for order in orders)
-        yield Candidate(name="inertia_varies", columns=np.hstack(parts), detail=detail)
+        columns = np.hstack([parts[order] for order in orders])
+        yield Candidate(name="inertia_varies", columns=columns, detail=detail)
 
 
 def _momentum(_: int, run: Recording, order: float, mean: Array) -> Array:

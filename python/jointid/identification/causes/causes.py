@@ -30,7 +30,9 @@ _NOTICED = 0.8  # of that: a first-order shift may be so much too small
 _UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it must move by more
 _LEAST_SCALE = 0.01  # of a given inertia: it is seldom known better
 _KNOWN = 3e-4  # [s]; standard error of a delay that says whether one matters
-_LEAST = 0.002  # share of a value: a smaller change matters to nobody, however certain
+# Shares of a value: a smaller change matters to nobody, however many errors it is. A cause that is measured by
+# itself is more than a guess from the misfit.
+_LEAST, _LEAST_OF_MEASURED = 0.005, 0.002
 
 
 def find_causes(
@@ -108,7 +110,7 @@ def cause_of(
             coefficients=-steps[len(fit.free) :],
             shifts=steps[: len(fit.free)],
         )
-        return _cause(fit, found, parameters, torque_level, {})
+        return _cause(fit, found, parameters, torque_level, {}, _LEAST_OF_MEASURED)
     return None
 
 
@@ -182,13 +184,14 @@ def attributed(
 def _prompt(delays: Mapping[str, Delay]) -> frozenset[str]:
     """Signals that are not late, or no longer: much resembles a delay, and its own estimate says more.
 
-    A torque of which only some parts seem late is not late: something else is amiss there.
+    A torque of which only some parts seem late is not late: something else is amiss there. Nor is a velocity
+    that the position's rate shows to be late by too little to matter, however certain that little is.
     """
     found = set()
     for each in delays.values():
         left = abs(each.value - each.applied)
-        parts = each.signal == "torque" and not each.certain and each.stderr < _KNOWN
-        if left <= _LATE * each.stderr or parts:
+        known = each.signal != "sensor" and not each.certain and each.stderr < _KNOWN
+        if left <= _LATE * each.stderr or known:
             found.add(each.signal)
     return frozenset(found)
 
@@ -199,6 +202,7 @@ def _cause(
     parameters: Mapping[str, ParameterEstimate],
     torque_level: float,
     delays: Mapping[str, Delay],
+    least: float = _LEAST,
 ) -> Cause:
     shifts = {
         fit.names[index]: float(shift) for index, shift in zip(fit.free, each.shifts, strict=True)
@@ -210,7 +214,7 @@ def _cause(
         if (scale := _scale(parameters[name], parameters, torque_level)) > 0.0
     }
     harm = {
-        name: _harm(parameters[name], shifts[name], share, 1.0 - each.share)
+        name: _harm(parameters[name], shifts[name], share, 1.0 - each.share, least)
         for name, share in shares.items()
     }
     detail, size, numbers = _described(fit, each, delays)
@@ -230,7 +234,7 @@ def _cause(
     )
 
 
-def _harm(p: ParameterEstimate, shift: float, share: float, left: float) -> float:
+def _harm(p: ParameterEstimate, shift: float, share: float, left: float, least: float) -> float:
     """The shift over the least one that does harm.
 
     Parameters
@@ -239,6 +243,8 @@ def _harm(p: ParameterEstimate, shift: float, share: float, left: float) -> floa
         The shift as a share of what it is held against.
     left : float
         Share of the misfit that is left with the cause in the model: the error falls with it.
+    least : float
+        Share below which a number of errors says nothing.
     """
     # With what is systematic: a shift that the interval states already is nothing new.
     error = (p.interval[1] - p.interval[0]) / (2.0 * _NORMAL) if p.interval is not None else 0.0
@@ -248,7 +254,7 @@ def _harm(p: ParameterEstimate, shift: float, share: float, left: float) -> floa
     if after > _UNKNOWN * scale and abs(shift) < _CLEARLY * after:
         return 0.0
     harm = abs(share) / _MOVED
-    return max(harm, errors / _ERRORS) if abs(share) > _LEAST else harm
+    return max(harm, errors / _ERRORS) if abs(share) > least else harm
 
 
 def _scale(

@@ -61,7 +61,10 @@ def _left(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
     if delay.signal == "torque" and delay.value < -_period(evidence) and not delay.applied:
         yield SIGNAL_LAG.finding(
             f"{described}: the position is late or coarse, the torque early, or the gear gives way",
-            Action("inspect", text="the position's filter and resolution, both clocks, and the gear's play"),
+            Action(
+                "inspect",
+                text="the position's filter and resolution, both clocks, and the gear's play",
+            ),
             evidence=measured,
             parameters=concerned,
             severity=severity,
