@@ -32,7 +32,7 @@ _LEAST_SCALE = 0.01  # of a given inertia: it is seldom known better
 _KNOWN = 3e-4  # [s]; standard error of a delay that says whether one matters
 # Shares of a value: a smaller change matters to nobody, however many errors it is. A cause that is measured by
 # itself is more than a guess from the misfit.
-_LEAST, _LEAST_OF_MEASURED = 0.005, 0.002
+_LEAST, _LEAST_OF_MEASURED = 0.003, 0.002
 
 
 def find_causes(
