@@ -285,3 +285,22 @@ def test_enabling_takes_its_time_and_what_waits_too() -> None:
     assert bench.drive.switchings[-1][0] - asked == pytest.approx(0.06, abs=1e-3)
     assert [Reply.of(content).letters for _, content in bench.frames[-2:]] == ["MO", "SR"]
     assert int(Reply.of(bench.frames[-1][1]).value) & 0x10
+
+
+def test_a_brake_holds_what_would_fall_and_stops_what_moves() -> None:
+    bench = Bench(brake=200.0)
+    bench.run()
+    bench.ask("TC", value=4.0)
+    bench.listen(0.1)
+    speed = bench.drive.joint.velocity
+    assert speed > 0.5
+    where = bench.drive.joint.position
+    bench.ask("MO", value=0)
+    bench.listen(0.1)
+    stood = bench.drive.joint.position
+    assert 0.0 < stood - where < speed * 0.05
+    bench.listen(1.0)
+    assert bench.drive.joint.position == stood  # the link weighs on it, and it holds
+    bench.run()
+    bench.listen(0.2)
+    assert bench.drive.joint.position != stood

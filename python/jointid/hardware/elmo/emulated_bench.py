@@ -29,6 +29,9 @@ class ElmoEmulation:
         How much longer that may be, each time anew [s]. Default 0.
     enable_time : float
         From MO=1 until the motor is on [s]: a brake opens, commutation is found. Default 0.
+    brake : float
+        Torque at the output of a brake that closes when the motor is off [N·m]. Default 0: none, and a load
+        falls.
     clock_drift : float
         By what share the host's clock is faster than the drive's: 1e-4 are 100 ppm. Default 0.
     jitter : float
@@ -54,6 +57,7 @@ class ElmoEmulation:
     mantissa_bits: int = 24
     idle_jitter: float = 0.0
     enable_time: float = 0.0
+    brake: float = 0.0
     clock_drift: float = 0.0
     jitter: float = 0.0
     torque_sign: float = 1.0
@@ -80,6 +84,8 @@ class ElmoEmulation:
             raise InputError(
                 "-0.01 to 0.01 is expected", argument="clock_drift", value=self.clock_drift
             )
+        if not 0.0 <= self.brake <= 1e6:
+            raise InputError("0 to 1e6 N·m is expected", argument="brake", value=self.brake)
         for name, most in (("idle_jitter", 0.01), ("enable_time", 2.0), ("jitter", 0.1)):
             if not 0.0 <= getattr(self, name) <= most:
                 raise InputError(
@@ -143,6 +149,7 @@ def elmo_devices(
         idle_loop=emulation.idle_loop,
         idle_jitter=emulation.idle_jitter,
         enable_time=emulation.enable_time,
+        brake=emulation.brake,
         mantissa_bits=emulation.mantissa_bits,
         position_offset=bench.drive.position_offset,
         cob_command=bench.drive.cob_command,

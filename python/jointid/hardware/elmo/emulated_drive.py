@@ -66,6 +66,7 @@ class EmulatedElmo:
         self.switchings: list[tuple[float, bool]] = []
         self._bus: DeviceBus | None = None
         self._time = 0.0
+        self._held = False  # by the brake
         self.power = PowerStates(
             lambda: self.motor_on,
             lambda: bool(self.failure),
@@ -115,11 +116,19 @@ class EmulatedElmo:
         """Bring the joint to the bus's time."""
         now = self.bus.now()
         duration = now - self._time
-        if duration > 0.0:
+        if duration <= 0.0:
+            return
+        self._time = now
+        if self.motor_on or not self.settings.brake:
             torque = self.current if self.motor_on else 0.0
             torque *= self.settings.torque_constant * self.settings.gear_ratio
             self.joint.advance(torque, duration)
-            self._time = now
+            self._held = False
+        elif not self._held:
+            before = self.joint.velocity
+            if before:
+                self.joint.advance(-math.copysign(self.settings.brake, before), duration)
+            self._held = before * self.joint.velocity <= 0.0  # it stands, and is not pushed back
 
     def counts(self) -> int:
         """Encoder counts of the motor; an encoder that hangs repeats them. They wrap as the drive's do."""
@@ -135,6 +144,8 @@ class EmulatedElmo:
 
     def speed(self) -> int:
         """Of the motor [counts/s]."""
+        if self._held:
+            return 0
         per_radian = self.settings.counts_per_turn * self.settings.gear_ratio / TWO_PI
         return max(-_WIDEST, min(_WIDEST - 1, round(self.joint.velocity * per_radian)))
 

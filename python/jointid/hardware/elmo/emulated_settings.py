@@ -38,6 +38,8 @@ class ElmoSettings:
         Between the torque sensor's reading and the voltage at the analog input.
     cob_command, cob_reply : int, optional
         COB-IDs of interpreter commands and replies. Default: 0x300 and 0x280 plus the node.
+    brake : float
+        Torque at the output of a brake that closes when the motor is off [N·m]; 0: none, and a load falls.
     serial : int
         1018h:4.
     abort_option, error_behaviour, emergency_events : int
@@ -65,6 +67,7 @@ class ElmoSettings:
     analog: SensorScaling = field(default_factory=SensorScaling)
     cob_command: int | None = None
     cob_reply: int | None = None
+    brake: float = 0.0
     serial: int = 0x0BAD5EED
     abort_option: int = 0
     error_behaviour: int = 0

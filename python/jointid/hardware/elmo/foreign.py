@@ -28,7 +28,7 @@ class ForeignWatch:
     """Tells our own frames, which some interfaces give back, from another master's.
 
     Whether the interface gives them back is seen from the first frame that is sent on a bus on which
-    nobody else commands the drive.
+    nobody else commands the drive; should most of them then stay away, it was a foreign frame.
 
     Parameters
     ----------
@@ -45,12 +45,13 @@ class ForeignWatch:
         self._commanding = frozenset(options.commanding)
         self._sent: deque[tuple[float, int, bytes]] = deque(maxlen=_MOST_SENT)
         self._given_back: bool | None = None
+        self._balance = 0  # frames that came back, less those that did not
         self.frames: list[str] = []
 
     def begin(self) -> None:
         """Nothing of ours is on its way, and it is not known yet whether it comes back."""
         self._sent.clear()
-        self._given_back = None
+        self._given_back, self._balance = None, 0
         self.frames = []
 
     def decide(self) -> None:
@@ -72,10 +73,15 @@ class ForeignWatch:
         """Whether a frame is one of ours that comes back; each one comes back once."""
         while self._sent and self._sent[0][0] < when - _RETURN:
             self._sent.popleft()
+            self._balance -= 1
+        if self._balance < 0:
+            self._given_back = False
+            self._sent.clear()
         for place, (_, other, content) in enumerate(self._sent):
             if (other, content) == (identifier, payload):
                 del self._sent[place]
                 self._given_back = True
+                self._balance += 1
                 return True
         return False
 
