@@ -249,6 +249,18 @@ def _host_works(duration: float, times: int | None = None) -> Script:
     return script
 
 
+def _same_stamp(bench: EmulatedSession) -> None:
+    """The drive shows a sample of the past again."""
+    read, last = bench.drive.read, list[DriveSample]()
+
+    def stale(timeout: float) -> DriveSample:
+        if bench.bus.now() < BEGIN:
+            last[:] = [read(timeout)]
+        return last[0]
+
+    bench.drive.read = stale  # type: ignore[method-assign]
+
+
 class Tampered:
     """A controller of the user's own: as another one, until something happens in it."""
 
@@ -349,8 +361,16 @@ CASES = (
          says="finite"),
     Case(name="command jumps", stop="torque_rate", script=_controller(lambda t: t + 150.0),
          limits={"torque_rate": 6e4}, says="N·m/s"),
-    Case(name="command is cut for long", stop="saturated_samples", script=_slips(0.2), limits=_WIDE,
-         says="21 times", detected=30 * PERIOD),
+    Case(name="command is cut for long", stop="saturated_samples", script=_set("stage_gain", 0.2),
+         limits={"torque_difference": 1e3, **_WIDE}, says="21 times", detected=100 * PERIOD),
+    Case(name="joint would leave its window", stop="position", script=_controller(lambda _: 150.0), limits=_WIDE,
+         says="if it were braked now", detected=300 * PERIOD),
+    Case(name="command beyond what the joint needs", stop="torque_envelope", script=_set("stage_gain", 0.3),
+         limits={"torque_envelope": 1.0, "torque_difference": 1e3, "saturated_samples": 1000, **_WIDE},
+         says="is commanded where", detected=60 * PERIOD),
+    Case(name="torque has the wrong sign", stop="torque_sign", script=_set("stage_gain", -1.0),
+         limits={"torque_difference": 1e3, "saturated_samples": 1000, **_WIDE},
+         says="opposite signs", detected=40 * PERIOD),
     Case(name="current beyond the command", stop="measured_torque", script=_set("stage_gain", 4.0),
          limits={"torque_difference": 1e3, **_WIDE}, says="more than", detected=50 * PERIOD),
     Case(name="no current", stop="torque_difference", script=_set("stage_gain", 0.0), limits=_WIDE,
@@ -390,10 +410,21 @@ CASES = (
          says="InputError: torque is"),
     Case(name="Ctrl-C in user code", stop="user", script=_observer(KeyboardInterrupt()), says="keyboard"),
     # The bus.
-    Case(name="position is lost", stop="stale_position", faults=_bus("drop", POSITION), says="SYNC"),
-    Case(name="SYNC is lost", stop="stale_position", faults=_bus("drop", 0x080), says="SYNC"),
-    Case(name="sensor's frame is lost", stop="stale_position", faults=_bus("drop", SENSOR), says="SYNC"),
-    Case(name="position is late", stop="stale_position", faults=_bus("delay", POSITION, delay=1.5e-3)),
+    Case(name="position is lost", stop="late_samples", faults=_bus("drop", POSITION), says="SYNC",
+         detected=6 * PERIOD),
+    Case(name="five positions are lost", stop="late_samples", says="5 cycles in a row", detected=6 * PERIOD,
+         faults=_bus("drop", POSITION, stop=BEGIN + 5 * PERIOD)),
+    Case(name="SYNC is lost", stop="late_samples", faults=_bus("drop", 0x080), says="SYNC", detected=6 * PERIOD),
+    Case(name="sensor's frame is lost", stop="late_samples", faults=_bus("drop", SENSOR), says="SYNC",
+         detected=6 * PERIOD),
+    Case(name="position is late", stop="late_samples", faults=_bus("delay", POSITION, delay=1.5e-3),
+         detected=6 * PERIOD),
+    Case(name="every eighth position is lost", stop="late_share", says="cycles of the last 5 s", detected=0.3,
+         faults=lambda: tuple(
+             BusFault(kind="drop", identifier=POSITION, start=BEGIN + k * PERIOD, stop=BEGIN + (k + 1) * PERIOD)
+             for k in range(0, 400, 8))),
+    Case(name="sample is stamped like the one before", stop="stale_position", script=_same_stamp,
+         says="stamps must increase"),
     Case(name="position is garbled", stop="position", faults=_bus("corrupt", POSITION)),
     Case(name="replies are garbled", stop="drive_fault", faults=_bus("corrupt", REPLY), says="unreadable"),
     Case(name="replies are lost", stop="command_echo", faults=_bus("drop", REPLY), detected=8 * PERIOD,

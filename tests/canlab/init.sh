@@ -17,6 +17,7 @@ done
 ip link set lo up
 sh /run/out/job
 echo $? >/run/out/status
+echo "uptime [s] $(cat /proc/uptime); jiffies: $(head -1 /proc/stat)"
 sync
 echo o >/proc/sysrq-trigger
 sleep 60

@@ -92,7 +92,7 @@ def until(done: Callable[[], object], otherwise: str, timeout: float = PATIENCE)
     while not done():
         if time.monotonic() > end:
             raise TimeoutError(otherwise)
-        time.sleep(0.005)
+        time.sleep(0.05)
 
 
 class Emulator(Program):
@@ -101,7 +101,7 @@ class Emulator(Program):
     def __init__(self, name: str, folder: Path, bench: Path, channel: str) -> None:
         from jointid.cli import main
 
-        arguments = ("emulate", str(bench), "--channel", channel, "--json")
+        arguments = ("emulate", str(bench), "--channel", channel, "--json", "--rest", "0.005")
         super().__init__(name, folder, lambda: main(arguments))
         until(self.events, f"{name} does not begin")
 

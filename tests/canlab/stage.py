@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import subprocess
+import time
 import traceback
 from collections.abc import Callable
 from pathlib import Path
@@ -28,6 +29,7 @@ class Stage:
     def __init__(self, folder: Path, channel: str) -> None:
         folder.mkdir()
         self.folder, self.channel = folder, channel
+        self._channels = [channel]
         self.programs: list[Program] = []
         self.notes: dict[str, Any] = {}
         _ip("link", "add", "dev", channel, "type", "vcan")
@@ -51,6 +53,32 @@ class Stage:
         self.programs.append(found)
         return found
 
+    def another_channel(self) -> str:
+        """Make a second network, which nothing connects with the first."""
+        name = f"{self.channel}b"
+        _ip("link", "add", "dev", name, "type", "vcan")
+        _ip("link", "set", name, "up")
+        self._channels.append(name)
+        return name
+
+    def beat(self, identifier: int) -> None:
+        """Let another node send heartbeats from now on."""
+        first = self.folder / "beat.first"
+
+        def run() -> int:
+            while True:
+                self.send((identifier, b"\x05"))
+                first.touch()
+                time.sleep(0.05)
+
+        self.programs.append(Program("beat", self.folder, run))
+        self.until(first.exists, "the other node does not beat")
+
+    @staticmethod
+    def until(done: Callable[[], object], otherwise: str) -> None:
+        """Look again and again, but not for ever."""
+        until(done, otherwise)
+
     def send(self, *frames: tuple[int, bytes], error: bool = False) -> None:
         """Send frames as another node on the bus."""
         import can
@@ -70,7 +98,8 @@ class Stage:
         """End what still runs."""
         for program in self.programs:
             program.end()
-        _ip("link", "delete", "dev", self.channel)
+        for channel in self._channels:
+            _ip("link", "delete", "dev", channel)
 
 
 def switched_off(emulator: Emulator) -> bool:
@@ -95,6 +124,3 @@ def play(folder: Path, channel: str, act: Callable[[Stage], None]) -> None:
 
 def _ip(*arguments: str) -> None:
     subprocess.run(("ip", *arguments), check=True)
-
-
-__all__ = ["BENCH", "Stage", "play", "switched_off", "until"]

@@ -185,7 +185,9 @@ def test_a_session_in_real_time(tmp_path: Path) -> None:
             period=period,
             answer_timeout=5.0,
             drive=drive,
-            limits=limits(missed_deadlines=10**6, saturated_samples=10**6),
+            limits=limits(
+                missed_deadlines=10**6, saturated_samples=10**6, late_samples=10**6, late_share=1.0
+            ),
             law=law().replace(bandwidth=15.0, robust_term=False),
             output=path,
         ).run()

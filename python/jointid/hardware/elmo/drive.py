@@ -248,6 +248,7 @@ class ElmoDrive:
             clipped=seen.clipped,
             current=seen.current,
             torque=seen.current * self._per_ampere,
+            confirmed=link.echoes.confirmed,
         )
 
     def command(self, torque: float) -> float:

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from jointid.hardware.session.cycle import LoggedCycle
     from jointid.joint.joint import Joint
 
+_WIRING = ("node", "counts_per_turn", "torque")
+
 
 class ElmoType(DriveType):
     """An Elmo SimplIQ drive on CANopen; `[session.torque]` describes the torque sensor."""
@@ -85,6 +87,11 @@ class ElmoType(DriveType):
     def metadata(self, options: ElmoOptions) -> dict[str, Any]:
         """Return the options as JSON's types."""
         return elmo_options_document(options)
+
+    def wiring(self, options: ElmoOptions) -> dict[str, Any]:
+        """Return node, encoder counts, and how the torque sensor is read and scaled."""
+        document = elmo_options_document(options)
+        return {name: document[name] for name in _WIRING if name in document}
 
     def recorded_options(self, metadata: Mapping[str, Any]) -> ElmoOptions:
         """Return the options that a recording names."""

@@ -40,6 +40,11 @@ class CommandEchoes:
         if self._compares:
             self._waiting.append(current)
 
+    @property
+    def confirmed(self) -> bool:
+        """Whether every command has been answered by now; by the next sample the last one should have been."""
+        return not self._waiting
+
     def came(self, current: float) -> str:
         """Compare an echo [A]; returns what is wrong with it, empty when nothing is."""
         if not self._compares:
