@@ -22,13 +22,14 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
 from fault_cases import BEGIN, COMMAND, OURS, REQUEST, EmulatedSession, foreign
 
 SOON = 10 * PERIOD
+ON = bytes.fromhex("4D 4F 00 00 01 00 00 00")
 AMPERE = bytes.fromhex("54 43 00 80 00 00 80 3F")
 FOREIGN = {
     "heartbeat": (OURS, b"\x05", "beats as node 1"),
     "boot-up": (OURS, b"\x00", "beats as node 1"),
     "torque": (COMMAND, AMPERE, "TC = 1 "),
     "question": (COMMAND, b"SR\x00\x00", "SR "),
-    "motor on": (COMMAND, bytes.fromhex("4D 4F 00 00 01 00 00 00"), "MO = 1 "),
+    "motor on": (COMMAND, ON, "MO = 1 "),
     "reset of all": (0x000, b"\x81\x00", "'reset node'"),
     "SYNC": (0x080, b"", "SYNC"),
     "object": (REQUEST, bytes.fromhex("40 18 10 01 00 00 00 00"), "object 1018h:1"),
@@ -59,7 +60,7 @@ def test_a_running_session_stops_within_ten_cycles(name: str, tmp_path: Path) ->
     assert BEGIN <= stop.moment <= BEGIN + SOON
     # By the emulator's own stamps the torque is zero soon after.
     assert next(when for when, on in bench.elmo.switchings[1:] if not on) <= BEGIN + SOON
-    # And it stays so: a motor that the other one switches on again is still watched.
+    # And it stays so: the drive is left in a state in which it takes no commands.
     bench.bus.sleep_until(bench.bus.now() + 0.06)
     assert not bench.elmo.motor_on
     for recording in (found.value.recording, jid.load(tmp_path / "run.csv")):
@@ -165,6 +166,27 @@ def test_a_foreign_frame_that_looks_like_our_first_one_blinds_not_for_long() -> 
 
 def test_a_session_where_our_own_frames_come_back() -> None:
     assert session(EchoingBus(*devices())).run() is not None
+
+
+def test_a_drive_is_left_deaf_to_the_foreign_master_and_a_later_session_starts_anew() -> None:
+    bench = EmulatedSession()
+    bench.at(BEGIN, lambda: send_once(bench))
+    with pytest.raises(SessionStoppedError):
+        bench.session().run()
+    assert bench.elmo.objects.consumer_time == 0.0
+    assert bench.elmo.state == "stopped"
+    switchings = len(bench.elmo.switchings)
+    bench.bus.transmit(can.Message(arbitration_id=COMMAND, data=ON, is_extended_id=False))
+    bench.bus.sleep_until(bench.bus.now() + 0.1)
+    assert len(bench.elmo.switchings) == switchings
+    recording = bench.session().run()
+    assert recording is not None
+    assert "foreign_frames" not in recording.metadata["drive"]
+    assert bench.elmo.state == "pre-operational"
+
+
+def send_once(bench: EmulatedSession) -> None:
+    bench.bus.transmit(can.Message(arbitration_id=OURS, data=b"\x05", is_extended_id=False))
 
 
 def test_a_log_with_a_foreign_frame_is_replayed_until_it_stopped_the_session(

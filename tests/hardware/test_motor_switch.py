@@ -17,6 +17,7 @@ from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.emulated.faults import BusFault
 
 COMMAND, REPLY, REQUEST, ANSWER, POSITION = 0x37F, 0x2FF, 0x67F, 0x5FF, 0x4FF
+NETWORK = 0x000
 
 
 def connected(*faults: BusFault) -> tuple[EmulatedBus, EmulatedElmo, ElmoDrive]:
@@ -97,6 +98,7 @@ def drops(*identifiers: int) -> tuple[BusFault, ...]:
         ((), True),
         ((COMMAND,), True),  # 6040h and 6041h by SDO
         ((REPLY,), True),
+        ((COMMAND, NETWORK), True),
         ((COMMAND, REQUEST), False),  # the network's stop
         ((COMMAND, REQUEST, REPLY, ANSWER), False),
         ((REPLY, ANSWER), False),

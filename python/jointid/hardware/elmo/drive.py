@@ -280,7 +280,8 @@ class ElmoDrive:
     def close(self) -> None:
         """Leave the drive pre-operational, its watchdogs disarmed when its motor is off.
 
-        They stay armed where somebody else commands the drive, who may switch the motor on again.
+        Where somebody else commands the drive it is stopped: its motor goes off again if it is on, and it
+        takes no commands.
         """
         link = self._link
         link.up = False
@@ -290,10 +291,15 @@ class ElmoDrive:
         try:
             link.drain(0.01)
             link.forget_fault()
-            if self._switch.seen_off and not link.foreign.frames:
+            if self._switch.seen_off:
                 elmo_setup.disarm_watchdogs(link)
             link.send(canopen.NMT, canopen.network(canopen.PRE_OPERATIONAL, self.options.node))
             link.drain(0.01)
+            if (
+                link.foreign.frames
+            ):  # a command of theirs that still waited in the drive is done by now
+                link.send(canopen.NMT, canopen.network(canopen.STOP, self.options.node))
+                link.drain(0.01)
         except DriveFaultError:
             return
         finally:
