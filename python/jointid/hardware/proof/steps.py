@@ -249,11 +249,14 @@ class Steps:
     def _pushes(
         self, axis: Axis, breakaway: tuple[float, float], pairs: int, reach: float
     ) -> list[Push]:
-        return [
-            push(axis, direction, STRENGTH * breakaway[direction < 0.0], reach)
-            for _ in range(pairs)
-            for direction in (1.0, -1.0)
-        ]
+        pushes = []
+        for _ in range(pairs):
+            for direction in (1.0, -1.0):
+                lost = axis.lost
+                found = push(axis, direction, STRENGTH * breakaway[direction < 0.0], reach)
+                if axis.lost == lost:  # else nobody knows how long the torque was on
+                    pushes.append(found)
+        return pushes
 
     def _judge_sensor(self, axis: Axis, breakaway: tuple[float, float]) -> Motion:
         """Push until inertia and sensor are clear; returns what they say of the joint."""
@@ -262,11 +265,11 @@ class Steps:
         motion, response = Motion(math.nan, 0.0, 0.0), SensorResponse(0.0, math.inf)
         for pair in range(_MOST):
             pushes += self._pushes(axis, breakaway, 1, reach)
-            widest = max(each.width for each in pushes[-2:])
-            fastest = max(each.fastest for each in pushes[-2:])
+            widest = max((each.width for each in pushes[-2:]), default=0.0)
+            fastest = max((each.fastest for each in pushes[-2:]), default=0.0)
             if widest < _WIDE and fastest < _QUICK * self._options.velocity:
                 reach = min(reach + _REACH, _FARTHEST)
-            if pair + 1 < _FEWEST:
+            if pair + 1 < _FEWEST or not pushes:
                 continue
             motion = motion_of(pushes)
             if not expected.sensor:
