@@ -203,18 +203,36 @@ def identified(
 
 
 def named(case: Case, recording: jid.Recording, estimate: jid.Estimate) -> list[str]:
-    """Causes that are named, the first one first; a delay that was taken away is named before the others."""
-    found = [f"delay of {each.signal}" for each in estimate.delays.values() if each.certain]
+    """Causes that are named, the first one first; a delay that was taken away is named before the others.
+
+    A note of a cause that is there and harmless is no name, nor is that of a delay whose removal moved nothing.
+    """
+    found = _late(estimate)
     if case.name == "coupling":
         plant = recording.metadata["plant"]
         signal = np.sin(plant["coupling_rate"] * recording.time + plant["coupling_phase"])
         causes = estimate.causes({"other axis": signal}).found
         return found + [_full(each.name, each.detail) for each in causes]
     for finding in estimate.findings:
-        if finding.code in MEANINGS:
+        if finding.code in MEANINGS and finding.severity != "info":
             detail = finding.message.partition(" (")[2].partition(",")[0]
             found.append(_full(finding.code, detail))
     return found
+
+
+def _late(estimate: jid.Estimate) -> list[str]:
+    """Delays that are left, or whose removal moved a value."""
+    texts = [
+        finding.message
+        for finding in estimate.findings
+        if (finding.code == "delay_removed" and finding.parameters)
+        or (finding.code == "signal_lag" and finding.severity != "info")
+    ]
+    return [
+        f"delay of {each.signal}"
+        for each in estimate.delays.values()
+        if any(text.startswith(f"the {each.signal} ") for text in texts)
+    ]
 
 
 def _full(name: str, detail: str) -> str:
@@ -267,11 +285,11 @@ class Row:
 
     def text(self, name: str, right: frozenset[str]) -> str:
         """The row of the table."""
-        told = ", ".join(f"{key} {n}" for key, n in self.firsts.most_common())
+        firsts = ", ".join(f"{key} {n}" for key, n in self.firsts.most_common())
         cells: list[object] = [f"{self.harmed} of {self.joints}"]
         share = f" ({100.0 * self.named / self.harmed:.0f} %)" if self.harmed else ""
         cells += [f"{self.named}{share}", self.first] if right else ["", ""]
-        cells += [self.missed, self.harmless if right else "", self.wrong, told]
+        cells += [self.missed, self.harmless if right else "", self.wrong, firsts]
         return f"| {name} | {' | '.join(map(str, cells))} |"
 
 
@@ -307,14 +325,23 @@ _TEXT = """# Causes by name
 Written by `benchmarks/causes_study.py` (`make study`); do not edit. Joints of `tests/plants`, which shares no code with
 the package, {joints} of each plant: other inertia, friction, gravity, sensor and motion (four kinds) each time, 12 s
 at 1 kHz, seed {seed}. One assumption of the model is broken in each row. `identify` runs with its defaults; what its
-findings name counts, and so does a constant delay that it reports or takes away.
+warnings name counts, and so does a constant delay that it takes away and that moved a parameter. A cause that is there,
+is measured, and moves no parameter by more than 5 % or two errors is a note (severity "info") that says how little it
+moves: it is no name here.
 
 *Moves a value*: against the same joint with the same noise and nothing broken, a parameter is off by more than 5 % or
 two standard errors; a coefficient that drifts is off by half of its change. *Named*: the right name is among the causes
 of these; `slow_motion`, `presliding` and `stribeck_exponent` count as one. *First*: the right name is the first one.
 *None*: no name. *Without need*: named rightly, though no value moves so far. *Only others*: a wrong name and not the
-right one. A wrong torque constant beside an unknown inertia, an elastic gear, its backlash, and a varying inertia
-behind a sensor have no name, so that any name is a wrong one."""
+right one. *First names* are of all joints. An elastic gear, its backlash, and a varying inertia behind a sensor have no
+name, so that any name is a wrong one.
+
+A wrong torque constant has a name (`wrong_scale`) only beside a known inertia. Without one nothing in a recording shows
+it: with inertia, frictions, gravity and offset all multiplied by the same factor, the torque balance is the same, so
+every value is off by that factor and the residuals are what they were. The tolerance of the torque constant in the
+joint file is what states it; the intervals then contain it. Without a sensor, backlash and an elastic gear delay the
+link behind the motor: the torque then seems early against the position, which is reported as such (`signal_lag`, never
+applied), with the gear as one of its possible reasons."""
 
 
 def main() -> None:

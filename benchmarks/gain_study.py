@@ -1,9 +1,10 @@
 """The sensor's gain by instruments, by the sensor's and by the torque's residual, where each can fail.
 
-    python benchmarks/gain_study.py [runs]
+    python benchmarks/gain_study.py [runs [word in the condition's name]]
 
-Prints one row a condition and residual: relative error of the gain [%] as mean, standard deviation and worst,
-share of 95 % intervals that hold the truth, and the mean error of Coulomb and viscous friction.
+Prints one row a condition and residual: relative error of the gain [%] as mean, standard deviation and worst, the least
+standard deviation that the sensor's noise allows, share of 95 % intervals that hold the truth, and the mean error of
+Coulomb and viscous friction.
 """
 
 from __future__ import annotations
@@ -60,16 +61,38 @@ CONDITIONS = {
 }
 
 
-def main(runs: int) -> None:
-    """Print the table."""
+def least_deviation(recording: jid.Recording, noise: float) -> float:
+    """Cramér-Rao limit of the gain's relative error [%]: white noise on the reading, all else exact.
+
+    The gain is the slope of the load over the reading, beside the offset and the columns of friction.
+    """
+    plant = recording.metadata["plant"]
+    velocity = recording.velocity
+    acceleration = np.gradient(velocity, recording.time)
+    load = plant["link_inertia"] * acceleration + plant["gravity"] * np.sin(recording.position)
+    sign, decay = np.sign(velocity), np.exp(-plant["stribeck"] * velocity**2)
+    others = [np.ones_like(velocity), sign, velocity, sign * decay, sign * velocity**2 * decay]
+    columns = np.column_stack(others)
+    rest = load - columns @ np.linalg.lstsq(columns, load, rcond=None)[0]
+    return 100.0 * noise / float(np.linalg.norm(rest))
+
+
+def main(runs: int, word: str = "") -> None:
+    """Print the table of the conditions with the word in their name."""
     rng = np.random.default_rng(11)
     joint = jid.thesis_joint()
     motion = thesis(np.radians(rng.uniform(50.0, 70.0, runs)))
-    print("| condition | residual | gain: mean ± sd (worst) [%] | held | Coulomb | viscous |")
-    print("|---|---|---|---|---|---|")
+    print(
+        "| condition | residual | gain: mean ± sd (worst) [%] | least sd | held | Coulomb | viscous |"
+    )
+    print("|---|---|---|---|---|---|---|")
     for number, (name, case) in enumerate(CONDITIONS.items()):
+        if word not in name:
+            continue
         bench = Bench(motion=motion, plant=case.plant, law=case.law, log=case.log)
         recordings = simulate(Bench.stack([bench]), duration=12.0, seed=number)
+        noise = float(np.max(case.log.sensor_noise))
+        least = float(np.mean([least_deviation(recording, noise) for recording in recordings]))
         for residual in RESIDUALS:
             gains, held, others = [], 0, []
             for recording in recordings:
@@ -87,10 +110,10 @@ def main(runs: int) -> None:
             worst = np.max(np.abs(gains))
             print(
                 f"| {name} | {residual or 'default'} | {np.mean(gains):+.2f} ± {np.std(gains, ddof=1):.2f} "
-                f"({worst:.2f}) | {held} of {runs} | {coulomb:+.2f} | {viscous:+.2f} |",
+                f"({worst:.2f}) | {least:.2f} | {held} of {runs} | {coulomb:+.2f} | {viscous:+.2f} |",
                 flush=True,
             )
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 50)
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 50, *sys.argv[2:3])

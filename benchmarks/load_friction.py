@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -34,12 +35,13 @@ OTHERS = {
 }
 
 
-def without(runs: int, rng: np.random.Generator) -> Iterator[tuple[str, Bench]]:
+def without(runs: int, rng: np.random.Generator) -> Iterator[tuple[str, jid.Joint, Bench]]:
     """Joints without load friction, each with another error of the model."""
     for name, (plant, log) in OTHERS.items():
         values = {"coulomb": rng.uniform(10, 30, runs), "viscous": rng.uniform(10, 25, runs)}
         yield (
             name,
+            SENSED,
             Bench(
                 motion=thesis(np.radians(rng.uniform(45, 75, runs))),
                 law=Law(inertia=2.5, stiffness=80.0, feedback=1.5),
@@ -47,10 +49,20 @@ def without(runs: int, rng: np.random.Generator) -> Iterator[tuple[str, Bench]]:
                 log=Log(**log),
             ),
         )
+    for name, (plant, log) in OTHERS.items():
+        if "nonlinearity" in log:
+            continue
+        for _, joint, bench in list(loaded(runs, rng, 0.0))[1:]:
+            known = "known" if joint.link is not None else "not known"
+            other = replace(bench.log, **log)
+            broken = replace(bench, plant=replace(bench.plant, **plant), log=other)
+            yield f"{name}, no sensor, link {known}", joint, broken
 
 
-def loaded(runs: int, rng: np.random.Generator) -> Iterator[tuple[str, jid.Joint, Bench]]:
-    """Joints with a true load friction of 0.2, by the torque behind the gear."""
+def loaded(
+    runs: int, rng: np.random.Generator, size: float
+) -> Iterator[tuple[str, jid.Joint, Bench]]:
+    """Joints with a load friction of this size, by the torque behind the gear."""
     sensed = Log()
     blind = Log(sensor=0.0, torque_noise=0.2)
     for name, joint, log, inertia in (
@@ -69,7 +81,7 @@ def loaded(runs: int, rng: np.random.Generator) -> Iterator[tuple[str, jid.Joint
                     viscous=rng.uniform(10, 25, runs),
                     gravity=40.0,
                     link_inertia=inertia,
-                    load_friction=0.2,
+                    load_friction=size,
                 ),
                 log=log,
             ),
@@ -80,21 +92,28 @@ def main(runs: int) -> None:
     """Print both tables."""
     rng = np.random.default_rng(1)
     found = list(without(runs, rng))
-    recordings = simulate(Bench.stack([bench for _, bench in found]), duration=9.0, seed=1)
+    recordings = simulate(Bench.stack([bench for *_, bench in found]), duration=9.0, seed=1)
     print("| error of the model | runs | load friction wins | refused |\n|---|---|---|---|")
-    for i, (name, _) in enumerate(found):
+    for i, (name, joint, _) in enumerate(found):
         refused = wins = 0
+        base = "stribeck" if joint.sensor else "stribeck:gravity=free"
+        models = [base, f"{base}:load_friction"]
         for run in recordings[i * runs : (i + 1) * runs]:
-            rich = jid.identify(run, SENSED, model="stribeck:load_friction", search="separable")
+            rich = jid.identify(run, joint, model=models[1], search="separable")
             if refusal(rich) is not None:
                 refused += 1
                 continue
-            models = ["stribeck", "stribeck:load_friction"]
-            wins += "load" in jid.compare_models(run, SENSED, models=models).winner
+            wins += "load" in jid.compare_models(run, joint, models=models).winner
         print(f"| {name} | {runs} | {wins} | {refused} |", flush=True)
-    kinds = list(loaded(runs, rng))
+    print("\n| true | | median | worst error | wins |\n|---|---|---|---|---|")
+    for size in (0.2, 0.05):
+        of_size(size, runs, rng)
+
+
+def of_size(size: float, runs: int, rng: np.random.Generator) -> None:
+    """Print the rows of a true load friction."""
+    kinds = list(loaded(runs, rng, size))
     recordings = simulate(Bench.stack([bench for *_, bench in kinds]), duration=9.0, seed=2)
-    print("\n| true 0.2 | median | worst error | wins |\n|---|---|---|---|")
     for i, (name, joint, _) in enumerate(kinds):
         base = "stribeck" if joint.sensor else "stribeck:gravity=free"
         values, wins = [], 0
@@ -103,9 +122,10 @@ def main(runs: int) -> None:
             wins += "load" in compared.winner
             rich = jid.identify(run, joint, model=f"{base}:load_friction", search="separable")
             values.append(rich.parameters["load_friction"].value)
-        worst = 100.0 * np.abs(np.array(values) / 0.2 - 1.0).max()
+        worst = 100.0 * np.abs(np.array(values) / size - 1.0).max()
         print(
-            f"| {name} | {np.median(values):.4f} | {worst:.2g} % | {wins} of {runs} |", flush=True
+            f"| {size:g} | {name} | {np.median(values):.4f} | {worst:.2g} % | {wins} of {runs} |",
+            flush=True,
         )
 
 

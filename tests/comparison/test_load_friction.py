@@ -1,5 +1,6 @@
 """Load friction wins where it is, and nowhere else. The joints are those of tests/plants, no code of the package."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from plants import Bench, Law, Log, Plant, simulate, thesis
 
 import jointid as jid
+from jointid.comparison.load_evidence import load_refusal
 
 INERTIA = 2.472e-4 * 101.0**2
 SENSED = jid.Joint(inertia=INERTIA, sensor=True, torque_hold="zoh")
@@ -38,6 +40,31 @@ def runs() -> list[jid.Recording]:
         *(Bench(motion=motion, law=sensed, plant=p, log=log) for p, log in OTHERS.values()),
     ]
     return simulate(Bench.stack(benches), duration=9.0, seed=1)
+
+
+@pytest.fixture(scope="module")
+def small() -> list[jid.Recording]:
+    """A load friction of 0.05, and a drift that resembles it."""
+    law = Law(inertia=2.7, gravity=30.0, stiffness=60.0)
+    plant = Plant(coulomb=12.0, gravity=40.0, link_inertia=1.0)
+    motion, log = thesis(np.radians([60.0])), Log(sensor=0.0, torque_noise=0.2)
+    plants = (replace(plant, load_friction=0.05), replace(plant, viscous_drift=-0.3))
+    benches = [Bench(motion=motion, law=law, plant=each, log=log) for each in plants]
+    return simulate(Bench.stack(benches), duration=9.0, seed=5)
+
+
+@pytest.mark.parametrize(
+    ("number", "joint", "refused"),
+    [(0, BARE, False), (0, jid.Joint(torque_hold="zoh"), False), (1, BARE, True)],
+    ids=["true, link", "true, no link", "drift"],
+)
+def test_a_small_load_friction_is_told_from_a_drift(
+    small: list[jid.Recording], number: int, joint: jid.Joint, refused: bool
+) -> None:
+    model = "stribeck:gravity=free:load_friction"
+    estimate = jid.identify(small[number], joint, model=model, search="separable")
+    assert estimate.parameters["load_friction"].value == pytest.approx(0.05, abs=0.015)
+    assert (load_refusal(estimate) is not None) == refused
 
 
 @pytest.mark.parametrize(

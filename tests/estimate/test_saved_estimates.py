@@ -185,7 +185,7 @@ def test_the_path_is_named() -> None:
         (("convergence", "best"), "[1.0]", "same length"),
         (("windows", "recording", 0), "1", "not so many recordings"),
         (("findings", 0, "advice", 0, "kind"), '"shout"', "known are call, record, inspect"),
-        (("findings", 1, "advice", 0, "arguments"), "{}", "a call needs arguments"),
+        (("findings", 0, "advice", 0, "arguments"), "{}", "a call needs arguments"),
         (("findings", 0, "severity"), '"mild"', "known are info, warning, blocking"),
     ],
 )

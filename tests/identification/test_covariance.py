@@ -7,7 +7,7 @@ import jointid as jid
 from jointid.cli.demo import data_folder
 from jointid.estimate.student import quantile
 from jointid.identification.inference.covariance import parameter_covariance
-from jointid.identification.inference.segments import Segments
+from jointid.identification.inference.segments import Segments, even_segments
 from jointid.identification.prepared import prepare
 
 ROWS = 400
@@ -124,3 +124,30 @@ def test_centring_takes_the_sensors_zero_out_of_the_correlation() -> None:
     assert abs(raw.correlation[0, 1]) > 0.99
     assert abs(centred.correlation[0, 1]) < 1e-6
     np.testing.assert_allclose(raw.stderr, centred.stderr)
+
+
+def test_parameters_go_together_as_segments_say() -> None:
+    """Residuals that drift slowly leave Coulomb and viscous friction less alike than independent ones."""
+    rng = np.random.default_rng(4)
+    count, memory = 1200, 0.9
+    turns = 2.0 * np.pi * np.arange(count) / count
+    velocity = np.sin(9.0 * turns) + 0.3 * np.sin(4.0 * turns + 1.0)
+    jacobian = np.column_stack([np.sign(velocity), velocity, np.cos(2.3 * turns)])
+    lags = np.abs(np.subtract.outer(np.arange(count), np.arange(count)))
+    taken = np.linalg.pinv(jacobian)
+    true = taken @ (memory**lags) @ taken.T
+    wanted = true[0, 1] / np.sqrt(true[0, 0] * true[1, 1])
+    found, classical = [], []
+    for _ in range(40):
+        noise = np.zeros(count)
+        steps = rng.normal(size=count)
+        for place in range(1, count):
+            noise[place] = memory * noise[place - 1] + steps[place]
+        spread = parameter_covariance(
+            jacobian, noise - jacobian @ (taken @ noise), None, segments=even_segments(count)
+        )
+        found.append(spread.matrix[0, 1] / (spread.stderr[0] * spread.stderr[1]))
+        classical.append(spread.correlation[0, 1])
+        assert np.linalg.eigvalsh(spread.matrix).min() > 0.0
+    assert np.mean(found) == pytest.approx(wanted, abs=0.05)
+    assert abs(np.mean(classical) - wanted) > 0.08

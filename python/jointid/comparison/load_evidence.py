@@ -30,6 +30,9 @@ _SURE = 4.0  # standard errors
 _SMALLEST = 0.01  # below it noise of the reading, taken for the load, does the same
 _KEPT = 0.6  # of the coefficient, beside the other causes
 _RIDGE = 1e-11
+# What another cause adds is about this share of the torque, by a prior: where many columns that nearly cancel each
+# other could take the place of load friction, they would have to be far larger.
+_EXPECTED = 0.03
 # Decays of friction with the speed, and with the way since a reversal, as shares of peak speed and range.
 _SPEEDS = (0.02, 0.1, 0.4)
 _WAYS = (0.003, 0.01, 0.03)
@@ -82,12 +85,26 @@ def _beside_other_causes(estimate: Estimate, problem: Problem) -> tuple[float, f
     )
     whole = parts.sum(axis=0)
     sums = np.concatenate([whole[None], whole - parts])
-    square = sums[:, :-1, :-1] + _RIDGE * np.eye(matrix.shape[1] - 1)
+    ridge = np.full(matrix.shape[1] - 1, _RIDGE)
+    level = float(np.linalg.norm(penalty.target))
+    if penalty.residual == _core.Residual.sensor:
+        level /= abs(known["sensor_gain"].value) or 1.0
+    expected = _EXPECTED * level / sizes[-1]
+    ridge[len(free) :] += _noise(whole, len(matrix)) / expected**2
+    square = sums[:, :-1, :-1] + np.diag(ridge)
     place = free.index(penalty.names.index(_NAME))
     solved = np.linalg.solve(square, sums[:, :-1, -1:])[:, place, 0] * sizes[-1] / sizes[place]
     left = solved[1:] - solved[1:].mean()
     error = float(np.sqrt((_BLOCKS - 1) / _BLOCKS * np.einsum("i,i->", left, left)))
     return known[_NAME].value + float(solved[0]), error
+
+
+def _noise(products: Array, rows: int) -> float:
+    """Variance of what all columns leave of the last one."""
+    square, target = products[:-1, :-1], products[:-1, -1]
+    found = np.linalg.solve(square + _RIDGE * np.eye(len(target)), target)
+    left = products[-1, -1] - 2.0 * found @ target + found @ square @ found
+    return float(max(left, 1e-12)) / max(1, rows - len(target))
 
 
 def _other_causes(problem: Problem, penalty: _core.Penalty) -> list[Array]:

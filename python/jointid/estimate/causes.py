@@ -34,6 +34,10 @@ class Cause:
         How much each parameter would change if the model had it, in the parameter's unit.
     relative : mapping of str to float
         The same as shares of the values, of those that change noticeably.
+    shares : mapping of str to float
+        The same of all values, noticeable or not.
+    harmful : bool
+        Whether a value moves by more than 5 %, or by more than two of its errors.
     alike : tuple of str
         Other causes that these recordings hardly tell from it.
     advice : tuple of Action
@@ -48,6 +52,8 @@ class Cause:
     numbers: Mapping[str, Measured] = field(default_factory=dict, hash=False)
     shifts: Mapping[str, float] = field(default_factory=dict, hash=False)
     relative: Mapping[str, float] = field(default_factory=dict, hash=False)
+    shares: Mapping[str, float] = field(default_factory=dict, hash=False)
+    harmful: bool = True
     alike: tuple[str, ...] = ()
     advice: tuple[Action, ...] = field(default=(), hash=False)
 
@@ -55,6 +61,7 @@ class Cause:
         object.__setattr__(self, "numbers", MappingProxyType(dict(self.numbers)))
         object.__setattr__(self, "shifts", MappingProxyType(dict(self.shifts)))
         object.__setattr__(self, "relative", MappingProxyType(dict(self.relative)))
+        object.__setattr__(self, "shares", MappingProxyType(dict(self.shares)))
 
     def __str__(self) -> str:
         """The cause in a sentence without its advice."""
@@ -64,18 +71,37 @@ class Cause:
         text += (
             f" explains {percent(self.share)} of the misfit over windows of {_seconds(self.scale)}"
         )
-        if self.relative:
-            moved = sorted(self.relative.items(), key=lambda entry: -abs(entry[1]))[:3]
-            changes = ", ".join(f"{name} by {_signed(change)}" for name, change in moved)
-            text += f"; with it in the model, {changes}"
+        if self.relative and self.harmful:
+            text += f"; with it in the model, {self.moves}"
+        elif not self.harmful:
+            text += f"; it {self.harmless}"
         if self.alike:
             text += f"; this recording hardly tells it from {' and '.join(self.alike)}"
         return text
 
+    @property
+    def moves(self) -> str:
+        """The largest changes, as a part of a sentence."""
+        shown = self.relative if self.harmful else self.shares
+        moved = sorted(shown.items(), key=lambda entry: -abs(entry[1]))[:3]
+        return ", ".join(f"{name} by {_signed(change)}" for name, change in moved)
+
+    @property
+    def harmless(self) -> str:
+        """How little it moves, as a part of a sentence."""
+        return f"moves no parameter noticeably ({self.moves})"
+
+    @property
+    def did(self) -> str:
+        """What it moved where it was taken away, as a part of a sentence."""
+        if self.harmful:
+            return f"moved {self.moves}"
+        return f"moved no parameter noticeably ({self.moves})"
+
     def __reduce__(self) -> tuple[object, ...]:
         # A read-only mapping cannot be pickled.
         values: dict[str, Any] = {name: getattr(self, name) for name in self.__slots__}
-        for name in ("numbers", "shifts", "relative"):
+        for name in ("numbers", "shifts", "relative", "shares"):
             values[name] = dict(values[name])
         return _rebuilt, (values,)
 
@@ -89,7 +115,7 @@ class Causes:
     found : tuple of Cause
         Causes that matter: certain, and they move a parameter. The one that explains most comes first.
     harmless : tuple of Cause
-        Causes that are certain and move no parameter noticeably.
+        Causes that are certain and move no parameter by more than 5 % or two errors.
     tried : tuple of str
         Names of all causes that were looked for.
     """
@@ -116,7 +142,7 @@ class Causes:
             f"{cause.name}: {cause}" + "".join(f"\n    {action(each)}" for each in cause.advice)
             for cause in self.found
         ]
-        lines += [f"{cause.name} (moves no parameter): {cause}" for cause in self.harmless]
+        lines += [f"{cause.name} (harmless): {cause}" for cause in self.harmless]
         if not lines:
             lines = ["no cause of a misfit was found"]
         if self.excluded:

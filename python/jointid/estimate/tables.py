@@ -45,7 +45,9 @@ def rows(estimate: Estimate) -> list[Row]:
 def _row(p: ParameterEstimate | DerivedValue, text: str) -> Row:
     error = interval = ""
     if p.stderr is not None and p.interval is not None:
-        share = f" ({percent(p.stderr / abs(p.value))})" if p.value else ""
+        share = (
+            f" ({percent(p.stderr / abs(p.value))})" if p.value and np.isfinite(p.stderr) else ""
+        )
         error = f"{two_digits(p.stderr)}{share}"
         interval = f"{p.interval[0]:.5g} … {p.interval[1]:.5g}"
     beside = systematic(p) if isinstance(p, ParameterEstimate) else ""

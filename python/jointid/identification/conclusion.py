@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.estimate.causes import Causes
 from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence
-from jointid.identification.causes.causes import find_causes
+from jointid.identification.causes.causes import cause_of, find_causes
 from jointid.identification.causes.suspicion import correlated, suspicious, testable
 from jointid.identification.inference.covariance import parameter_covariance
 from jointid.identification.inference.inference import (
@@ -40,6 +42,7 @@ Array = NDArray[np.float64]
 
 # Parameters with a smaller component of the weakest direction are not named.
 _NAMED = 0.3
+_SOMETHING = 0.5  # of the variance is left beside a cause that makes sense of a model that had none
 
 
 def infer(
@@ -120,18 +123,18 @@ def infer(
     )
     # Running integrals of white noise are correlated by themselves.
     noise = not structured and testable(run) and not penalty.cumulative
-    # A misfit of values that are no estimate, or of a gain whose sign is a guess, is not the model's.
-    meant = statistics.r_squared >= 0.0 and not domain.guessed_sign
-    if structured and meant and not (penalty.cumulative or not free):
+    # A misfit of a gain whose sign is a guess is not the model's.
+    if structured and not domain.guessed_sign and not (penalty.cumulative or not free):
         causes = find_causes(
             problem,
             penalty,
             parameters,
             torque_level=torque_level,
-            r_squared=statistics.r_squared,
             delays=refinements.delays,
         )
-        if not causes.found and testable(run) and not correlated(table.residual, run):
+        if statistics.r_squared < 0.0 and not _explains(causes, statistics.r_squared):
+            causes = None  # values that are no estimate
+        elif not causes.found and testable(run) and not correlated(table.residual, run):
             # Louder at low speed, but no cause and nothing that lasts: noise, of the velocity or of a reversal.
             causes, noise = None, True
     findings = diagnose(
@@ -152,6 +155,7 @@ def infer(
             inspections=inspections,
             at_best=at_best,
             causes=causes,
+            cause_of=partial(cause_of, problem, penalty, parameters, torque_level),
             white=noise,
             velocity_effect=effect,
             correlations={
@@ -183,6 +187,12 @@ def infer(
         delays=refinements.delays,
         slow_motion=refinements.slow_motion,
     )
+
+
+def _explains(causes: Causes, r_squared: float) -> bool:
+    """Whether the first cause turns a model that says nothing into one that says something."""
+    left = (1.0 - causes.found[0].share if causes.found else 1.0) * (1.0 - r_squared)
+    return left < _SOMETHING
 
 
 def _unknown(delay: Delay) -> float:

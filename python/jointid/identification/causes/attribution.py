@@ -79,6 +79,7 @@ def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
     whole = {factor: folds.misfit(base).sum() for factor, folds in scaled}
     found: list[Attributed] = []
     taken: set[str] = set()
+    slow_event = False
     while len(found) < _MOST:
         scores = {
             index: _score(scaled[:1] if each.finest else scaled, base, places[index], whole)
@@ -90,6 +91,7 @@ def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
         event = None if "disturbance" in taken else local_event(fit, matrix[:, base], matrix[:, -1])
         if event is not None and event.stands_out(best):
             taken.add("disturbance")
+            slow_event = event.slow
             matrix = np.where(event.rows[:, None], 0.0, matrix)
             scaled = _at_scales(fit, matrix)
             found.append(_of_event(fit, matrix, base, event, reached))
@@ -105,6 +107,9 @@ def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
         taken.add(_family(tried[winner]))
         found.append(_attributed(fit, matrix, base, tried, winner, scores, reached))
         reached = reached + found[-1].shifts
+    # Where friction at low speed is amiss, what happens while the joint hardly moves is part of it.
+    if slow_event and any(_family(each.candidate) == "slow_motion" for each in found):
+        found.sort(key=lambda each: each.candidate.name == "disturbance")
     return tuple(found)
 
 

@@ -50,9 +50,10 @@ class Candidate:
     finest: bool = False
 
 
-def listed_candidates(fit: Fitted) -> list[Candidate]:
-    """Return all candidates that the model lacks and the recordings can show."""
-    return [each for family in FAMILIES for each in family(fit) if np.any(each.columns)]
+def listed_candidates(fit: Fitted, only: str = "") -> list[Candidate]:
+    """Return all candidates that the model lacks and the recordings can show, or those of one family."""
+    families = [family for family in FAMILIES if only in ("", family.__name__[1:])]
+    return [each for family in families for each in family(fit) if np.any(each.columns)]
 
 
 def _gravity(fit: Fitted) -> Iterator[Candidate]:
@@ -66,16 +67,15 @@ def _inertia_varies(fit: Fitted) -> Iterator[Candidate]:
     """From Lagrange's equation of an inertia M(q): M a + M' v² / 2, integrated without the acceleration."""
     if not _revolute(fit):
         return
+    parts = {}
+    for order in (1.0, 2.0):
+        mean = inertia_basis(fit, order).mean(axis=0)
+        momentum = fit.rise(functools.partial(_momentum, order=order, mean=mean))
+        parts[order] = momentum - 0.5 * fit.integral(functools.partial(_centrifugal, order=order))
     for orders in ((1.0,), (2.0,), (1.0, 2.0)):
-        parts = []
-        for order in orders:
-            mean = inertia_basis(fit, order).mean(axis=0)
-            parts.append(
-                fit.rise(functools.partial(_momentum, order=order, mean=mean))
-                - 0.5 * fit.integral(functools.partial(_centrifugal, order=order))
-            )
         detail = " and ".join(f"{order:g}" for order in orders)
-        yield Candidate(name="inertia_varies", columns=np.hstack(parts), detail=detail)
+        columns = np.hstack([parts[order] for order in orders])
+        yield Candidate(name="inertia_varies", columns=columns, detail=detail)
 
 
 def _momentum(_: int, run: Recording, order: float, mean: Array) -> Array:
@@ -175,7 +175,7 @@ def _ripple(fit: Fitted) -> Iterator[Candidate]:
     """Over longer windows only the ripple at reversals is left, which any cause at reversals resembles."""
     joint = fit.problem.joint
     gear = abs(joint.gear_ratio) if joint is not None else 1.0
-    if gear == 1.0 or not _revolute(fit):
+    if gear == 1.0 or not _revolute(fit) or fit.group > 1:
         return
     for order in (0.5, 1.0, 2.0, 3.0, 4.0):
         if not _has_order(fit, "ripple", order):
@@ -190,7 +190,7 @@ def _delay(fit: Fitted) -> Iterator[Candidate]:
     """
     if "torque" not in fit.prompt:
         runs = fit.problem.in_core
-        late = -np.asarray(fit.penalty.torque_steps(runs, fit.problem.mask_standstill))
+        late = -fit.summed(fit.penalty.torque_steps(runs, fit.problem.mask_standstill))
         yield Candidate(name="delay", columns=late[:, None], detail="torque")
     if "sensor_gain" in fit.names and "sensor" not in fit.prompt:
         gain = fit.value("sensor_gain")

@@ -22,13 +22,17 @@ from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
+_MOST = 60_000  # windows of an attribution: of a long recording, neighbours are summed
 _LATE = 2.0  # standard errors of a delay that is none
 _NORMAL = 1.959964  # standard errors of half a 95 % interval
-_MOVED, _ERRORS = 0.04, 1.8  # share of a value, and standard errors, from which a cause matters
+_MOVED, _ERRORS = 0.05, 2.0  # share of a value, and standard errors, from which a cause does harm
+_NOTICED = 0.8  # of that: a first-order shift may be so much too small
 _UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it must move by more
-_PART = 0.05  # of the variance of what was measured
+_LEAST_SCALE = 0.01  # of a given inertia: it is seldom known better
 _KNOWN = 3e-4  # [s]; standard error of a delay that says whether one matters
-_LEAST = 0.003  # share of a value: a smaller change matters to nobody, however certain
+# Shares of a value: a smaller change matters to nobody, however many errors it is. A cause that is measured by
+# itself is more than a guess from the misfit.
+_LEAST, _LEAST_OF_MEASURED = 0.003, 0.002
 
 
 def find_causes(
@@ -37,7 +41,6 @@ def find_causes(
     parameters: Mapping[str, ParameterEstimate],
     *,
     torque_level: float,
-    r_squared: float,
     delays: Mapping[str, Delay],
     signals: Mapping[str, Array] | None = None,
 ) -> Causes:
@@ -51,13 +54,75 @@ def find_causes(
     parameters : mapping of str to ParameterEstimate
     torque_level : float
         Root mean square of the torque [N·m or N]; what an offset is held against.
-    r_squared : float
-        Share of the variance that the model explains.
     delays : mapping of str to Delay
         Of the signals against the position, as estimated before.
     signals : mapping of str to ndarray, optional
         Further signals of the first recording, one value a sample.
     """
+    late = "velocity" in delays and delays["velocity"].certain
+    fit = _fitted(problem, penalty, parameters, signals, _prompt(delays), late, _MOST)
+    tried = listed_candidates(fit)
+    found: list[Cause] = []
+    harmless: list[Cause] = []
+    for each in attribute(fit, tried):
+        if each.candidate.name == "wrong_scale" and abs(_off_scale(fit, each)) < _LEAST_SCALE:
+            continue
+        cause = _cause(fit, each, parameters, torque_level, delays)
+        (found if cause.harmful else harmless).append(cause)
+    wanted = dict.fromkeys([*(each.name for each in tried), "delay", "disturbance"])
+    return Causes(found=tuple(found), harmless=tuple(harmless), tried=tuple(wanted))
+
+
+def cause_of(
+    problem: Problem,
+    penalty: _core.Penalty,
+    parameters: Mapping[str, ParameterEstimate],
+    torque_level: float,
+    name: str,
+    detail: str,
+    share: float,
+    size: float | None = None,
+) -> Cause | None:
+    """Return what a cause that is known from elsewhere does to the values; None of one without a candidate.
+
+    Parameters
+    ----------
+    name, detail : str
+        Of the cause, e.g. "ripple", "2", or "delay", "torque".
+    share : float
+        Share of a misfit that it explains.
+    size : float, optional
+        Its coefficient where that is known, too. Default: fitted.
+    """
+    fit = _fitted(problem, penalty, parameters)
+    for each in listed_candidates(fit, name):
+        if each.detail != detail:
+            continue
+        if size is None:
+            steps = fit.solve(np.column_stack([fit.jacobian, each.columns]), fit.residual)
+        else:
+            known = fit.residual - size * each.columns[:, 0]
+            steps = np.append(fit.solve(fit.jacobian, known), -size)
+        found = Attributed(
+            candidate=each,
+            share=share,
+            factor=1,
+            coefficients=-steps[len(fit.free) :],
+            shifts=steps[: len(fit.free)],
+        )
+        return _cause(fit, found, parameters, torque_level, {}, _LEAST_OF_MEASURED)
+    return None
+
+
+def _fitted(
+    problem: Problem,
+    penalty: _core.Penalty,
+    parameters: Mapping[str, ParameterEstimate],
+    signals: Mapping[str, Array] | None = None,
+    prompt: frozenset[str] = frozenset(),
+    filtered: bool = False,
+    most: int | None = None,
+) -> Fitted:
     names = list(penalty.names)
     best = np.array([parameters[name].value for name in names])
     free = tuple(
@@ -65,18 +130,7 @@ def find_causes(
         for index, name in enumerate(names)
         if parameters[name].vary and parameters[name].at_bound is None
     )
-    late = "velocity" in delays and delays["velocity"].certain
-    fit = Fitted.of(problem, penalty, best, free, signals, _prompt(delays), late)
-    tried = listed_candidates(fit)
-    found: list[Cause] = []
-    harmless: list[Cause] = []
-    for each in attribute(fit, tried):
-        cause = _cause(fit, each, parameters, torque_level, delays)
-        # A large part of what was measured matters, however badly the values are known without it.
-        matters = cause.relative or cause.share * (1.0 - r_squared) > _PART
-        (found if matters else harmless).append(cause)
-    wanted = dict.fromkeys([*(each.name for each in tried), "delay", "disturbance"])
-    return Causes(found=tuple(found), harmless=tuple(harmless), tried=tuple(wanted))
+    return Fitted.of(problem, penalty, best, free, signals, prompt, filtered, most)
 
 
 def attributed(
@@ -122,7 +176,6 @@ def attributed(
         penalty,
         estimate.parameters,
         torque_level=float(np.sqrt(np.mean(torque**2))),
-        r_squared=estimate.residuals.r_squared,
         delays=estimate.delays,
         signals=found,
     )
@@ -131,13 +184,14 @@ def attributed(
 def _prompt(delays: Mapping[str, Delay]) -> frozenset[str]:
     """Signals that are not late, or no longer: much resembles a delay, and its own estimate says more.
 
-    A torque of which only some parts seem late is not late: something else is amiss there.
+    A torque of which only some parts seem late is not late: something else is amiss there. Nor is a velocity
+    that the position's rate shows to be late by too little to matter, however certain that little is.
     """
     found = set()
     for each in delays.values():
         left = abs(each.value - each.applied)
-        parts = each.signal == "torque" and not each.certain and each.stderr < _KNOWN
-        if left <= _LATE * each.stderr or parts:
+        known = each.signal != "sensor" and not each.certain and each.stderr < _KNOWN
+        if left <= _LATE * each.stderr or known:
             found.add(each.signal)
     return frozenset(found)
 
@@ -148,54 +202,59 @@ def _cause(
     parameters: Mapping[str, ParameterEstimate],
     torque_level: float,
     delays: Mapping[str, Delay],
+    least: float = _LEAST,
 ) -> Cause:
     shifts = {
         fit.names[index]: float(shift) for index, shift in zip(fit.free, each.shifts, strict=True)
     }
     shifts |= _of_itself(fit, each)
-    scales = {name: _scale(parameters[name], parameters, torque_level) for name in shifts}
-    relative = {
-        name: share
+    shares = {
+        name: shift / scale
         for name, shift in shifts.items()
-        if (share := _matters(parameters[name], shift, 1.0 - each.share, scales[name])) is not None
+        if (scale := _scale(parameters[name], parameters, torque_level)) > 0.0
+    }
+    harm = {
+        name: _harm(parameters[name], shifts[name], share, 1.0 - each.share, least)
+        for name, share in shares.items()
     }
     detail, size, numbers = _described(fit, each, delays)
     return Cause(
         name=each.candidate.name,
         detail=detail,
         share=each.share,
-        scale=each.factor * float(fit.penalty.window_duration),
+        scale=each.factor * fit.group * float(fit.penalty.window_duration),
         size=size,
         numbers=numbers,
         shifts=shifts,
-        relative=relative,
+        relative={name: share for name, share in shares.items() if harm[name] > _NOTICED},
+        shares=shares,
+        harmful=max(harm.values(), default=0.0) > 1.0,
         alike=each.alike,
         advice=advice_against(fit, each),
     )
 
 
-def _matters(p: ParameterEstimate, shift: float, left: float, scale: float) -> float | None:
-    """The shift as a share of the value where it is noticeable, else None.
+def _harm(p: ParameterEstimate, shift: float, share: float, left: float, least: float) -> float:
+    """The shift over the least one that does harm.
 
     Parameters
     ----------
+    share : float
+        The shift as a share of what it is held against.
     left : float
         Share of the misfit that is left with the cause in the model: the error falls with it.
-    scale : float
-        What the shift is held against.
+    least : float
+        Share below which a number of errors says nothing.
     """
-    if scale == 0.0:
-        return None
-    share = abs(shift) / scale
     # With what is systematic: a shift that the interval states already is nothing new.
     error = (p.interval[1] - p.interval[0]) / (2.0 * _NORMAL) if p.interval is not None else 0.0
     errors = abs(shift) / error if error > 0.0 else 0.0
     after = error * np.sqrt(max(left, 0.0))
+    scale = abs(shift / share) if share else 0.0
     if after > _UNKNOWN * scale and abs(shift) < _CLEARLY * after:
-        return None
-    if share > _MOVED or (errors > _ERRORS and share > _LEAST):
-        return float(np.copysign(share, shift))
-    return None
+        return 0.0
+    harm = abs(share) / _MOVED
+    return max(harm, errors / _ERRORS) if abs(share) > least else harm
 
 
 def _scale(
@@ -220,7 +279,24 @@ def _of_itself(fit: Fitted, each: Attributed) -> dict[str, float]:
         return {"inertia": _half_range(fit, each)}
     if name == "asymmetry" and "viscous" in fit.names:
         return {"viscous": float(each.coefficients[0])}
+    if name == "wrong_scale":
+        return _of_a_scale(fit, _off_scale(fit, each))
     return {}
+
+
+def _off_scale(fit: Fitted, each: Attributed) -> float:
+    """By what share the torque shows a larger inertia than the given one."""
+    return float(each.coefficients[0]) / (fit.value("inertia") or 1.0)
+
+
+def _of_a_scale(fit: Fitted, share: float) -> dict[str, float]:
+    """A wrong torque scales the friction with it; a wrong inertia does not, and nothing tells which it is."""
+    frictions = [
+        fit.names[index]
+        for index, term in enumerate(fit.penalty.terms)
+        if term.friction and index in fit.free and not term.needs_load
+    ]
+    return {name: -share * fit.value(name) for name in frictions}
 
 
 def _half_range(fit: Fitted, each: Attributed) -> float:
@@ -262,6 +338,9 @@ def _described(
         change, minute = rate * _span(fit), 60.0 * rate
         size = f"{100.0 * change:+.3g} % over the recording, {100.0 * minute:+.3g} % a minute"
         numbers |= {"change": Measured(change), "change_a_minute": Measured(minute)}
+    elif name == "wrong_scale":
+        share = _off_scale(fit, each)
+        size, numbers["ratio"] = f"{100.0 * share:+.2g} %", Measured(1.0 + share)
     elif name == "inertia_varies":
         range_of_it = _half_range(fit, each) / (abs(fit.value("inertia")) or 1.0)
         size, numbers["range"] = f"±{100.0 * range_of_it:.2g} %", Measured(range_of_it)

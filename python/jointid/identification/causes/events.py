@@ -15,6 +15,7 @@ _LENGTH = 0.03  # of the windows, a stretch
 _MOST = 3  # stretches
 _ALONE, _TOGETHER = 0.6, 0.8  # share of the misfit in one, or in several
 _OTHER, _MORE = 0.3, 0.3
+_SLOW = 0.2  # of the windows, the slowest
 _ROUNDS = 3  # what a disturbance does to the fit hides part of it
 
 
@@ -31,6 +32,9 @@ class LocalEvent:
         Largest mean torque of a window there [N·m or N].
     text : str
         When.
+    stretches : int
+    slow : bool
+        Whether most of the misfit there is of windows in which the joint hardly moves.
     """
 
     rows: NDArray[np.bool_]
@@ -38,6 +42,7 @@ class LocalEvent:
     torque: float
     text: str
     stretches: int
+    slow: bool
 
     def stands_out(self, share: float) -> bool:
         """Whether it says more than a cause that explains this share of the misfit at other times, too."""
@@ -72,7 +77,14 @@ def local_event(fit: Fitted, base: Array, residual: Array) -> LocalEvent | None:
         torque=float(means[highest]),
         text=_when(fit, stretches),
         stretches=len(stretches),
+        slow=_is_slow(fit, np.where(keep, 0.0, left**2)),
     )
+
+
+def _is_slow(fit: Fitted, power: Array) -> bool:
+    speed = fit.integral(lambda _, run: np.abs(run.velocity)) / fit.duration
+    slow = speed < np.quantile(speed, _SLOW)
+    return float(power[slow].sum()) > 0.5 * float(power.sum())
 
 
 def _stretches(power: Array, length: int) -> list[tuple[int, int]]:
@@ -94,7 +106,7 @@ def _stretches(power: Array, length: int) -> list[tuple[int, int]]:
 
 
 def _when(fit: Fitted, stretches: list[tuple[int, int]]) -> str:
-    bounds = np.asarray(fit.penalty.windows)
+    bounds = fit.bounds
     texts = []
     for low, high in sorted(stretches):
         run = int(fit.run[low])

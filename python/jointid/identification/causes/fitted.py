@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.identification.causes.folds import first_windows
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import output_torque
 from jointid.recording.recording import Recording
@@ -40,6 +41,8 @@ class Fitted:
         says of it, so that its noise counts for nothing.
     start : ndarray, shape (free,)
         What has been added to the parameters in `residual`.
+    group : int
+        Windows of the penalty that one window here is the sum of.
     signals : mapping of str to ndarray
         Further signals of the first recording, one value a sample.
     prompt : frozenset of str
@@ -55,6 +58,7 @@ class Fitted:
     residual: Array
     jacobian: Array
     start: Array
+    group: int = 1
     signals: Mapping[str, Array] = field(default_factory=dict)
     prompt: frozenset[str] = frozenset()
     filtered: bool = False
@@ -67,17 +71,37 @@ class Fitted:
     @functools.cached_property
     def run(self) -> NDArray[np.int64]:
         """Index of each window's recording."""
+        return self._every_run[self._firsts]
+
+    @functools.cached_property
+    def bounds(self) -> NDArray[np.int64]:
+        """First and last sample of each window, shape (windows, 2)."""
+        every = np.asarray(self.penalty.windows, dtype=np.int64)
+        last = np.append(self._firsts[1:], len(every)) - 1
+        return np.column_stack([every[self._firsts, 0], every[last, 1]])
+
+    def summed(self, values: Array) -> Array:
+        """Sums of what the penalty's windows have over the windows here."""
+        values = np.asarray(values)
+        return values if self.group == 1 else np.add.reduceat(values, self._firsts, axis=0)
+
+    @functools.cached_property
+    def _every_run(self) -> NDArray[np.int64]:
         return np.asarray(self.penalty.recording_of, dtype=np.int64)
+
+    @functools.cached_property
+    def _firsts(self) -> NDArray[np.int64]:
+        return first_windows(self._every_run, self.group)
 
     @functools.cached_property
     def columns(self) -> Array:
         """Integrals of the coefficients' terms, shape (windows, coefficients)."""
-        return np.asarray(self.penalty.columns(self.best[self.penalty.coefficients :]))
+        return self.summed(self.penalty.columns(self.best[self.penalty.coefficients :]))
 
     @functools.cached_property
     def duration(self) -> Array:
         """Integrated time of each window [s]."""
-        return np.asarray(self.penalty.usable_duration)
+        return self.summed(self.penalty.usable_duration)
 
     @functools.cached_property
     def trusted(self) -> NDArray[np.bool_]:
@@ -131,30 +155,23 @@ class Fitted:
         signals: Mapping[str, Array] | None = None,
         prompt: frozenset[str] = frozenset(),
         filtered: bool = False,
+        most: int | None = None,
     ) -> Fitted:
-        """Return the fit at a minimum, on the torque's side whatever the penalty compares."""
+        """Return the fit at a minimum, on the torque's side whatever the penalty compares.
+
+        Parameters
+        ----------
+        most : int, optional
+            Windows at most; neighbours are summed where there are more. Default: as many as there are.
+        """
         _, residual, jacobian = penalty.linearised(best)
         jacobian = np.array(jacobian[:, list(free)])
         names = list(penalty.names)
-        start = np.zeros(len(free))
-        signals = signals or {}
-        if "sensor_gain" not in names:
-            return cls(
-                problem=problem,
-                penalty=penalty,
-                best=best,
-                free=free,
-                residual=residual,
-                jacobian=jacobian,
-                start=start,
-                signals=signals,
-                prompt=prompt,
-                filtered=filtered,
-            )
-        gain = names.index("sensor_gain")
-        reading = penalty.columns(best[penalty.coefficients :])[:, gain]
-        if penalty.residual == _core.Residual.sensor:
+        gain = names.index("sensor_gain") if "sensor_gain" in names else None
+        if gain is not None and penalty.residual == _core.Residual.sensor:
             residual, jacobian = residual * best[gain], jacobian * best[gain]
+        count = len(residual)
+        group = 1 if most is None else max(1, -(-count // most))
         fit = cls(
             problem=problem,
             penalty=penalty,
@@ -162,20 +179,25 @@ class Fitted:
             free=free,
             residual=residual,
             jacobian=jacobian,
-            start=start,
-            signals=signals,
+            start=np.zeros(len(free)),
+            group=group,
+            signals=signals or {},
             prompt=prompt,
             filtered=filtered,
         )
+        fit = replace(fit, residual=fit.summed(residual), jacobian=fit.summed(jacobian))
+        jacobian = fit.jacobian
+        if gain is None:
+            return fit
         if gain not in free or "load_friction" in names:
             return fit
-        place = free.index(gain)
+        place, reading = free.index(gain), fit.columns[:, gain]
         # With the noise in the reading, the least squares of the torque would blame the motion for it.
         jacobian[:, place] = -_explained(fit, reading)
-        start = fit.solve(jacobian, residual)
+        start = fit.solve(jacobian, fit.residual)
         actual = jacobian.copy()
         actual[:, place] = -reading
-        return replace(fit, residual=residual + actual @ start, start=start)
+        return replace(fit, residual=fit.residual + actual @ start, start=start)
 
     def _summed(self, number: int, values: Array) -> Array:
         weight = self.weights[number]
@@ -195,11 +217,11 @@ class Fitted:
         bounds = np.asarray(self.penalty.windows)
         parts = []
         for number, recording in enumerate(self.problem.recordings):
-            mine = slice(*np.searchsorted(self.run, (number, number + 1)))
+            mine = slice(*np.searchsorted(self._every_run, (number, number + 1)))
             each = steps(number, np.asarray(signal(number, recording), dtype=np.float64))
             total = np.concatenate([np.zeros((1, *each.shape[1:])), np.cumsum(each, axis=0)])
             parts.append(total[bounds[mine, 1]] - total[bounds[mine, 0]])
-        return np.concatenate(parts)
+        return self.summed(np.concatenate(parts))
 
 
 def _present(signal: Array | None) -> Array:

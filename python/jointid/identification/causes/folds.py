@@ -19,12 +19,16 @@ def summed(values: Array, run: NDArray[np.int64], factor: int) -> tuple[Array, N
     """Return sums over `factor` neighbouring windows of one recording, and their recordings."""
     if factor == 1:
         return values, run
-    starts = [0]
-    for number in np.unique(run):
-        low, high = np.searchsorted(run, (number, number + 1))
-        starts += list(range(low, high, factor))
-    first = np.unique(starts)
+    first = first_windows(run, factor)
     return np.add.reduceat(values, first, axis=0), run[first]
+
+
+def first_windows(run: NDArray[np.int64], factor: int) -> NDArray[np.int64]:
+    """Return the first of every `factor` neighbouring windows of one recording."""
+    if factor == 1:
+        return np.arange(len(run))
+    edges = np.searchsorted(run, [*np.unique(run), run[-1] + 1])
+    return np.concatenate([np.arange(low, high, factor) for low, high in itertools.pairwise(edges)])
 
 
 @dataclass(frozen=True, eq=False)

@@ -37,11 +37,15 @@ class Stretch:
         Degrees of freedom behind each variance.
     white : bool
         Whether nothing in the residuals contradicts their independence.
+    correlation : ndarray, shape (p, p), or None
+        Of the parameters, by segments; None where the classical ones hold. Where few segments determine a
+        parameter, the classical ones have as much weight as the freedom that it borrows.
     """
 
     ratio: Array
     freedom: Array
     white: bool
+    correlation: Array | None = None
 
 
 def stretch_of(jacobian: Array, residual: Array, whitening: Array, segments: Segments) -> Stretch:
@@ -88,8 +92,27 @@ def stretch_of(jacobian: Array, residual: Array, whitening: Array, segments: Seg
     borrowed = np.maximum(_FEWEST - own, 0.0)
     together = own + borrowed
     return Stretch(
-        ratio=(own * ratio + borrowed * pooled) / together, freedom=together, white=False
+        ratio=(own * ratio + borrowed * pooled) / together,
+        freedom=together,
+        white=False,
+        correlation=_correlation(
+            np.mean([each.covariance for each in clusterings], axis=0),
+            np.einsum("rp,rq->pq", whitening, whitening),
+            float((own / together).min()),
+        ),
     )
+
+
+def _correlation(clustered: Array, classical: Array, weight: float) -> Array:
+    """Mean of two matrices of correlations; with one weight for all pairs it is one, too."""
+    both = []
+    for matrix in (clustered, classical):
+        size = np.sqrt(np.diag(matrix))
+        size = np.where(size > 0.0, size, 1.0)
+        both.append(matrix / np.outer(size, size))
+    found = weight * both[0] + (1.0 - weight) * both[1]
+    np.fill_diagonal(found, 1.0)
+    return np.asarray(found)
 
 
 def _contradicted(residual: Array, pooled: float, freedom: float) -> bool:
@@ -108,6 +131,7 @@ class _Clustered:
     """The sandwich of one clustering, and the freedom behind it."""
 
     scores: Array
+    covariance: Array
     variance: Array
     freedom: Array
     size: float
@@ -130,6 +154,7 @@ def _clustered(jacobian: Array, residual: Array, whitening: Array, cuts: Cuts) -
     pooled = float(np.einsum("srq,sqr->", shares, shares))
     return _Clustered(
         scores=corrected,
+        covariance=np.einsum("sp,sq->pq", effects, effects),
         variance=np.einsum("sp,sp->p", effects, effects),
         freedom=1.0 / np.where(even > 0.0, even, 1.0),
         size=float(np.einsum("sr,sr->", corrected, corrected)),

@@ -94,7 +94,7 @@ def parameter_covariance(
     Notes
     -----
     The residuals of an imperfect model drift slowly, and the classical variance is too small then:
-    `clustered` says by how much. The classical correlations stay. Directions that the data do not determine
+    `clustered` says by how much, and how parameters go together. Directions that the data do not determine
     get an infinite variance.
     """
     rows, count = jacobian.shape
@@ -125,6 +125,9 @@ def parameter_covariance(
     )
     stretch = np.sqrt(found.ratio)
     matrix = classical * np.outer(stretch, stretch) / np.outer(scale, scale)
+    if found.correlation is not None:
+        stderr = np.sqrt(np.diag(matrix))
+        matrix = found.correlation * np.outer(stderr, stderr)
     unknown = (norms == 0.0) | (np.abs(directions[~known]).max(axis=0, initial=0.0) > 1e-3)
     if rows <= count:  # no degree of freedom is left to estimate the noise
         unknown[:] = True

@@ -8,6 +8,7 @@ that repeats the noise before the reading does proves that the recorded reading 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +28,26 @@ _BLOCKS = 60  # of the recording, whose spread gives the standard errors
 _ANSWER = 0.1  # samples: how far the joint's own answer to the noise moves the delay
 
 
-def delay_in_command(pieces: Sequence[Piece]) -> Shift | None:
+@dataclass(frozen=True, kw_only=True)
+class Repeated:
+    """Noise of the reading that the torque repeats.
+
+    Attributes
+    ----------
+    shift : Shift
+    share : float
+        Correlation of both noises.
+    reading_size, torque_size : float
+        Of the third differences of both, clipped.
+    """
+
+    shift: Shift
+    share: float
+    reading_size: float
+    torque_size: float
+
+
+def delay_in_command(pieces: Sequence[Piece]) -> Repeated | None:
     """Return the reading's delay against the torque; None where the torque does not repeat the reading's noise.
 
     Parameters
@@ -62,12 +82,18 @@ def delay_in_command(pieces: Sequence[Piece]) -> Shift | None:
     error = float(np.hypot(np.sqrt(slope @ spread @ slope), _ANSWER))
     period = pieces[0].stretch.period
     value, stderr = (found + part) * period, error * period
-    return Shift(
+    shift = Shift(
         value=value,
         stderr=stderr,
         conservative=(value, stderr),
         friction=(value, stderr),
         unexplained=0.0,
+    )
+    return Repeated(
+        shift=shift,
+        share=total,
+        reading_size=float(np.mean([_size(p.sensor) for p in pieces if p.sensor is not None])),
+        torque_size=float(np.mean([_size(p.torque) for p in pieces])),
     )
 
 
@@ -88,9 +114,12 @@ def _products(piece: Piece) -> Array:
     return np.asarray(np.column_stack(means) / length)
 
 
+def _size(signal: Array) -> float:
+    return 1.4826 * float(np.median(np.abs(np.diff(signal, 3)[::2])))
+
+
 def _differences(signal: Array) -> Array:
-    change = np.diff(signal, 3)
-    size = 1.4826 * float(np.median(np.abs(change[::2])))
+    change, size = np.diff(signal, 3), _size(signal)
     return np.clip(change / max(size, 1e-300), -_CLIPPED, _CLIPPED) if size > 0.0 else 0.0 * change
 
 

@@ -11,22 +11,27 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from jointid.estimate.delays import Delay
-from jointid.identification.refinements.balance_columns import conservative, friction, stacked
+from jointid.identification.refinements.balance_columns import stacked
 from jointid.identification.refinements.balance_misfit import fits_better
+from jointid.identification.refinements.balances import Motion, margin, reach
 from jointid.identification.refinements.command_noise import delay_in_command
+from jointid.identification.refinements.sample_fit import delay_by_samples
 from jointid.identification.refinements.shift_fit import Balance, Shift, fit_shift
 from jointid.identification.refinements.smooth_windows import SmoothWindows, half_length
 from jointid.identification.refinements.stretches import Piece, few_of, pieces_of
 from jointid.problem.problem import Problem
 from jointid.recording.shifting import shifted
 
-_REACH = 0.006  # [s] of the search for the least misfit; at slow rates three samples
 _SMALL = 3e-4  # [s]; a shorter delay of torque or sensor is left alone
 _SURE = 5.0  # standard errors
 _SURE_OF_VELOCITY = 8.0  # standard errors; no friction stands between velocity and position
 _VELOCITY = 0.35  # sample periods; a backward difference has 0.5
 _LEAST_IN_COMMAND = 0.3  # sample periods
+_BEYOND_ANSWER = 3.0  # times the joint's answer to noise of the torque
+_WITHIN_SAMPLE = 0.06  # sample periods: friction and torque jump between samples
 _SUSPECT = 0.6  # of what would be long enough: look closer
 _CLEARLY = 4.0  # standard errors: a first look at parts of the motion is enough
 _ALIKE, _BARELY_ALIKE = 0.5, 0.7  # of the delay: how far estimates of it may be apart
@@ -34,7 +39,6 @@ _MOST_LEFT = 0.5  # of a signal's variance unexplained: other torques act
 _MOST_LEFT_OF_VELOCITY = 0.05
 # The fall of the sum of squares that makes a shift worth it: noise of a reading leaves little to fall.
 _LEAST_GAIN = {"velocity": 0.01, "sensor": 0.0, "torque": 0.02}
-_CLEAR = 3  # samples from a reversal, beside half a window
 
 
 def refined_delays(
@@ -58,9 +62,9 @@ def refined_delays(
     mended = (
         problem  # also without what the call leaves: the next signal is held against true motion
     )
-    pieces = pieces_of(mended)
+    motion = Motion(pieces=pieces_of(mended))
     for signal in ("velocity", "sensor", "torque"):
-        measured = _measured(signal, pieces)
+        measured = _measured(signal, motion)
         if measured is None:
             continue
         left, certain = measured
@@ -74,7 +78,7 @@ def refined_delays(
             wrong = signal == "torque" and left.value < -problem.recordings[0].sample_period
             # A torque does not come before its motion: then the position is late, as a coarse one is.
             if fits and not (choose and wrong):
-                mended, pieces = without, pieces_of(without)
+                mended, motion = without, Motion(pieces=pieces_of(without))
                 if choose:
                     shift[signal] = taken = left.value
         found[signal] = Delay(
@@ -94,12 +98,21 @@ def _shifted(problem: Problem, shift: Mapping[str, float]) -> Problem:
     return replace(problem, recordings=tuple(shifted(run, shift) for run in problem.recordings))
 
 
-def _measured(signal: str, pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
+def _measured(signal: str, motion: Motion) -> tuple[Shift, bool] | None:
     """A signal's delay and whether it is certain; parts of the motion show that the velocity has none."""
+    if not motion.pieces:
+        return None
     if signal == "sensor":
-        return _sensor(pieces)
+        return _sensor(motion)
     if signal == "torque":
-        return _torque(pieces)
+        measured = _torque(motion)
+        if measured is None:
+            return None
+        error = float(
+            np.hypot(measured[0].stderr, _WITHIN_SAMPLE * motion.pieces[0].stretch.period)
+        )
+        return replace(measured[0], stderr=error), measured[1]
+    pieces = motion.pieces
     few = few_of(pieces)
     first = _velocity(few, glance=True) if few else None
     return _velocity(pieces) if first is None or first[1] else first
@@ -117,7 +130,7 @@ def _velocity(pieces: Sequence[Piece], glance: bool = False) -> tuple[Shift, boo
                 stretch=piece.stretch,
                 half=half,
                 stride=half,
-                margin=_margin(piece),
+                margin=margin(piece),
                 usable_only=False,
             )
         )
@@ -140,48 +153,29 @@ def _velocity(pieces: Sequence[Piece], glance: bool = False) -> tuple[Shift, boo
     return found, long
 
 
-def _sensor(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
-    pieces = [piece for piece in pieces if piece.sensor is not None]
+def _sensor(motion: Motion) -> tuple[Shift, bool] | None:
+    pieces = [piece for piece in motion.pieces if piece.sensor is not None]
     if not pieces:
         return None
-
-    def balance(factor: int, varying: bool = False) -> Balance:
-        windows = []
-        for piece in pieces:
-            half = factor * piece.half
-            windows.append(
-                SmoothWindows(
-                    stretch=piece.stretch,
-                    half=half,
-                    stride=half,
-                    margin=_margin(piece),
-                    clear=half + _CLEAR,
-                    usable_only=False,
-                )
-            )
-        # Of a control cycle: the reading is taken before the new command acts, so it shows the
-        # acceleration of the interval before its sample.
-        columns = stacked(
-            [
-                conservative(each, piece.circle, delayed=piece.held, varying=varying)
-                for each, piece in zip(windows, pieces, strict=True)
-            ]
-        )
-        return Balance(
-            windows=windows,
-            signals=[piece.sensor for piece in pieces if piece.sensor is not None],
-            columns=columns,
-            conservative=columns.shape[1],
-            held=False,
-        )
-
+    if len(pieces) < len(motion.pieces):
+        motion = Motion(pieces=pieces)
     period = pieces[0].stretch.period
-    found = _searched(balance(1), period, _SMALL)
+    found = _searched(motion.reading(), period, _SMALL)
     if found is None or abs(found.value) + 2.0 * found.stderr > _SMALL:
         told = delay_in_command(pieces)
-        late = told is not None and told.value > max(_SMALL, _LEAST_IN_COMMAND * period)
-        if told is not None and late and (found is None or found.agrees(told, _ALIKE)):
-            return told, True
+        late = told is not None and told.shift.value > max(_SMALL, _LEAST_IN_COMMAND * period)
+        if told is not None and late and (found is None or found.agrees(told.shift, _ALIKE)):
+            # Noise of the torque that the joint answers comes before the reading, too.
+            answer = motion.answer() * told.torque_size / told.reading_size
+            if told.share > _BEYOND_ANSWER * abs(answer):
+                return told.shift, True
+            told = None
+        possible = found is not None and found.value + found.stderr > _SMALL
+        if told is None and found is not None and possible and found.unexplained <= _MOST_LEFT:
+            by_samples = delay_by_samples(pieces, found, reach(period), motion.inertia)
+            if by_samples is not None:
+                # Jumps are those of the acceleration alone: neither a varying inertia nor slow motion has them.
+                return by_samples, _is_long(by_samples, _SMALL)
     if found is None or found.unexplained > _MOST_LEFT:
         return None
     # An early reading is one that is not of a control cycle, up to half a sample.
@@ -190,58 +184,28 @@ def _sensor(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
         return found, False
     # A link whose inertia varies with the pose may look like a late reading.
     for factor, varying in ((3, False), (1, True)):
-        other = _searched(balance(factor, varying), period, 0.0)
+        other = _searched(motion.reading(factor, varying=varying), period, 0.0)
         if other is None or not found.agrees(other, _ALIKE) or abs(other.value) < least:
             return found, False
     return found, True
 
 
-def _torque(pieces: Sequence[Piece]) -> tuple[Shift, bool] | None:
+def _torque(motion: Motion) -> tuple[Shift, bool] | None:
     """The torque's delay, and whether it is certain.
 
     Certain is what conservative torque and friction ask for alike, with and without an inertia that
     varies, and with and without the reversals: pre-sliding fakes a delay at the reversals only, a varying
     inertia away from them.
     """
-
-    def windows(clear: bool) -> list[SmoothWindows]:
-        result = []
-        for piece in pieces:
-            half, margin = piece.half, _margin(piece)
-            result.append(
-                SmoothWindows(
-                    stretch=piece.stretch,
-                    half=half,
-                    stride=half,
-                    margin=margin,
-                    clear=half + margin if clear else 0,
-                )
-            )
-        return result
-
-    def balance(clear: bool = False, varying: bool = False) -> Balance:
-        each = list(zip(windows(clear), pieces, strict=True))
-        first = [conservative(w, piece.circle, varying=varying) for w, piece in each]
-        rest = [friction(w, piece.circle) for w, piece in each]
-        return Balance(
-            windows=[w for w, _ in each],
-            signals=[piece.torque for piece in pieces],
-            columns=stacked([[*a, *b] for a, b in zip(first, rest, strict=True)]),
-            conservative=len(first[0]),
-            held=pieces[0].held,
-        )
-
-    if not pieces:
-        return None
-    period = pieces[0].stretch.period
-    found = _searched(balance(), period, _SMALL)
+    period = motion.pieces[0].stretch.period
+    found = _searched(motion.torque, period, _SMALL)
     if found is None or found.unexplained > _MOST_LEFT:
         return None
     if not _is_long(found, _SMALL) or not found.is_of_all(_BARELY_ALIKE):
         return found, False
     others: tuple[tuple[Callable[[], Balance], float], ...] = (
-        (lambda: balance(varying=True), _ALIKE),
-        (lambda: balance(clear=True), _ALIKE),
+        (lambda: motion.torque_otherwise(varying=True), _ALIKE),
+        (lambda: motion.torque_otherwise(clear=True), _ALIKE),
     )
     for other, share in others:
         compared = _searched(other(), period, 0.0)
@@ -256,7 +220,7 @@ def _searched(balance: Balance, period: float, least: float) -> Shift | None:
         found = fit_shift(balance, least=_SUSPECT * least)
         if found is not None and abs(found.value) < max(_SUSPECT * least, 2.0 * found.stderr):
             return found
-    return fit_shift(balance, reach=max(_REACH, 3.0 * period))
+    return fit_shift(balance, reach=reach(period))
 
 
 def _is_clearly_none(found: Shift, least: float) -> bool:
@@ -268,8 +232,3 @@ def _is_clearly_none(found: Shift, least: float) -> bool:
 
 def _is_long(found: Shift, least: float) -> bool:
     return abs(found.value) > max(least, _SURE * found.stderr)
-
-
-def _margin(piece: Piece) -> int:
-    period = piece.stretch.period
-    return int(2.0 * max(_REACH, 3.0 * period) / period) + 2

@@ -218,6 +218,11 @@ def fit_shift(
     )
 
 
+def coefficients(balance: Balance) -> Array:
+    """Least squares of the signal, not shifted, on the columns."""
+    return _Projection(balance.columns, None).coefficients(_Shifted(balance)(0.0))
+
+
 def _least_misfit(
     balance: Balance, shifted: _Shifted, projection: _Projection, reach: float
 ) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from jointid.estimate.causes import MEANINGS, Cause
 from jointid.estimate.findings import Finding, Measured
@@ -28,32 +28,35 @@ _REMEDIES = {
     "offset": "let the joint have a torque_offset",
 }
 
+_NOTED = (
+    0.3  # share of the misfit that a harmless cause explains; of less `estimate.causes()` speaks
+)
+
 TYPES = {
     name: FindingType(
         code=name,
         meaning=f"{MEANINGS[name]}: it explains what is left of the torque in stretches of time that it was not fitted "
-        "to, and it moves a parameter",
+        "to, and it moves a parameter by more than 5 % or two errors (info where it does not)",
         advice=remedy,
         picture="windows",
     )
     for name, remedy in _REMEDIES.items()
-} | {"ripple": RIPPLE}
+} | {"ripple": RIPPLE, "wrong_scale": WRONG_SCALE}
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
     if evidence.causes is None:
         return
-    # Their own checks say more.
-    causes = [
-        each
-        for each in evidence.causes.found
-        if each.name != WRONG_SCALE.code and not _is_known_delay(each, evidence)
-    ]
+    # Its own check says more.
+    causes = [each for each in evidence.causes.found if not _is_known_delay(each, evidence)]
     uncertain = wide(evidence)
     for number, cause in enumerate(causes):
         # The misfit makes values uncertain beside those that a shift of first order shows.
         names = (*cause.relative, *(uncertain if number == 0 else ()))
         yield _finding(cause, with_partners(evidence, names))
+    for cause in evidence.causes.harmless:
+        if cause.share > _NOTED and not _is_known_delay(cause, evidence):
+            yield _note(cause)
 
 
 def _is_known_delay(cause: Cause, evidence: Evidence) -> bool:
@@ -62,14 +65,28 @@ def _is_known_delay(cause: Cause, evidence: Evidence) -> bool:
 
 
 def _finding(cause: Cause, concerned: tuple[str, ...]) -> Finding:
-    measured = {"share": Measured(cause.share), "windows": Measured(cause.scale, "s")}
-    measured |= cause.numbers
-    measured |= {f"{name}.shift": Measured(share) for name, share in cause.relative.items()}
+    measured = _measured(cause, cause.relative)
     beside = [name for name in concerned if name not in cause.relative]
     text = f"{cause}; it also makes {listed(beside)} uncertain" if beside else str(cause)
     return TYPES[cause.name].finding(
-        text, *cause.advice, evidence=measured, parameters=tuple(concerned)
+        text, *cause.advice, evidence=measured, parameters=tuple(concerned), severity="warning"
     )
+
+
+def _note(cause: Cause) -> Finding:
+    """Of a cause that is there and does no harm."""
+    return TYPES[cause.name].finding(
+        str(cause),
+        evidence=_measured(cause, cause.shares),
+        parameters=tuple(cause.relative),
+        severity="info",
+    )
+
+
+def _measured(cause: Cause, shifts: Mapping[str, float]) -> dict[str, Measured]:
+    measured = {"share": Measured(cause.share), "windows": Measured(cause.scale, "s")}
+    measured |= cause.numbers
+    return measured | {f"{name}.shift": Measured(share) for name, share in shifts.items()}
 
 
 CHECK = Check(_find, tuple(TYPES[name] for name in _REMEDIES))

@@ -6,22 +6,26 @@ from collections.abc import Iterator
 
 from jointid.base.advice import Action
 from jointid.estimate.delays import Delay
-from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.findings import Finding, Measured, Severity
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 
 SIGNAL_LAG = FindingType(
     code="signal_lag",
     meaning="torque, sensor or velocity is late against the position, as a filter, a slow bus or a backward "
-    "difference makes it, or early against a late position, and was not shifted, or by another delay",
+    "difference makes it, or early against a late position, and was not shifted, or by another delay "
+    "(info where that moves no parameter by more than 5 % or two errors)",
     advice="shift the signal by the delay that is stated, or remove its cause",
 )
 DELAY_REMOVED = FindingType(
     code="delay_removed",
     severity="info",
-    meaning="torque, sensor or velocity was late against the position, and was shifted before the identification",
+    meaning="torque, sensor or velocity was late against the position, and was shifted before the identification; "
+    "its parameters are those that this moved by more than 5 % or two errors",
     advice="nothing; to keep the signal as it is, shift it by 0",
 )
+_NORMAL = 1.96  # standard errors of a 95 % interval
+_SHARP = 3e-4  # [s]
 _NONE = 3.0  # standard errors, below which there is no delay to shift by
 _HALF = 0.2  # of a sample period: so near to half a period early, a torque is one that is held
 
@@ -31,43 +35,69 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     left = [delay for delay in certain if delay.left]
     removed = [delay for delay in certain if not delay.left]
     for delay in left:
-        if not delay.fits:
-            # A delay of one signal alone would make the balance worse: others are as late.
-            yield SIGNAL_LAG.finding(
-                f"{_described(delay, evidence)}, but the torque balance does not fit better without it: other "
-                "signals may be as late, or filtered alike",
-                Action(
-                    "inspect", text="the filters and the clocks of position, velocity and torque"
-                ),
-                evidence=_measured(delay, evidence),
-                parameters=_concerned(delay, evidence),
-            )
-            continue
-        if delay.signal == "torque" and delay.value < -_period(evidence) and not delay.applied:
-            yield SIGNAL_LAG.finding(
-                f"{_described(delay, evidence)}: the position is late, or coarse, or the torque early",
-                Action("inspect", text="the position's filter and resolution, and both clocks"),
-                evidence=_measured(delay, evidence),
-                parameters=_concerned(delay, evidence),
-            )
-            continue
-        whole = {each.signal: each.applied for each in evidence.delays.values() if each.applied}
-        whole[delay.signal] = round(delay.value, 7)
-        if abs(delay.value) < _NONE * delay.stderr:
-            del whole[delay.signal]
-        yield SIGNAL_LAG.finding(
-            f"{_described(delay, evidence)}, which biases the values",
-            Action("call", {"shift": whole}),
-            evidence=_measured(delay, evidence),
-            parameters=_concerned(delay, evidence),
-        )
+        yield from _left(delay, evidence)
     for delay in removed:
-        yield DELAY_REMOVED.finding(
-            f"{_described(delay, evidence)}; it was shifted before the identification",
-            *_instead(delay, evidence),
-            evidence=_measured(delay, evidence),
-            parameters=_concerned(delay, evidence),
+        yield from _removed(delay, evidence)
+
+
+def _left(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
+    """What was not taken away, and why; a note where it does no harm."""
+    described, measured = _described(delay, evidence), _measured(delay, evidence)
+    concerned = _concerned(delay, evidence)
+    cause = evidence.cause_of("delay", delay.signal, 0.0, delay.left)
+    harmless = cause is not None and not cause.harmful
+    severity: Severity | None = "info" if harmless else None
+    if cause is not None:
+        measured |= {f"{name}.shift": Measured(share) for name, share in cause.shares.items()}
+    if not delay.fits:
+        # A delay of one signal alone would make the balance worse: others are as late.
+        yield SIGNAL_LAG.finding(
+            f"{described}, but the torque balance does not fit better without it: other "
+            "signals may be as late, or filtered alike",
+            Action("inspect", text="the filters and the clocks of position, velocity and torque"),
+            evidence=measured,
+            parameters=concerned,
+            severity=severity,
         )
+        return
+    if delay.signal == "torque" and delay.value < -_period(evidence) and not delay.applied:
+        yield SIGNAL_LAG.finding(
+            f"{described}: the position is late or coarse, the torque early, or the gear gives way",
+            Action(
+                "inspect",
+                text="the position's filter and resolution, both clocks, and the gear's play",
+            ),
+            evidence=measured,
+            parameters=concerned,
+            severity=severity,
+        )
+        return
+    whole = {each.signal: each.applied for each in evidence.delays.values() if each.applied}
+    whole[delay.signal] = round(delay.value, 7)
+    if abs(delay.value) < _NONE * delay.stderr:
+        del whole[delay.signal]
+    does = cause.harmless if harmless and cause is not None else "biases the values"
+    yield SIGNAL_LAG.finding(
+        f"{described}, which {does}",
+        Action("call", {"shift": whole}),
+        evidence=measured,
+        parameters=concerned,
+        severity=severity,
+    )
+
+
+def _removed(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
+    """What was taken away, and what it would have done."""
+    cause = evidence.cause_of("delay", delay.signal, 0.0, delay.applied)
+    text = f"{_described(delay, evidence)}; it was shifted before the identification"
+    measured, concerned = _measured(delay, evidence), _concerned(delay, evidence)
+    if cause is not None:
+        text += f", which {cause.did}"
+        measured |= {f"{name}.shift": Measured(share) for name, share in cause.shares.items()}
+        concerned = tuple(cause.relative) if cause.harmful else ()
+    yield DELAY_REMOVED.finding(
+        text, *_instead(delay, evidence), evidence=measured, parameters=concerned
+    )
 
 
 def _described(delay: Delay, evidence: Evidence) -> str:
@@ -78,8 +108,17 @@ def _described(delay: Delay, evidence: Evidence) -> str:
     after = f" after the stated shift by {1e3 * delay.applied:.3g} ms" if shifted else ""
     return (
         f"the {delay.signal} is {side} by {1e3 * abs(size):.3g} ± {1e3 * delay.stderr:.2g} ms "
-        f"({periods:.1f} sample periods) against the position{after}"
+        f"({periods:.1f} sample periods{_interval(delay)}) against the position{after}"
     )
+
+
+def _interval(delay: Delay) -> str:
+    """Where the number is not sharp, what it may be."""
+    reach = _NORMAL * delay.stderr
+    if reach < _SHARP:
+        return ""
+    size = abs(_size(delay))
+    return f"; with 95 % between {1e3 * (size - reach):.2f} and {1e3 * (size + reach):.2f} ms"
 
 
 def _size(delay: Delay) -> float:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.estimate.causes import Causes
+from jointid.estimate.causes import Cause, Causes
 from jointid.estimate.delays import Delay
 from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
@@ -49,6 +49,10 @@ class Regressor:
         return float(np.linalg.norm(self.triangle.matrix[:, -1]))
 
 
+def _no_cause(*_: object) -> None:
+    return None
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Evidence:
     """Inputs shared by all warning checks: a fit, and what it was made from.
@@ -85,6 +89,9 @@ class Evidence:
         Whether the residuals are noise as far as enough windows can tell.
     causes : Causes or None
         Why the model does not fit; None where the residuals are noise.
+    cause_of : callable
+        Returns what a cause does to the values, from its name, which of its kind it is, the share of a misfit
+        that it explains, and its size where that is known.
     """
 
     problem: Problem
@@ -108,6 +115,7 @@ class Evidence:
     velocity_effect: VelocityEffect | None = None
     white: bool = False
     causes: Causes | None = None
+    cause_of: Callable[..., Cause | None] = _no_cause
 
     @property
     def recordings(self) -> tuple[Recording, ...]:

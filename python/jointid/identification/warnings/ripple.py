@@ -17,7 +17,8 @@ from jointid.identification.warnings.undetermined import wide, with_partners
 
 RIPPLE = FindingType(
     code="ripple",
-    meaning="the residual oscillates with a multiple of the motor's angle, which the finding names with the amplitude",
+    meaning="the residual oscillates with a multiple of the motor's angle, which the finding names with the amplitude "
+    "(info where that moves no parameter by more than 5 % or two errors)",
     advice="add ripple of that order to the model, e.g. `stribeck:ripple=2`",
     picture="windows",
 )
@@ -69,17 +70,25 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         return
     peak = _highest_peak(evidence, gear)
     if peak is not None:
+        cause = evidence.cause_of("ripple", f"{peak.multiple:g}", min(peak.share, 1.0))
+        harmful = cause is None or cause.harmful
+        moves = "biases gain and static friction" if cause is None else cause.harmless
+        if cause is not None and harmful:
+            moves = f"moves values (with it in the model, {cause.moves})"
+        measured = {
+            "multiple": Measured(peak.multiple),
+            "amplitude": Measured(peak.amplitude, "N·m"),
+            "share_of_variance": Measured(peak.share),
+        }
+        if cause is not None:
+            measured |= {f"{name}.shift": Measured(share) for name, share in cause.shares.items()}
         yield RIPPLE.finding(
             f"the residual oscillates with {peak.multiple:g} × motor angle: amplitude about {peak.amplitude:.2g} N·m, "
-            f"{percent(peak.share)} of the residual's variance, as the ripple of a strain-wave gear does; it biases "
-            "gain and static friction",
-            add_ripple(evidence, peak.multiple),
-            evidence={
-                "multiple": Measured(peak.multiple),
-                "amplitude": Measured(peak.amplitude, "N·m"),
-                "share_of_variance": Measured(peak.share),
-            },
-            parameters=_concerned(evidence),
+            f"{percent(peak.share)} of the residual's variance, as the ripple of a strain-wave gear does; it {moves}",
+            *((add_ripple(evidence, peak.multiple),) if harmful else ()),
+            evidence=measured,
+            parameters=_concerned(evidence) if harmful else (),
+            severity=None if harmful else "info",
         )
 
 

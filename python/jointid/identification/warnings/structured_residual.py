@@ -3,7 +3,9 @@
 from collections.abc import Iterator
 
 from jointid.base.advice import Action
+from jointid.estimate.causes import MEANINGS
 from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.undetermined import listed, wide, with_partners
@@ -25,7 +27,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         return
     correlation = evidence.residuals.autocorrelation
     uncertain = with_partners(evidence, wide(evidence)) if evidence.causes is not None else ()
-    if correlation <= _CORRELATED and not uncertain:
+    if not uncertain and (correlation <= _CORRELATED or harmless(evidence)):
         return
     makes = f"; uncertain: {listed(uncertain)}" if uncertain else ""
     # Where all intervals are narrow with what the misfit adds to them, it is worth knowing, no more.
@@ -40,21 +42,35 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
 
 
 def named(evidence: Evidence) -> bool:
-    """Whether a cause of the misfit is found."""
-    causes = evidence.causes.found if evidence.causes is not None else ()
-    return any(cause.name != "wrong_scale" for cause in causes)
+    """Whether a cause of the misfit is found that does harm."""
+    return evidence.causes is not None and bool(evidence.causes.found)
+
+
+def harmless(evidence: Evidence) -> bool:
+    """Whether a cause of the misfit is found that does none; a note has it."""
+    return evidence.causes is not None and bool(evidence.causes.harmless)
 
 
 def excluded(evidence: Evidence, what: str = "it") -> str:
-    """How much was looked for and not found, as a part of a sentence; `Causes.excluded` has the names."""
+    """A harmless cause, or how much was looked for and not found, as a part of a sentence.
+
+    `Causes.excluded` has the names.
+    """
+    if evidence.causes is not None and evidence.causes.harmless:
+        cause = evidence.causes.harmless[0]
+        return (
+            f"; {MEANINGS[cause.name]} explains {percent(cause.share)} of {what}, and is harmless"
+        )
     count = len(evidence.causes.excluded) if evidence.causes is not None else 0
     return f"; none of {count} known causes explains {what}" if count else ""
 
 
 def excluded_number(evidence: Evidence) -> dict[str, Measured]:
-    """How many causes were looked for and not found, as evidence."""
+    """The share of a harmless cause, or how many causes were looked for and not found, as evidence."""
     if evidence.causes is None:
         return {}
+    if evidence.causes.harmless:
+        return {"share": Measured(evidence.causes.harmless[0].share)}
     return {"causes_excluded": Measured(float(len(evidence.causes.excluded)))}
 
 

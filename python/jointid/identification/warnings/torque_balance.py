@@ -17,7 +17,8 @@ from jointid.identification.warnings.velocity import REVERSED_SIGN
 WRONG_SCALE = FindingType(
     code="wrong_scale",
     severity="blocking",
-    meaning="the recording by itself contradicts the known inertia by more than 5 %",
+    meaning="the recording by itself contradicts the known inertia by more than 5 % (a "
+    "warning from 1 % where that explains the misfit)",
     advice="correct gear ratio, torque constant, unit of the torque or inertia; let the inertia vary only if that is "
     "the wrong one",
 )

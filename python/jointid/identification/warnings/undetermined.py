@@ -85,12 +85,14 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
 def _reasons(evidence: Evidence) -> tuple[dict[str, list[_Reason]], dict[str, Lack]]:
     """Why parameters are not well determined, of those for which the recording lacks something, and what it lacks."""
     excitation = Excitation(evidence)
-    told = {name for each in evidence.undivided for name in each.change}  # by a finding of its own
+    elsewhere = {
+        name for each in evidence.undivided for name in each.change
+    }  # by a finding of its own
     reasons: dict[str, list[_Reason]] = {}
     lacks: dict[str, Lack] = {}
     for p in evidence.parameters.values():
         found = _why_undetermined(p, evidence)
-        if not found or p.name in told:
+        if not found or p.name in elsewhere:
             continue
         lack = _lack(p, evidence, excitation)
         if lack is None:

@@ -1,0 +1,124 @@
+"""The balances that a torque and a sensor's reading are held against, window by window."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.identification.refinements.balance_columns import conservative, friction, stacked
+from jointid.identification.refinements.shift_fit import Balance, coefficients
+from jointid.identification.refinements.smooth_windows import SmoothWindows
+from jointid.identification.refinements.stretches import Piece
+
+Array = NDArray[np.float64]
+
+REACH = 0.006  # [s] of the search for the least misfit; at slow rates three samples
+_CLEAR = 3  # samples from a reversal, beside half a window
+
+
+def reach(period: float) -> float:
+    """The longest delay that is looked for [s]."""
+    return max(REACH, 3.0 * period)
+
+
+def margin(piece: Piece) -> int:
+    """Samples that its signals may be shifted by."""
+    period = piece.stretch.period
+    return int(2.0 * reach(period) / period) + 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motion:
+    """Pieces of the recordings, and what their signals are sums of.
+
+    Attributes
+    ----------
+    pieces : sequence of Piece
+    """
+
+    pieces: Sequence[Piece]
+
+    @functools.cached_property
+    def torque(self) -> Balance:
+        """The torque by inertia, gravity and friction."""
+        return self.torque_otherwise()
+
+    @functools.cached_property
+    def inertia(self) -> float:
+        """Of drive and link, as the torque says."""
+        return float(coefficients(self.torque)[0])
+
+    def torque_otherwise(self, *, clear: bool = False, varying: bool = False) -> Balance:
+        """The torque's balance without the reversals, or with an inertia that varies with the angle.
+
+        Parameters
+        ----------
+        clear, varying : bool
+            Default False.
+        """
+        windows, columns, count = [], [], 0
+        for piece in self.pieces:
+            half, spare = piece.half, margin(piece)
+            each = SmoothWindows(
+                stretch=piece.stretch,
+                half=half,
+                stride=half,
+                margin=spare,
+                clear=half + spare if clear else 0,
+            )
+            first = conservative(each, piece.circle, varying=varying)
+            windows.append(each)
+            columns.append([*first, *friction(each, piece.circle)])
+            count = len(first)
+        return Balance(
+            windows=windows,
+            signals=[piece.torque for piece in self.pieces],
+            columns=stacked(columns),
+            conservative=count,
+            held=self.pieces[0].held,
+        )
+
+    def reading(self, factor: int = 1, *, varying: bool = False) -> Balance:
+        """The sensor's reading by the link's inertia, gravity and a constant.
+
+        Parameters
+        ----------
+        factor : int
+            Of the windows' length. Default 1.
+        varying : bool
+            Whether the inertia may vary with the angle. Default False.
+        """
+        windows, columns = [], []
+        for piece in self.pieces:
+            half = factor * piece.half
+            each = SmoothWindows(
+                stretch=piece.stretch,
+                half=half,
+                stride=half,
+                margin=margin(piece),
+                clear=half + _CLEAR,
+                usable_only=False,
+            )
+            first = conservative(each, piece.circle, varying=varying)
+            if piece.held and self.inertia > 0.0:
+                # Of a control cycle: the reading is taken before the new command acts. Where the torque jumps, the
+                # acceleration is then that of the interval before the sample.
+                jump = np.diff(piece.torque, prepend=piece.torque[:1])
+                first[0] = first[0] - 0.5 / self.inertia * each.mean(jump)
+            windows.append(each)
+            columns.append(first)
+        return Balance(
+            windows=windows,
+            signals=[piece.sensor for piece in self.pieces if piece.sensor is not None],
+            columns=stacked(columns),
+            conservative=1,  # apart: a held torque's acceleration, and gravity
+            held=False,
+        )
+
+    def answer(self) -> float:
+        """What the reading changes by where the torque changes by 1: the link's share of the inertia."""
+        return float(coefficients(self.reading())[0]) / self.inertia if self.inertia else 0.0

@@ -1,0 +1,103 @@
+"""A sensor's delay where no controller feeds the reading back: the jumps of the motion tell it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from plants import Bench, Law, Log, Plant, simulate, sines
+
+import jointid as jid
+
+NOISE = 0.2
+RUNS = 4
+
+
+def recordings(**fields: Any) -> list[jid.Recording]:
+    """Friction that is compensated at the reference velocity: the torque jumps at its reversals."""
+    amplitude, rate = np.array([[0.6, 0.3, 0.1]] * RUNS), np.array([[1.3, 2.9, 5.1]] * RUNS)
+    phase = np.random.default_rng(8).uniform(0.0, 6.28, (RUNS, 3))
+    bench = Bench(
+        motion=sines(amplitude, rate, phase),
+        plant=Plant(link_inertia=0.4, **fields.pop("plant", {})),
+        law=Law(stiffness=60.0, on_reference=fields.pop("on_reference", 1.0)),
+        log=Log(**{"sensor_noise": NOISE} | fields),
+    )
+    return simulate(Bench.stack([bench]), duration=12.0, seed=21)
+
+
+def with_sensor(recording: jid.Recording, sensor: np.ndarray) -> jid.Recording:
+    signals = {name: getattr(recording, name) for name in recording.signals} | {"sensor": sensor}
+    return jid.Recording(**signals, torque_hold="zoh", truth=recording.truth)
+
+
+def interpolated(recording: jid.Recording, delay: float) -> jid.Recording:
+    time = recording.time
+    assert recording.sensor is not None
+    return with_sensor(recording, np.interp(time - delay, time, recording.sensor))
+
+
+def delay_of(recording: jid.Recording) -> Any:
+    joint = jid.thesis_joint()
+    return jid.identify(recording, joint, search="separable").delays["sensor"]
+
+
+@pytest.fixture(scope="module")
+def plain() -> list[jid.Recording]:
+    return recordings()
+
+
+@pytest.mark.parametrize("delay", [1.5e-3, 2.45e-3])
+def test_jumps_tell_the_delay_to_a_part_of_a_sample(
+    plain: list[jid.Recording], delay: float
+) -> None:
+    for run in plain:
+        found = delay_of(interpolated(run, delay))
+        assert found.certain
+        assert found.value == pytest.approx(delay, abs=1.5e-4)
+        assert found.stderr < 9e-5
+
+
+def test_without_a_delay_none_is_found(plain: list[jid.Recording]) -> None:
+    assert not any(delay_of(run).certain for run in plain)
+
+
+def test_a_reading_of_an_instant_may_be_later_than_its_jumps_say() -> None:
+    """A held torque's jump shows at a whole sample, whatever part of a sample the reading is late by."""
+    delay, gravity = 1.7e-3, 3.0 * 9.817 * 0.25 / 2.4
+    for run in recordings(sensor_delay=1e-3):
+        assert run.sensor is not None
+        earlier, at_jumps = (np.interp(run.time - d, run.time, run.position) for d in (delay, 1e-3))
+        found = delay_of(
+            with_sensor(run, run.sensor + gravity * (np.sin(earlier) - np.sin(at_jumps)))
+        )
+        assert abs(found.value - delay) < 2.5 * found.stderr
+        assert found.stderr > 1e-4
+
+
+def test_a_delay_that_is_not_sharp_is_stated_as_an_interval() -> None:
+    """A late reading with more noise, of which the jumps say little."""
+    run = recordings(sensor_noise=1.0, sensor_delay=4e-3)[0]
+    estimate = jid.identify(run, jid.thesis_joint(), search="separable")
+    delay = estimate.delays["sensor"]
+    assert 1.96 * delay.stderr > 3e-4
+    (found,) = (each for each in estimate.findings if each.code == "delay_removed")
+    low, high = (1e3 * (delay.value + side * 1.96 * delay.stderr) for side in (-1.0, 1.0))
+    assert f"with 95 % between {low:.2f} and {high:.2f} ms" in found.cause
+
+
+def test_an_elastic_gear_is_no_delay() -> None:
+    """It answers a jump late and in swings, which a pure delay does not."""
+    stiffness = 0.4 * (2.0 * np.pi * 50.0) ** 2
+    for run in recordings(
+        plant={"gear_stiffness": stiffness, "gear_damping": 0.02 * stiffness**0.5}
+    ):
+        found = delay_of(run)
+        assert not found.certain
+
+
+def test_noise_that_the_joint_answers_is_no_feedback() -> None:
+    """Noise of the velocity is in the torque, and a sample later in the reading."""
+    for run in recordings(velocity_noise=0.02, on_reference=0.0):
+        assert not delay_of(run).certain
