@@ -187,7 +187,7 @@ class Steps:
         try:
             found = find_breakaway(axis, direction, cap, self._options, self._deviation)
         except RefusedBenchError as refusal:
-            self._say(f"{side} torque: {refusal.reason}")
+            self._say(f"{side} torque: ended by {refusal.reason}")
             raise
         torques = list(self.found.get("breakaway", (None, None)))
         torques[direction < 0.0] = found.torque
