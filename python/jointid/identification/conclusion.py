@@ -93,7 +93,9 @@ def infer(
         free_jacobian, residual, centre, threads=threads, segments=segments
     )
     spread = with_undivided(spread, kept, free, names, groups)
-    parts = systematic_errors(problem, penalty, best, kept, free_jacobian, columns, shifts)
+    instant = refinements.sensor_instant
+    unknown = 1.0 if instant is None else instant.unknown
+    parts = systematic_errors(problem, penalty, best, kept, free_jacobian, columns, shifts, unknown)
     lags = {each.signal: _unknown(each) for each in refinements.delays.values()}
     if any(lags.values()):
         parts["lag"] = np.zeros(len(best))

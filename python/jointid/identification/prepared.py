@@ -27,6 +27,10 @@ from jointid.identification.refinements.refinements import (
     without_creep,
     without_delays,
 )
+from jointid.identification.refinements.sensor_instant import (
+    SensorInstant,
+    without_early_reading,
+)
 from jointid.identification.refinements.slow_motion import checked_speed
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Outcome
@@ -140,6 +144,7 @@ class Prepared:
             "mask_standstill": problem.mask_standstill,
             "shift": dict(problem.shift),
             "min_speed": problem.min_speed,
+            **_of_instant(self.refinements.sensor_instant),
             "seed": search.seed,
             "ga": None if search.method == "separable" else search.genetic.asdict(),
             "bounds_from_data": list(self.domain.from_data),
@@ -164,6 +169,13 @@ class Prepared:
             found = other.refit(lower, upper, best, threads=problem.threads)
             shifts.append(found - best)
         return shifts[0], shifts[1]
+
+
+def _of_instant(instant: SensorInstant | None) -> dict[str, Any]:
+    """Return the share of the torque's half steps that was added to the reading, as a setting."""
+    return (
+        {"sensor_before_step": instant.applied} if instant is not None and instant.applied else {}
+    )
 
 
 def _of_gain(choice: TermChoice, penalty: _core.Penalty) -> dict[str, Any]:
@@ -239,6 +251,7 @@ def prepare(
             problem, selection = select_model(problem, request, parameters, windows)
         problem, delays = without_delays(problem, shift)
         problem, penalty, slow_motion = without_creep(problem, windows, speed)
+        problem, penalty, instant = without_early_reading(problem, penalty, windows)
         problem, penalty = with_instruments(
             problem, penalty, parameters, windows, residual is not None
         )
@@ -253,7 +266,7 @@ def prepare(
         domain=domain,
         windows=windows,
         given=runs,
-        refinements=Refinements(delays=delays, slow_motion=slow_motion),
+        refinements=Refinements(delays=delays, slow_motion=slow_motion, sensor_instant=instant),
         selection=selection,
     )
 

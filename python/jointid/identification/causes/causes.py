@@ -29,6 +29,7 @@ _UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it
 _PART = 0.05  # of the variance of what was measured
 _KNOWN = 3e-4  # [s]; standard error of a delay that says whether one matters
 _LEAST = 0.003  # share of a value: a smaller change matters to nobody, however certain
+_FAINT = 1e-3  # of the friction: what sampling leaves of a log without noise
 
 
 def find_causes(
@@ -70,8 +71,9 @@ def find_causes(
     tried = listed_candidates(fit)
     found: list[Cause] = []
     harmless: list[Cause] = []
+    errors = np.inf if fit.is_faint(_FAINT) else _ERRORS
     for each in attribute(fit, tried):
-        cause = _cause(fit, each, parameters, torque_level, delays)
+        cause = _cause(fit, each, parameters, torque_level, delays, errors)
         # A large part of what was measured matters, however badly the values are known without it.
         matters = cause.relative or cause.share * (1.0 - r_squared) > _PART
         (found if matters else harmless).append(cause)
@@ -148,6 +150,7 @@ def _cause(
     parameters: Mapping[str, ParameterEstimate],
     torque_level: float,
     delays: Mapping[str, Delay],
+    errors: float,
 ) -> Cause:
     shifts = {
         fit.names[index]: float(shift) for index, shift in zip(fit.free, each.shifts, strict=True)
@@ -157,7 +160,8 @@ def _cause(
     relative = {
         name: share
         for name, shift in shifts.items()
-        if (share := _matters(parameters[name], shift, 1.0 - each.share, scales[name])) is not None
+        if (share := _matters(parameters[name], shift, 1.0 - each.share, scales[name], errors))
+        is not None
     }
     detail, size, numbers = _described(fit, each, delays)
     return Cause(
@@ -174,7 +178,9 @@ def _cause(
     )
 
 
-def _matters(p: ParameterEstimate, shift: float, left: float, scale: float) -> float | None:
+def _matters(
+    p: ParameterEstimate, shift: float, left: float, scale: float, least: float
+) -> float | None:
     """The shift as a share of the value where it is noticeable, else None.
 
     Parameters
@@ -183,6 +189,8 @@ def _matters(p: ParameterEstimate, shift: float, left: float, scale: float) -> f
         Share of the misfit that is left with the cause in the model: the error falls with it.
     scale : float
         What the shift is held against.
+    least : float
+        Standard errors from which a small shift matters, too.
     """
     if scale == 0.0:
         return None
@@ -193,7 +201,7 @@ def _matters(p: ParameterEstimate, shift: float, left: float, scale: float) -> f
     after = error * np.sqrt(max(left, 0.0))
     if after > _UNKNOWN * scale and abs(shift) < _CLEARLY * after:
         return None
-    if share > _MOVED or (errors > _ERRORS and share > _LEAST):
+    if share > _MOVED or (errors > least and share > _LEAST):
         return float(np.copysign(share, shift))
     return None
 

@@ -21,6 +21,7 @@ def systematic_errors(
     jacobian: Array,
     columns: Array,
     shifts: tuple[Array | None, Array | None],
+    instant: float = 1.0,
 ) -> dict[str, Array]:
     """Return the sizes of errors that do not decrease with the recording's length, by the name of their cause.
 
@@ -34,6 +35,8 @@ def systematic_errors(
         The penalty's columns at `best`.
     shifts : tuple of ndarray or None
         Change of each parameter when the windows are halved and doubled.
+    instant : float
+        How well the instant of the sensor's sample is known: the part of half a step that may be lacking.
 
     Returns
     -------
@@ -46,7 +49,7 @@ def systematic_errors(
         parts["windows"] = np.sqrt(np.mean(np.square(moved), axis=0))
     of_sampling = _of_sampling(problem, penalty, best, jacobian, columns)
     if of_sampling is not None:
-        parts["sampling"] = of_sampling
+        parts["sampling"] = instant * of_sampling
     return {name: _everywhere(sizes, free, len(best)) for name, sizes in parts.items()}
 
 

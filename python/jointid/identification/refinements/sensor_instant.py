@@ -1,0 +1,190 @@
+"""When a torque sensor is sampled: before a held command steps, in its middle, or after it.
+
+A held torque steps at the samples, and with it the acceleration of drive and link together. The link's share of that
+is a step in the sensor's reading. A controller reads before it commands, so its samples lack half of the step that a
+reading in the middle would show; integrated over windows that biases the gain, and what it leaves resembles late
+signals, harmonics and friction at low speed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.problem.problem import Problem
+from jointid.problem.windows import Windows
+from jointid.recording.recording import Recording
+
+Array = NDArray[np.float64]
+
+_SURE = 3.0  # standard errors
+_KNOWN = 0.3  # standard error of a share that is worth taking away
+_LEAST = 0.25  # standard error: the friction, too, changes within a sample
+_FEWEST = 50  # windows
+_RESTING = 1e-3  # share of the samples
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensorInstant:
+    """When the sensor is sampled, against the steps of a held torque.
+
+    Attributes
+    ----------
+    share : float
+        1: before the step; 0: in its middle, or where the reading is smooth; -1: after it.
+    stderr : float
+    applied : float
+        What was taken away.
+    """
+
+    share: float
+    stderr: float
+    applied: float
+
+    @property
+    def unknown(self) -> float:
+        """Standard error of what is left, as a part of half a step; 1 where nothing is known."""
+        if self.stderr > _KNOWN:
+            return 1.0
+        return min(1.0, float(np.hypot(self.share - self.applied, max(self.stderr, _LEAST))))
+
+
+def without_early_reading(
+    problem: Problem, penalty: _core.Penalty, windows: Windows
+) -> tuple[Problem, _core.Penalty, SensorInstant | None]:
+    """Return problem and penalty with the reading in the middle of the torque's steps, where that is certain.
+
+    Parameters
+    ----------
+    problem : Problem
+    penalty : Penalty
+        Over `windows`.
+    windows : int, float, str, WindowOptions or None
+
+    Notes
+    -----
+    The link's equation has no friction: its reading is inertia, gravity and an offset, and the torque's steps are
+    regressed beside them. What a full half step is follows from the inertia that the reading shows and from that
+    which the torque shows, so it needs no known inertia.
+    """
+    held = [problem.hold(number) == "zoh" for number in range(len(problem.recordings))]
+    late = {"sensor", "torque"} & set(problem.shift)
+    if not problem.choice.sensor or not any(held) or late or penalty.window_count < _FEWEST:
+        return problem, penalty, None
+    if any(_rests_on_a_limit(np.asarray(run.sensor)) for run in problem.recordings):
+        return problem, penalty, None
+    found = _measured(problem, penalty, held)
+    if found is None:
+        return problem, penalty, None
+    instant, step = found
+    if not instant.applied:
+        return problem, penalty, instant
+    moved = tuple(
+        _with_step(problem, number, instant.applied * step) if held[number] else run
+        for number, run in enumerate(problem.recordings)
+    )
+    problem = replace(problem, recordings=moved)
+    return problem, problem.penalty(windows), instant
+
+
+def _measured(
+    problem: Problem, penalty: _core.Penalty, held: list[bool]
+) -> tuple[SensorInstant, float] | None:
+    """The instant, and what half a step of 1 N·m changes the reading by."""
+    motion, torque, reading = _integrals(problem, penalty, held)
+    rows = np.asarray(_core.triangle(np.column_stack([motion, torque, reading])))
+    count = motion.shape[1]
+    size = np.linalg.norm(rows, axis=0)
+    if size[0] == 0.0 or size[_STEPS] == 0.0:
+        return None
+    scaled = rows / np.where(size > 0.0, size, 1.0)
+    link = [*range(_STEPS + 1)]
+    drive = [index for index in range(count) if index != _STEPS]
+    of_torque = np.linalg.lstsq(scaled[:, drive], rows[:, count], rcond=1e-10)[0]
+    both = float(of_torque[0] / size[0])
+    of_reading = np.linalg.lstsq(scaled[:, link], rows[:, count + 1], rcond=1e-10)[0]
+    half = 0.5 * float(of_reading[0] / size[0]) / both if both > 0.0 else 0.0
+    if half == 0.0:
+        return None
+    missed = rows[:, count + 1] - scaled[:, link] @ of_reading
+    variance = float(missed @ missed) / max(1, len(torque) - len(link))
+    spread = np.linalg.pinv(scaled[:, link].T @ scaled[:, link])
+    # A reading that lacks half a step over its window rises by less.
+    share = -float(of_reading[_STEPS] / size[_STEPS]) / half
+    stderr = float(np.sqrt(variance * spread[_STEPS, _STEPS])) / size[_STEPS] / abs(half)
+    certain = stderr < _KNOWN and _SURE * stderr < abs(share) < 1.0 + _SURE * stderr
+    # A controller reads just before it commands: that, unless it is refuted.
+    whole = abs(share) + _SURE * max(stderr, _LEAST) > 1.0
+    applied = (float(np.sign(share)) if whole else share) if certain else 0.0
+    return SensorInstant(share=share, stderr=stderr, applied=applied), half
+
+
+_STEPS = 4  # column of the torque's steps
+
+
+def _integrals(
+    problem: Problem, penalty: _core.Penalty, held: list[bool]
+) -> tuple[Array, Array, Array]:
+    """Window integrals: of the link's motion, the torque's steps and friction; of the torque; of the reading."""
+    bounds, run = np.asarray(penalty.windows), np.asarray(penalty.recording_of)
+    steps = np.asarray(penalty.torque_steps(problem.in_core, problem.mask_standstill))
+    slow = 0.1 * problem.peak_speed
+    parts = []
+    for number, recording in enumerate(problem.recordings):
+        mine = slice(*np.searchsorted(run, (number, number + 1)))
+        first, last = bounds[mine, 0], bounds[mine, 1]
+        usable = np.asarray(
+            _core.usable_intervals(problem.in_core[number], problem.mask_standstill),
+            dtype=np.float64,
+        )
+        weight = np.diff(recording.time) * usable
+        velocity, position = recording.velocity, recording.position
+        sign = np.sign(velocity)
+        signals = np.column_stack(
+            [
+                np.cos(position),
+                np.sin(position),
+                sign,
+                velocity,
+                sign * np.exp(-np.abs(velocity) / slow),
+                np.asarray(recording.sensor),
+            ]
+        )
+        middle = 0.5 * (signals[1:] + signals[:-1]) * weight[:, None]
+        risen = np.diff(velocity) * usable
+        every = np.column_stack([risen, middle[:, :2], weight, middle[:, 2:]])
+        total = np.concatenate([np.zeros((1, every.shape[1])), np.cumsum(every, axis=0)])
+        part = total[last] - total[first]
+        step = recording.sample_period * steps[mine] if held[number] else np.zeros(len(first))
+        parts.append(np.column_stack([part[:, :_STEPS], step, part[:, _STEPS:]]))
+    whole = np.concatenate(parts)
+    return whole[:, :-1], np.asarray(penalty.target), whole[:, -1]
+
+
+def _rests_on_a_limit(reading: Array) -> bool:
+    """Whether the reading may be clipped: what it lacks there is no half step."""
+    return any(np.mean(reading == limit) > _RESTING for limit in (reading.min(), reading.max()))
+
+
+def _with_step(problem: Problem, number: int, step: float) -> Recording:
+    """A recording with so much of each step of the torque added to its reading."""
+    recording, torque = problem.recordings[number], problem.output_torque(number)
+    usable = np.asarray(_core.usable_intervals(problem.in_core[number], problem.mask_standstill))
+    # Where friction is set-valued, it answers the step.
+    used = np.append(usable, 0) | np.append(0, usable)
+    change = np.diff(torque, prepend=torque[0]) * (used > 0)
+    change[[gap.index + 1 for gap in recording.gaps]] = 0.0
+    signals = {name: getattr(recording, name) for name in recording.signals}
+    signals["sensor"] = signals["sensor"] + step * change
+    return Recording(
+        **signals,
+        kind=recording.kind,
+        torque_hold=recording.torque_hold,
+        velocity_derived=recording.velocity_derived,
+        name=recording.name,
+        metadata=recording.metadata,
+        truth=recording.truth,
+    )
