@@ -25,6 +25,7 @@ _KNOWN = 0.3  # standard error of a share that is worth taking away
 _LEAST = 0.25  # standard error: the friction, too, changes within a sample
 _FEWEST = 50  # windows
 _RESTING = 1e-3  # share of the samples
+_MOVING = 0.02  # of the peak speed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,7 +75,7 @@ def without_early_reading(
     late = {"sensor", "torque"} & set(problem.shift)
     if not problem.choice.sensor or not any(held) or late or penalty.window_count < _FEWEST:
         return problem, penalty, None
-    if any(_rests_on_a_limit(np.asarray(run.sensor)) for run in problem.recordings):
+    if any(map(_rests_on_a_limit, problem.recordings)):
         return problem, penalty, None
     found = _measured(problem, penalty, held)
     if found is None:
@@ -115,9 +116,10 @@ def _measured(
     # A reading that lacks half a step over its window rises by less.
     share = -float(of_reading[_STEPS] / size[_STEPS]) / half
     stderr = float(np.sqrt(variance * spread[_STEPS, _STEPS])) / size[_STEPS] / abs(half)
-    certain = stderr < _KNOWN and _SURE * stderr < abs(share) < 1.0 + _SURE * stderr
+    least = _SURE * max(stderr, _LEAST)
+    certain = stderr < _KNOWN and _SURE * stderr < abs(share) < 1.0 + least
     # A controller reads just before it commands: that, unless it is refuted.
-    whole = abs(share) + _SURE * max(stderr, _LEAST) > 1.0
+    whole = abs(share) + least > 1.0
     applied = (float(np.sign(share)) if whole else share) if certain else 0.0
     return SensorInstant(share=share, stderr=stderr, applied=applied), half
 
@@ -164,9 +166,11 @@ def _integrals(
     return whole[:, :-1], np.asarray(penalty.target), whole[:, -1]
 
 
-def _rests_on_a_limit(reading: Array) -> bool:
+def _rests_on_a_limit(recording: Recording) -> bool:
     """Whether the reading may be clipped: what it lacks there is no half step."""
-    return any(np.mean(reading == limit) > _RESTING for limit in (reading.min(), reading.max()))
+    reading, speed = np.asarray(recording.sensor), np.abs(recording.velocity)
+    moving = reading[speed > _MOVING * speed.max()]  # at rest a clean reading stays, too
+    return any(np.mean(moving == limit) > _RESTING for limit in (reading.min(), reading.max()))
 
 
 def _with_step(problem: Problem, number: int, step: float) -> Recording:
