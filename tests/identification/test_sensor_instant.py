@@ -9,7 +9,7 @@ import jointid as jid
 from jointid import _core
 
 Array = NDArray[np.float64]
-JOINT = jid.Joint(inertia=1.8, sensor=True, model="stribeck")
+JOINT = jid.Joint(inertia=1.8, sensor=True, model=jid.Model("stribeck"))
 
 
 def runs(noise: float) -> list[jid.Recording]:

@@ -35,6 +35,7 @@ from jointid.identification.warnings.poor_fit import POORLY_EXPLAINED
 from jointid.problem.constant_torque import undivided
 from jointid.problem.inner_products import columns_with, size
 from jointid.problem.problem import Problem
+from jointid.problem.window_table import WindowTable
 
 Array = NDArray[np.float64]
 
@@ -123,7 +124,8 @@ def infer(
     # Running integrals of white noise are correlated by themselves.
     noise = not structured and testable(run) and not penalty.cumulative
     # A misfit of values that are no estimate, or of a gain whose sign is a guess, is not the model's.
-    meant = statistics.r_squared >= 0.0 and not domain.guessed_sign
+    explained = max(statistics.r_squared, _explained_torque(penalty, table, best))
+    meant = explained >= 0.0 and not domain.guessed_sign
     if structured and meant and not (penalty.cumulative or not free):
         causes = find_causes(
             problem,
@@ -185,6 +187,18 @@ def infer(
         delays=refinements.delays,
         slow_motion=refinements.slow_motion,
     )
+
+
+def _explained_torque(penalty: _core.Penalty, table: WindowTable, best: Array) -> float:
+    """Share of the torque's variance that the model explains; of a reading that hardly varies it may be less."""
+    names = list(penalty.names)
+    gain = float(best[names.index("sensor_gain")]) if "sensor_gain" in names else 1.0
+    torque = np.asarray(penalty.target) / table.duration
+    spread = float(
+        np.sum(table.duration * (torque - np.average(torque, weights=table.duration)) ** 2)
+    )
+    left = gain**2 * float(np.sum(table.residual**2 / table.duration))
+    return 1.0 - left / spread if spread > 0.0 else 0.0
 
 
 def _unknown(delay: Delay) -> float:
