@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.estimate.causes import Cause, Causes
 from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence
@@ -57,6 +59,7 @@ def infer(
     settings: dict[str, Any],
     seconds: float,
     refinements: Refinements,
+    known: tuple[Cause, ...] = (),
 ) -> Estimate:
     """Return the estimate at a minimum.
 
@@ -68,6 +71,8 @@ def infer(
         What was done to the data before the search.
     beside : mapping of str to ndarray or None
         Change of each parameter by causes that the intervals do not contain.
+    known : tuple of Cause
+        Causes that were taken away from the data before.
     """
     threads = problem.threads
     # First, before arrays of one value per window are allocated, and these are freed early: a recording
@@ -138,6 +143,9 @@ def infer(
         if not causes.found and testable(run) and not correlated(table.residual, run):
             # Louder at low speed, but no cause and nothing that lasts: noise, of the velocity or of a reversal.
             causes, noise = None, True
+    if known:
+        more = causes or Causes(found=())
+        causes = replace(more, found=(*known, *more.found))
     findings = diagnose(
         Evidence(
             problem=problem,
