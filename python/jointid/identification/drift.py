@@ -1,7 +1,7 @@
 """Friction that drifts during a recording: taken away from the torque where it is certain, before a second fit.
 
-A coefficient that changes with time leaves a misfit that other parameters take up, the sensor's gain before all. With the
-drift taken away they are what they are, and the coefficient is its value in the middle of the recording.
+A coefficient that changes with time leaves a misfit that other parameters take up, the sensor's gain before all.
+With the drift taken away they are what they are, and the coefficient is its value in the middle of the recording.
 """
 
 from __future__ import annotations
