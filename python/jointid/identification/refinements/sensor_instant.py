@@ -130,40 +130,33 @@ _STEPS = 4  # column of the torque's steps
 def _integrals(
     problem: Problem, penalty: _core.Penalty, held: list[bool]
 ) -> tuple[Array, Array, Array]:
-    """Window integrals: of the link's motion, the torque's steps and friction; of the torque; of the reading."""
+    """Window integrals: of the link's motion, the torque's steps and friction; of the torque; of the reading.
+
+    Of whole windows, in which angle and speed are those of their middle: all but the reading and the steps is
+    smooth enough.
+    """
     bounds, run = np.asarray(penalty.windows), np.asarray(penalty.recording_of)
     steps = np.asarray(penalty.torque_steps(problem.in_core, problem.mask_standstill))
-    slow = 0.1 * problem.peak_speed
-    parts = []
+    shapes = np.full(len(penalty.names) - penalty.coefficients, 1.0)
+    reading = np.asarray(penalty.columns(shapes))[:, list(penalty.names).index("sensor_gain")]
+    duration = np.asarray(penalty.usable_duration)
+    faster, angle, speed, step, lasting = np.zeros((5, len(run)))
     for number, recording in enumerate(problem.recordings):
         mine = slice(*np.searchsorted(run, (number, number + 1)))
         first, last = bounds[mine, 0], bounds[mine, 1]
-        usable = np.asarray(
-            _core.usable_intervals(problem.in_core[number], problem.mask_standstill),
-            dtype=np.float64,
-        )
-        weight = np.diff(recording.time) * usable
-        velocity, position = recording.velocity, recording.position
-        sign = np.sign(velocity)
-        signals = np.column_stack(
-            [
-                np.cos(position),
-                np.sin(position),
-                sign,
-                velocity,
-                sign * np.exp(-np.abs(velocity) / slow),
-                np.asarray(recording.sensor),
-            ]
-        )
-        middle = 0.5 * (signals[1:] + signals[:-1]) * weight[:, None]
-        risen = np.diff(velocity) * usable
-        every = np.column_stack([risen, middle[:, :2], weight, middle[:, 2:]])
-        total = np.concatenate([np.zeros((1, every.shape[1])), np.cumsum(every, axis=0)])
-        part = total[last] - total[first]
-        step = recording.sample_period * steps[mine] if held[number] else np.zeros(len(first))
-        parts.append(np.column_stack([part[:, :_STEPS], step, part[:, _STEPS:]]))
-    whole = np.concatenate(parts)
-    return whole[:, :-1], np.asarray(penalty.target), whole[:, -1]
+        faster[mine] = recording.velocity[last] - recording.velocity[first]
+        angle[mine] = 0.5 * (recording.position[last] + recording.position[first])
+        speed[mine] = recording.position[last] - recording.position[first]
+        lasting[mine] = recording.time[last] - recording.time[first]
+        if held[number]:
+            step[mine] = recording.sample_period * steps[mine]
+    speed /= lasting
+    dry = np.sign(speed) * duration
+    slow = dry * np.exp(-np.abs(speed) / (0.1 * problem.peak_speed))
+    gravity = [duration * np.cos(angle), duration * np.sin(angle)]
+    motion = np.column_stack([faster, *gravity, duration, step, dry, duration * speed, slow])
+    whole = np.abs(lasting - duration) < 1e-9 * lasting + 1e-12
+    return motion[whole], np.asarray(penalty.target)[whole], reading[whole]
 
 
 def _rests_on_a_limit(recording: Recording) -> bool:
