@@ -129,8 +129,10 @@ def infer(
     # Running integrals of white noise are correlated by themselves.
     noise = not structured and testable(run) and not penalty.cumulative
     # A misfit of values that are no estimate, or of a gain whose sign is a guess, is not the model's.
-    explained = max(statistics.r_squared, _explained_torque(penalty, table, best))
-    meant = explained >= 0.0 and not domain.guessed_sign
+    explains = statistics.r_squared >= 0.0 or (
+        not any(freedom.at_bound) and _explained_torque(penalty, table, best) > POORLY_EXPLAINED
+    )
+    meant = explains and not domain.guessed_sign
     if structured and meant and not (penalty.cumulative or not free):
         causes = find_causes(
             problem,
