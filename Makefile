@@ -24,7 +24,7 @@ MODULES := $(sort $(filter python/%.py,$(SOURCES)))
 IN_PLACE := $(wildcard .venv/.editable)
 MOVED := $(if $(IN_PLACE),$(shell echo $(MODULES) | cmp -s - .venv/.editable || echo list-changed))
 
-.PHONY: help demo test checks check-plain check-address check-thread pytest lint stub format \
+.PHONY: help demo test checks check-plain check-address check-thread pytest vcan lint stub format \
         develop list-changed sdist check-sdist study bench notebooks soak clean
 
 help:  ## list the targets
@@ -50,6 +50,10 @@ check-plain check-address check-thread: check-%: .venv/.test-tools  ## (each alo
 pytest: .venv/.strict .venv/.test-tools  ## the Python tests alone
 	@echo "Python tests:"
 	@$(BIN)/python -m pytest
+
+vcan: .venv/.strict .venv/.test-tools  ## install a guest with CAN (root or sudo), then sessions on its vcan, with faults
+	@tools/install_vcan.sh
+	@JOINTID_REQUIRE_VCAN=1 $(BIN)/python -m pytest tests/canlab
 
 lint: $(INSTALLED) .venv/.test-tools .venv/.lint-tools  ## ruff, mypy, clang-format, stub
 	@echo "ruff check";         $(BIN)/ruff check

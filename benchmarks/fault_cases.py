@@ -6,6 +6,7 @@ The table is shared by `fault_matrix.py`, which prints what happens, and by the 
 from __future__ import annotations
 
 import math
+import struct
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -27,8 +28,9 @@ from jointid.hardware.session.session import Session, SessionOptions, SessionSto
 from jointid.simulation.stepped import stepped_joint
 
 PERIOD = 2e-3  # [s]
-BEGIN = 1.2  # [s] on the bus's clock: the joint is in the middle of its motion then
+BEGIN = 1.47  # [s] on the bus's clock: the joint is in the middle of its motion then
 COMMAND, REPLY, POSITION, EMERGENCY, OURS, SENSOR = 0x37F, 0x2FF, 0x4FF, 0x0FF, 0x701, 0x1C0
+REQUEST, ANSWER = 0x67F, 0x5FF  # of objects
 TRUTH = {
     "coulomb": 25.0,
     "static": 20.0,
@@ -247,6 +249,18 @@ def _host_works(duration: float, times: int | None = None) -> Script:
     return script
 
 
+def _same_stamp(bench: EmulatedSession) -> None:
+    """The drive shows a sample of the past again."""
+    read, last = bench.drive.read, list[DriveSample]()
+
+    def stale(timeout: float) -> DriveSample:
+        if bench.bus.now() < BEGIN:
+            last[:] = [read(timeout)]
+        return last[0]
+
+    bench.drive.read = stale  # type: ignore[method-assign]
+
+
 class Tampered:
     """A controller of the user's own: as another one, until something happens in it."""
 
@@ -291,6 +305,46 @@ def _bus(kind: str, *identifiers: int | None, **more: float) -> Callable[[], tup
     )
 
 
+def foreign(
+    identifier: int, payload: bytes, *, begin: float = BEGIN, every: float = 20e-3
+) -> Script:
+    """Another master on the bus sends a frame, again and again [s]; the drive takes it for the host's."""
+
+    def script(bench: EmulatedSession) -> None:
+        def send(when: float) -> None:
+            message = can.Message(arbitration_id=identifier, data=payload, is_extended_id=False)
+            bench.bus.transmit(message)
+            bench.bus.at(when + every, lambda: send(when + every))
+
+        bench.bus.at(begin, lambda: send(begin))
+
+    return script
+
+
+def _deaf_to_the_sensor(bench: EmulatedSession) -> None:
+    """The drive does not answer AN any more."""
+    reply = bench.elmo.reply
+
+    def some(payload: bytes) -> None:
+        if not (payload[:2] == b"AN" and bench.bus.now() >= BEGIN):
+            reply(payload)
+
+    bench.elmo.reply = some  # type: ignore[method-assign]
+
+
+def _answers_wrongly(bench: EmulatedSession) -> None:
+    """The drive takes 1 A more than it was told."""
+    reply = bench.elmo.reply
+
+    def changed(payload: bytes) -> None:
+        if payload[:2] == b"TC" and bench.bus.now() >= BEGIN:
+            current = struct.unpack_from("<f", payload, 4)[0]
+            payload = payload[:4] + struct.pack("<f", current + 1.0)
+        reply(payload)
+
+    bench.elmo.reply = changed  # type: ignore[method-assign]
+
+
 _WIDE = {"tracking_error": 10.0, "velocity": 1e4}
 _SENSOR_AT_DRIVE = ElmoOptions(torque=AnalogInput())
 
@@ -307,8 +361,16 @@ CASES = (
          says="finite"),
     Case(name="command jumps", stop="torque_rate", script=_controller(lambda t: t + 150.0),
          limits={"torque_rate": 6e4}, says="N·m/s"),
-    Case(name="command is cut for long", stop="saturated_samples", script=_slips(0.2), limits=_WIDE,
-         says="21 times", detected=30 * PERIOD),
+    Case(name="command is cut for long", stop="saturated_samples", script=_set("stage_gain", 0.2),
+         limits={"torque_difference": 1e3, **_WIDE}, says="21 times", detected=100 * PERIOD),
+    Case(name="joint would leave its window", stop="position", script=_controller(lambda _: 150.0), limits=_WIDE,
+         says="if it were braked now", detected=300 * PERIOD),
+    Case(name="command beyond what the joint needs", stop="torque_envelope", script=_set("stage_gain", 0.3),
+         limits={"torque_envelope": 1.0, "torque_difference": 1e3, "saturated_samples": 1000, **_WIDE},
+         says="is commanded where", detected=60 * PERIOD),
+    Case(name="torque has the wrong sign", stop="torque_sign", script=_set("stage_gain", -1.0),
+         limits={"torque_difference": 1e3, "saturated_samples": 1000, **_WIDE},
+         says="opposite signs", detected=40 * PERIOD),
     Case(name="current beyond the command", stop="measured_torque", script=_set("stage_gain", 4.0),
          limits={"torque_difference": 1e3, **_WIDE}, says="more than", detected=50 * PERIOD),
     Case(name="no current", stop="torque_difference", script=_set("stage_gain", 0.0), limits=_WIDE,
@@ -319,8 +381,8 @@ CASES = (
          detected=8 * PERIOD),
     Case(name="sensor's reading is not finite", stop="sensor", script=_set("stuck_voltage", math.nan),
          drive=_SENSOR_AT_DRIVE, says="finite", detected=6 * PERIOD),
-    Case(name="sensor is not answered", stop="sensor", faults=_bus("drop", REPLY), detected=25 * PERIOD,
-         drive=_SENSOR_AT_DRIVE, says="without an answer", heard=False),
+    Case(name="sensor is not answered", stop="sensor", script=_deaf_to_the_sensor, detected=25 * PERIOD,
+         drive=_SENSOR_AT_DRIVE, says="without an answer"),
     Case(name="host is late", stop="missed_deadlines", script=_host_works(0.8e-3), says="6 cycles",
          detected=10 * PERIOD),
     # The drive.
@@ -348,16 +410,49 @@ CASES = (
          says="InputError: torque is"),
     Case(name="Ctrl-C in user code", stop="user", script=_observer(KeyboardInterrupt()), says="keyboard"),
     # The bus.
-    Case(name="position is lost", stop="stale_position", faults=_bus("drop", POSITION), says="SYNC"),
-    Case(name="SYNC is lost", stop="stale_position", faults=_bus("drop", 0x080), says="SYNC"),
-    Case(name="sensor's frame is lost", stop="stale_position", faults=_bus("drop", SENSOR), says="SYNC"),
-    Case(name="position is late", stop="stale_position", faults=_bus("delay", POSITION, delay=1.5e-3)),
+    Case(name="position is lost", stop="late_samples", faults=_bus("drop", POSITION), says="SYNC",
+         detected=6 * PERIOD),
+    Case(name="five positions are lost", stop="late_samples", says="5 cycles in a row", detected=6 * PERIOD,
+         faults=_bus("drop", POSITION, stop=BEGIN + 5 * PERIOD)),
+    Case(name="SYNC is lost", stop="late_samples", faults=_bus("drop", 0x080), says="SYNC", detected=6 * PERIOD),
+    Case(name="sensor's frame is lost", stop="late_samples", faults=_bus("drop", SENSOR), says="SYNC",
+         detected=6 * PERIOD),
+    Case(name="position is late", stop="late_samples", faults=_bus("delay", POSITION, delay=1.5e-3),
+         detected=6 * PERIOD),
+    Case(name="every eighth position is lost", stop="late_share", says="cycles of the last 5 s", detected=0.3,
+         faults=lambda: tuple(
+             BusFault(kind="drop", identifier=POSITION, start=BEGIN + k * PERIOD, stop=BEGIN + (k + 1) * PERIOD)
+             for k in range(0, 400, 8))),
+    Case(name="sample is stamped like the one before", stop="stale_position", script=_same_stamp,
+         says="stamps must increase"),
     Case(name="position is garbled", stop="position", faults=_bus("corrupt", POSITION)),
-    Case(name="replies are garbled", stop="drive_fault", faults=_bus("corrupt", REPLY), heard=False,
-         says="unreadable"),
-    Case(name="commands are lost, then switching off too", stop="torque_difference",
-         faults=_bus("drop", COMMAND), limits={"torque_difference": 5.0}, reachable=False, heard=False,
-         detected=0.5, says="is commanded"),
+    Case(name="replies are garbled", stop="drive_fault", faults=_bus("corrupt", REPLY), says="unreadable"),
+    Case(name="replies are lost", stop="command_echo", faults=_bus("drop", REPLY), detected=8 * PERIOD,
+         says="not acknowledged 5 torque commands"),
+    Case(name="replies and answers are lost", stop="command_echo", faults=_bus("drop", REPLY, ANSWER),
+         detected=8 * PERIOD, heard=False),
+    Case(name="commands are lost, then switching off too", stop="command_echo",
+         faults=_bus("drop", COMMAND), detected=8 * PERIOD, says="not acknowledged 5"),
+    Case(name="five commands are lost", stop="command_echo", detected=8 * PERIOD,
+         faults=_bus("drop", COMMAND, stop=BEGIN + 5 * PERIOD), says="not acknowledged 5"),
+    Case(name="commands and objects are lost", stop="command_echo", detected=8 * PERIOD, heard=False,
+         reachable=False, faults=_bus("drop", COMMAND, REQUEST)),
+    Case(name="command is changed on its way", stop="command_echo", script=_answers_wrongly,
+         says="acknowledges TC"),
+    # Another master.
+    Case(name="somebody else beats as our node", stop="foreign_master", script=foreign(OURS, b"\x05"),
+         says="another node beats as node 1 (701h)"),
+    Case(name="somebody else commands a current", stop="foreign_master",
+         script=foreign(COMMAND, bytes.fromhex("54 43 00 80 00 00 80 3F"), every=PERIOD),
+         says="commands the drive: TC = 1 (37F#544300800000803F)"),
+    Case(name="somebody else stops the node", stop="foreign_master", script=foreign(0x000, b"\x02\x7f"),
+         says="network command 'stop'"),
+    Case(name="somebody else sends SYNC", stop="foreign_master", script=foreign(0x080, b"", every=PERIOD),
+         says="SYNC, which it answers"),
+    Case(name="somebody else writes an object", stop="foreign_master", says="access to object 6007h:0",
+         script=foreign(REQUEST, bytes.fromhex("2B 07 60 00 00 00 00 00"), every=1.0)),
+    Case(name="somebody else sends the control word", stop="foreign_master", says="a PDO (27F#0600)",
+         script=foreign(0x27F, b"\x06\x00")),
     Case(name="first two switchings-off are lost", stop="error", script=_observer(OSError("late")),
          faults=_bus("drop", COMMAND, stop=BEGIN + 1.9 * PERIOD), says="late"),
     Case(name="error frame, off the bus for 3 ms", stop="bus", says="error frame",

@@ -111,6 +111,9 @@ FOLDERS: dict[str, Folder] = {
         },
         packages={"numpy", "can"},
     ),
+    "hardware/proof": Folder(
+        may_use={"base", "joint", "hardware/session", "hardware/bench"}, packages={"numpy"}
+    ),
     "hardware/elmo": Folder(
         may_use={
             *("base", "joint", "simulation"),
@@ -122,7 +125,7 @@ FOLDERS: dict[str, Folder] = {
     "hardware": Folder(
         may_use={
             *("hardware/session", "hardware/can", "hardware/live", "hardware/bench"),
-            "hardware/emulated",
+            *("hardware/emulated", "hardware/proof"),
         },
     ),
     "commissioning": Folder(
@@ -134,7 +137,7 @@ FOLDERS: dict[str, Folder] = {
             *(_SOUGHT - {"problem"}),
             *("recording/readers", "comparison", "simulation", "study", "plot", "report"),
             *("hardware/session", "hardware/can", "hardware/live", "hardware/bench"),
-            *("hardware/emulated", "commissioning", ""),
+            *("hardware/emulated", "hardware/proof", "commissioning", ""),
         },
         packages={"numpy", "matplotlib"},
     ),

@@ -61,6 +61,14 @@ def session(bus: can.BusABC, duration: float = 1.0, period: float = PERIOD, **mo
     )
 
 
+class EchoingBus(EmulatedBus):
+    """Gives the host its own frames back, as udp_multicast does."""
+
+    def _to_devices(self, message: can.Message) -> None:
+        super()._to_devices(message)
+        self._to_host(message)
+
+
 class FrameHash:
     """Of all frames on a bus, both ways, with the times of the host's clock."""
 

@@ -19,18 +19,27 @@ RecordingView::Signal signal(const SharedRecording::Array& array) {
 }
 
 RecordingView view_of(const std::vector<SharedRecording::Array>& s, Hold hold,
-                      std::vector<std::int64_t> gaps, double min_speed) {
+                      std::vector<std::int64_t> gaps, double min_speed,
+                      std::vector<std::int64_t> doubtful) {
   const RecordingView::Signal none(nullptr, 0);
-  return {
-      signal(s[0]), signal(s[1]),    signal(s[2]), signal(s[3]), s.size() > 4 ? signal(s[4]) : none,
-      hold,         std::move(gaps), min_speed};
+  return {signal(s[0]),
+          signal(s[1]),
+          signal(s[2]),
+          signal(s[3]),
+          s.size() > 4 ? signal(s[4]) : none,
+          hold,
+          std::move(gaps),
+          min_speed,
+          std::move(doubtful)};
 }
 
 }  // namespace
 
 SharedRecording::SharedRecording(std::vector<Array> signals, Hold hold,
-                                 std::vector<std::int64_t> gaps, double min_speed)
-    : signals_(std::move(signals)), view_(view_of(signals_, hold, std::move(gaps), min_speed)) {
+                                 std::vector<std::int64_t> gaps, double min_speed,
+                                 std::vector<std::int64_t> doubtful)
+    : signals_(std::move(signals)),
+      view_(view_of(signals_, hold, std::move(gaps), min_speed, std::move(doubtful))) {
   view_.validate();
 }
 
@@ -61,16 +70,18 @@ void bind_recording(py::module_& m) {
       m, "Recording", "Signals of one run; arrays of floats are kept, not copied.")
       .def(py::init([](Array time, Array position, Array velocity, Array torque,
                        std::optional<Array> sensor, Hold torque_hold,
-                       std::vector<std::int64_t> gap_after, double min_speed) {
+                       std::vector<std::int64_t> gap_after, double min_speed,
+                       std::vector<std::int64_t> doubtful) {
              std::vector<Array> signals{std::move(time), std::move(position), std::move(velocity),
                                         std::move(torque)};
              if (sensor) signals.push_back(std::move(*sensor));
              return std::make_shared<SharedRecording>(std::move(signals), torque_hold,
-                                                      std::move(gap_after), min_speed);
+                                                      std::move(gap_after), min_speed,
+                                                      std::move(doubtful));
            }),
            py::kw_only(), py::arg("time"), py::arg("position"), py::arg("velocity"),
            py::arg("torque"), py::arg("sensor"), py::arg("torque_hold"), py::arg("gap_after"),
-           py::arg("min_speed") = 0.0)
+           py::arg("min_speed") = 0.0, py::arg("doubtful") = std::vector<std::int64_t>{})
       .def_property_readonly("samples", &SharedRecording::samples);
   m.def(
       "usable_intervals",

@@ -31,7 +31,7 @@ class SharedRecording {
   using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
   SharedRecording(std::vector<Array> signals, identify::Hold hold, std::vector<std::int64_t> gaps,
-                  double min_speed = 0.0);
+                  double min_speed = 0.0, std::vector<std::int64_t> doubtful = {});
   [[nodiscard]] const identify::RecordingView& view() const { return view_; }
   [[nodiscard]] std::int64_t samples() const { return view_.samples(); }
   /// Found once for each choice; called without the GIL.

@@ -130,6 +130,30 @@ CHECK_CASE("windows: a gap is unusable and no window crosses it") {
   }
 }
 
+CHECK_CASE("windows: a doubtful interval is unusable, and windows go on beside it") {
+  auto r = swinging(1000);
+  auto view = identify::RecordingView(r);
+  view.doubtful = {500};
+  view.validate();
+  for (const bool standstill : {false, true}) {
+    const auto usable = usable_intervals(view, standstill).usable;
+    CHECK(usable[500] == 0);
+    CHECK_CLOSE(unusable(usable), 1, 0.0);
+    CHECK_CLOSE(identify::cut_windows(r, usable, 0.1).size(),
+                identify::cut_windows(r, usable_intervals(r, standstill).usable, 0.1).size(), 0.0);
+  }
+  for (const std::int64_t outside : {std::int64_t{-1}, std::int64_t{999}}) {
+    view.doubtful = {outside};
+    bool refused = false;
+    try {
+      view.validate();
+    } catch (const std::invalid_argument&) {
+      refused = true;
+    }
+    CHECK(refused);
+  }
+}
+
 CHECK_CASE("windows: a gap that ends where it began is not a standstill") {
   auto r = swinging(3000);
   // The joint passes a place, the record breaks off, and goes on at the same place a period later.

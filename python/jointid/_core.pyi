@@ -225,6 +225,7 @@ class Recording:
         torque_hold: Hold,
         gap_after: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
         min_speed: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        doubtful: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
     ) -> None: ...
     @property
     def samples(self) -> int: ...

@@ -108,7 +108,7 @@ def test_the_command_writes_runs_and_saves_the_bench(
 @pytest.mark.parametrize(
     ("words", "code", "wording"),
     [
-        (["--emulate", "--cycles", "0"], 2, "--cycles 0: at least 1"),
+        (["--emulate", "--cycles", "-1"], 2, "--cycles -1: at least 0"),
         (["--emulate", "--save", "x.csv"], 2, "a joint file ends in .toml"),
         (["--emulate", "--output", "no/such/folder"], 2, "no/such"),
         (["--emulate", "--dry-run"], 0, ""),
@@ -166,3 +166,25 @@ class Identified:
     """As much of an estimate as a commissioning needs to move the joint."""
 
     joint: jid.Joint
+
+
+def test_no_cycles_only_record(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = EXAMPLE.read_text(encoding="utf-8").replace("duration = 12.0", "duration = 3.0")
+    head, tail = text.split('law = "adaptive_robust"')
+    bench = tmp_path / "joint.toml"
+    gains = 'law = "pd"\nstiffness = 8000.0\ndamping = 400.0\n'
+    bench.write_text(head + gains + tail[tail.index("\n[session.") :], encoding="utf-8")
+    runs = tmp_path / "runs"
+    words = ["run", str(bench), "--emulate", "--cycles", "0", "--quiet"]
+    assert main([*words, "--output", str(runs)]) == 0
+    said = capsys.readouterr().out
+    assert "late or lost" in said
+    assert "estimates and" not in said
+    assert {each.name for each in runs.iterdir()} == {
+        *("initial.csv", "initial.log", "ring.json", "ring.txt", "tracking_error.png"),
+    }
+    assert json.loads((runs / "ring.json").read_text())["estimates"] == []
+    recording = jid.load(runs / "initial.csv")
+    assert jid.identify(recording, Bench.load(bench).joint, search="separable").parameters
+    assert main([*words, "--save", str(tmp_path / "found.toml")]) == 2
+    assert "nothing is identified" in capsys.readouterr().err

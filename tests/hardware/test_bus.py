@@ -37,21 +37,37 @@ def test_a_bus_is_shut_down_after_an_error_too() -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "identifiers"),
+    ("options", "drives", "masters"),
     [
-        (ElmoOptions(), {0x2FF, 0x4FF, 0x0FF, 0x77F, 0x5FF, 0x1C0}),
         (
-            ElmoOptions(node=5, torque=SyncedConverter(identifier=0x123)),
-            {0x285, 0x485, 0x085, 0x705, 0x585, 0x123},
+            ElmoOptions(),
+            {0x2FF, 0x4FF, 0x0FF, 0x77F, 0x5FF, 0x1C0},
+            {0x000, 0x080, 0x701, 0x27F, 0x37F, 0x47F, 0x57F, 0x67F},
         ),
         (
-            ElmoOptions(node=5, torque=AnalogInput(), cob_reply=0x4FE, cob_position=0x4FD),
-            {0x4FE, 0x4FD, 0x085, 0x705, 0x585},
+            ElmoOptions(node=5, master=9, torque=SyncedConverter(identifier=0x123)),
+            {0x285, 0x485, 0x085, 0x705, 0x585, 0x123},
+            {0x000, 0x080, 0x709, 0x205, 0x305, 0x405, 0x505, 0x605},
+        ),
+        (
+            ElmoOptions(
+                node=5,
+                torque=AnalogInput(),
+                cob_command=0x3F0,
+                cob_reply=0x4FE,
+                cob_position=0x405,
+            ),
+            {0x4FE, 0x405, 0x085, 0x705, 0x585},
+            {0x000, 0x080, 0x701, 0x205, 0x3F0, 0x505, 0x605},
         ),
     ],
 )
-def test_the_frames_a_session_needs(options: ElmoOptions, identifiers: set[int]) -> None:
-    assert set(options.received) == identifiers
+def test_the_frames_a_session_needs(
+    options: ElmoOptions, drives: set[int], masters: set[int]
+) -> None:
+    assert set(options.answering) == drives
+    assert set(options.commanding) == masters
+    assert set(options.received) == drives | masters
 
 
 def network(folder: Path, flags: str) -> None:
@@ -76,9 +92,11 @@ def test_socketcan_gets_a_filter_for_each_identifier(
     monkeypatch.setattr(can, "Bus", Opened)
     with open_bus(identifiers=ElmoOptions(node=3).received):
         assert "shut" not in opened
+    # Another master's frames must come through: the kernel does not give us our own.
+    assert {0x000, 0x080, 0x303, 0x603, 0x701} < set(ElmoOptions(node=3).received)
     filters = [
         {"can_id": identifier, "can_mask": 0x7FF, "extended": False}
-        for identifier in sorted({0x283, 0x483, 0x083, 0x703, 0x583, 0x1C0})
+        for identifier in sorted(ElmoOptions(node=3).received)
     ]
     assert opened == {
         "channel": "can0",

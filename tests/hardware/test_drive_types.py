@@ -207,7 +207,7 @@ def test_the_address_of_a_drive_is_shown_before_a_joint_moves(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr("sys.stdin", io.StringIO(""))
-    assert main(["run", str(EXAMPLE)]) == 3
+    assert main(["run", str(EXAMPLE), "--force"]) == 3
     asked = capsys.readouterr().err
     assert "will move between -1.4 and 1.4 rad with up to 160 N·m" in asked
     assert "over socketcan can0, node 127." in asked

@@ -23,7 +23,9 @@ PATIENT: dict[str, Any] = {
     "period": SLOW,
     "answer_timeout": 5.0,
     "drive": ElmoOptions(heartbeat=10.0),
-    "limits": limits(missed_deadlines=10**6, saturated_samples=10**6),
+    "limits": limits(
+        missed_deadlines=10**6, saturated_samples=10**6, late_samples=10**6, late_share=1.0
+    ),
     "law": law().replace(bandwidth=15.0, robust_term=False),
 }
 
@@ -55,14 +57,16 @@ def test_a_whole_session_over_a_virtual_bus(
     assert not emulators()
     assert not drive.motor_on
     assert isinstance(recording, jid.Recording)
-    assert recording.time.size == 100
+    # A cycle that is over is skipped; how many are is the machine's affair.
+    assert 20 <= recording.time.size <= 100
+    assert recording.time[-1] <= 1.0
     assert recording.reference is not None
     # Sampled when asked for, never before, and in order; how late is the machine's affair.
     assert (np.diff(recording.time) > 0.0).all()  # when they were taken, not when they were due
     assert (np.diff(recording.time) > 0.0).all()
     assert np.ptp(recording.position) > np.radians(15.0)
     assert np.median(np.abs(recording.position - recording.reference)) < np.radians(3.0)
-    assert recording.metadata["timing"]["cycles"] >= 100
+    assert recording.metadata["timing"]["cycles"] >= recording.time.size
 
 
 def test_a_session_over_a_bus_that_gives_a_sender_its_own_frames_back() -> None:
@@ -82,7 +86,9 @@ def test_a_session_over_a_bus_that_gives_a_sender_its_own_frames_back() -> None:
         with EmulatorThread(there, drive, converter):
             recording = session(host, 1.0, **PATIENT).run()
     assert recording is not None
-    assert recording.time.size == 100
+    # A cycle that is over is skipped; how many are is the machine's affair.
+    assert 20 <= recording.time.size <= 100
+    assert recording.time[-1] <= 1.0
     assert recording.reference is not None
     assert np.median(np.abs(recording.position - recording.reference)) < np.radians(3.0)
     assert not drive.motor_on

@@ -1,5 +1,6 @@
 """Whatever goes wrong, the session stops for the right reason, and the motor is off a few cycles later."""
 
+import math
 import sys
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import jointid as jid
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
 from fault_cases import (
+    ANSWER,
     BEGIN,
     CASES,
     COMMAND,
@@ -26,6 +28,7 @@ from fault_matrix import row
 
 from jointid.hardware import SessionStoppedError
 from jointid.hardware.emulated.faults import DRIVE_FAILURES, BusFault
+from jointid.hardware.session.braking import BRAKED
 from jointid.hardware.session.limits import SessionLimits
 
 WATCHDOG = 0.05  # [s], of the drive, and the step it is looked at in
@@ -43,12 +46,18 @@ def test_fault_stops_the_session_and_the_motor(case: Case, tmp_path: Path) -> No
     # The last commands to the drive: no torque, then motor off; soon, and asked for.
     sent = bench.bus.assignments()
     assert [data for _, data in sent[-2:]] == [ZERO, OFF]
-    assert {data for when, data in sent if when > stop.moment} <= {ZERO, OFF}
-    assert 0.0 <= found.commanded_off <= 3 * PERIOD
+    braked = found.recording.metadata.get("braked")
+    took = 0.0 if braked is None else braked["time"]
+    assert (braked is not None) <= (stop.limit in BRAKED)
+    assert {data for when, data in sent if when > stop.moment + took} <= {ZERO, OFF}
+    assert 0.0 <= found.commanded_off - took <= 3 * PERIOD
+    if braked is not None:  # slower than before, and soon
+        assert took < 0.15
+        assert braked["left"] < braked["velocity"]
     assert not bench.elmo.motor_on
     assert bench.elmo.current == 0.0
     slowest = 4 * PERIOD if case.reachable else WATCHDOG + LOOK
-    assert found.motor_off <= slowest
+    assert found.motor_off - took <= slowest
     assert stop.motor_off is case.heard
     # What was recorded is there, and says why it ends.
     assert found.recording.metadata["stopped"] == stop.to_dict()
@@ -66,7 +75,7 @@ def test_every_limit_has_a_case_and_a_line_in_the_documentation(repo: Path) -> N
     assert limits <= stops
     assert stops - limits == {
         *("stale_position", "drive_fault", "heartbeat_lost", "host_heartbeat_lost"),
-        *("bus", "sensor", "user", "error"),
+        *("bus", "sensor", "user", "error", "torque_sign", "foreign_master", "command_echo"),
     }
     lines = (repo / "docs" / "hardware_limits.md").read_text(encoding="utf-8").splitlines()
     wording = {line.split("`")[1] for line in lines if line.startswith("| `")}
@@ -91,7 +100,8 @@ def test_a_failure_of_the_drive_is_explained(kind: str) -> None:
         BusFault(kind="duplicate", start=BEGIN, identifier=COMMAND),
         BusFault(kind="delay", start=BEGIN, identifier=POSITION, delay=0.2e-3),
         BusFault(kind="delay", start=BEGIN, identifier=COMMAND, delay=0.2e-3),
-        BusFault(kind="drop", start=BEGIN, stop=BEGIN + 0.5, identifier=REPLY),
+        BusFault(kind="drop", start=BEGIN, stop=BEGIN + 4 * PERIOD, identifier=REPLY),
+        BusFault(kind="drop", start=BEGIN, stop=BEGIN + 4 * PERIOD, identifier=COMMAND),
     ],
     ids=lambda fault: f"{fault.kind} {fault.identifier}",
 )
@@ -107,7 +117,18 @@ def test_a_tolerable_fault_does_not_stop_a_session(fault: BusFault) -> None:
 
 
 def test_a_run_whose_motor_was_not_seen_off_is_no_success() -> None:
-    bench = EmulatedSession((BusFault(kind="drop", start=BEGIN, identifier=REPLY),))
+    faults = tuple(
+        BusFault(kind="drop", start=math.inf, identifier=identifier)
+        for identifier in (REPLY, ANSWER)
+    )
+    bench = EmulatedSession(faults)
+
+    def watch(phase: str, when: float, *_: object) -> None:
+        if phase == "run" and when > 2.0 - 1.5 * PERIOD:
+            for fault in faults:
+                fault.start = bench.bus.now()
+
+    bench.observer = watch
     with pytest.raises(
         SessionStoppedError, match="the run is done, but the motor is not off"
     ) as found:

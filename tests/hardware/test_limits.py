@@ -211,17 +211,26 @@ def test_drive_that_tells_no_current_is_not_held_to_one() -> None:
 
 
 @pytest.mark.parametrize(
-    ("classes", "meaning"),
+    ("classes", "details", "meaning"),
     [
-        (0x40, "bus-off"),
-        (0x20, "no node acknowledges"),
-        (0x44, "controller in trouble.*bus-off"),
-        (0x2000, "unknown class 0x2000"),
-        (0x02, "^$"),
+        (0x40, 0, "bus-off"),
+        (0x20, 0, "no node acknowledges"),
+        (0x44, 0, "controller in trouble.*bus-off"),
+        (0x2000, 0, "unknown class 0x2000"),
+        (0x02, 0, "^$"),
+        (0x04, 0x40, "^$"),  # back to error-active
+        (0x204, 0x40, "^$"),  # with the counters of errors
+        (0x200, 0, "^$"),
+        (0x04, 0x20, "controller in trouble"),
+        (0x04, 0x41, "controller in trouble"),  # it has lost frames before it recovered
+        (0x104, 0x40, "trouble.*restarted after a bus-off"),
     ],
 )
-def test_error_frames_in_words(classes: int, meaning: str) -> None:
-    assert re.search(meaning, error_frame_meaning(classes))
+def test_error_frames_in_words(classes: int, details: int, meaning: str) -> None:
+    frame = bytes((0, details, 0, 0, 0, 0, 0, 0))
+    assert re.search(meaning, error_frame_meaning(classes, frame))
+    if not details:
+        assert re.search(meaning, error_frame_meaning(classes))
 
 
 @pytest.mark.parametrize("name", [f.name for f in fields(SessionLimits) if f.name != "position"])

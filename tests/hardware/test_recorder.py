@@ -131,9 +131,9 @@ def test_a_slow_disk_does_not_delay_the_session(
     recorder = Recorder(path, {})
     try:
         assert stuck.wait(PATIENCE)
-        recorder.sample((0.0, 1.0, 2.0, 3.0, 4.0, 5.0))
+        recorder.sample((0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 0.0))
         recorder.frame(0.25, 0x80, b"\x01", True)
-        until(lambda: path.read_text().endswith("0.0,1.0,2.0,3.0,4.0,5.0\n"))
+        until(lambda: path.read_text().endswith("4.0,5.0,0.0\n"))
         until(lambda: path.with_suffix(".log").read_text() == "(0.250000000) can0 080#01 T\n")
     finally:
         released.set()
@@ -250,7 +250,7 @@ def test_a_drive_that_does_not_tell_its_current(tmp_path: Path) -> None:
     path = tmp_path / "run.csv"
     recorder = Recorder(path, {})
     for k in range(10):
-        recorder.sample((0.1 * k, 0.2 * k, 1.0, 2.0, 0.0, float("nan")))
+        recorder.sample((0.1 * k, 0.2 * k, 1.0, 2.0, 0.0, float("nan"), 0.0))
     recorder.close({"stop": None})
     loaded = jid.load(path)
     assert loaded.current is None

@@ -25,7 +25,7 @@ COARSE = ElmoOptions(mantissa_bits=4)
 WIRINGS = {"converter": CONVERTER, "analog": ANALOG, "none": NO_SENSOR, "coarse": COARSE}
 ROUNDING = 1e-9  # [s] of a stamp in the log
 
-_BEFORE_CYCLES = 3  # heartbeats of ours while the motor is switched on
+_BEFORE_CYCLES = 2  # heartbeats of ours while the motor is switched on
 
 
 def ran(path: Path, drive: ElmoOptions = CONVERTER, **more: Any) -> jid.Recording:
@@ -185,7 +185,9 @@ def test_a_session_in_real_time(tmp_path: Path) -> None:
             period=period,
             answer_timeout=5.0,
             drive=drive,
-            limits=limits(missed_deadlines=10**6, saturated_samples=10**6),
+            limits=limits(
+                missed_deadlines=10**6, saturated_samples=10**6, late_samples=10**6, late_share=1.0
+            ),
             law=law().replace(bandwidth=15.0, robust_term=False),
             output=path,
         ).run()

@@ -39,7 +39,10 @@ def test_a_kilohertz_works_on_the_virtual_clock() -> None:
     bus.shutdown()
     assert recording is not None
     assert recording.time.size == 1000
-    assert np.allclose(np.diff(recording.time), 1e-3, rtol=0.0, atol=1e-9)
+    # A SYNC waits for the drive's heartbeat where that is on the wire: 65 bits.
+    steps = np.diff(recording.time) - 1e-3
+    assert np.abs(steps).max() < 65.1e-6
+    assert np.median(np.abs(steps)) < 1e-9
     assert recording.metadata["timing"]["missed"] == 0
     assert recording.reference is not None
     assert np.abs(recording.position - recording.reference).max() < np.radians(0.5)

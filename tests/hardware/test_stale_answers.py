@@ -4,7 +4,7 @@ import math
 
 import can
 import pytest
-from session_bench import JOINT, PERIOD, devices, joint
+from session_bench import JOINT, PERIOD, EchoingBus, devices, joint
 
 from jointid.hardware.can import canopen_frames as canopen
 from jointid.hardware.elmo.drive import ElmoDrive
@@ -90,18 +90,6 @@ def test_an_answer_that_comes_twice_is_one_answer() -> None:
         now = bench.bus.now()
         assert bench.wording() == pytest.approx(now, abs=1.01e-3)
         bench.drive.command(0.0)
-
-
-class EchoingBus(EmulatedBus):
-    """Gives the host its own frames back, as udp_multicast does."""
-
-    def send(self, msg: can.Message, timeout: float | None = None) -> None:
-        super().send(msg, timeout)
-        self.transmit(
-            can.Message(
-                arbitration_id=msg.arbitration_id, data=bytes(msg.data), is_extended_id=False
-            )
-        )
 
 
 @pytest.mark.parametrize("node", [1, 2, 127])

@@ -155,8 +155,9 @@ def test_its_fault_stops_the_session_under_its_name() -> None:
     with pytest.raises(SessionStoppedError) as stopped:
         Session(wheel, LAW, SWING, LIMITS, options=OPTIONS, observer=watch).run()
     stop = stopped.value.stop
-    assert (stop.limit, stop.phase) == ("stale_position", "run")
-    assert stop.time == pytest.approx(1.0, abs=5.0 * PERIOD)
+    # A few samples may be late; these are too many.
+    assert (stop.limit, stop.phase) == ("late_samples", "run")
+    assert stop.time == pytest.approx(1.0, abs=9.0 * PERIOD)
     assert "nothing came within 1.5 ms" in stop.message
     assert (wheel.on, wheel.torque) == (False, 0.0)
     assert wheel.calls[-1] == "close"

@@ -103,10 +103,10 @@ def test_bad_input_is_refused(changes: dict[str, Any], message: str) -> None:
 def test_units_follow_the_kind() -> None:
     turning, sliding = recording(), recording(kind="prismatic")
     assert [turning.unit(s) for s in SIGNALS] == (
-        ["s", "rad", "rad/s", "N·m", "1", "rad", "rad", "°C", "N·m", "A"]
+        ["s", "rad", "rad/s", "N·m", "1", "rad", "rad", "°C", "N·m", "A", "1"]
     )
     assert [sliding.unit(s) for s in SIGNALS] == (
-        ["s", "m", "m/s", "N", "1", "m", "m", "°C", "N·m", "A"]
+        ["s", "m", "m/s", "N", "1", "m", "m", "°C", "N·m", "A", "1"]
     )
     with pytest.raises(InputError, match="signal: 'torqe' is not a signal; did you mean 'torque'"):
         turning.unit("torqe")

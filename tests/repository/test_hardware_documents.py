@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from jointid.hardware.bench.bench import Bench, BusOptions, Emulation
+from jointid.hardware.bench.first_motion_options import FirstMotionOptions
 from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.elmo.emulated_bench import ElmoEmulation
 from jointid.hardware.elmo.options import ElmoOptions
@@ -32,6 +33,7 @@ TABLES = {
     "[session.torque]": (SyncedConverter, AnalogInput, SensorScaling),
     "[session.limits]": (SessionLimits,),
     "[session.real_time]": (RealTimeOptions,),
+    "[session.first_motion]": (FirstMotionOptions,),
     "[session.emulated]": (Emulation, ElmoEmulation),
 }
 

@@ -316,6 +316,7 @@ UsableIntervals usable_intervals(const RecordingView& r, const MotionScale& scal
   if (mask_standstill && r.torque_hold == Hold::zero_order) mark_jolts(r, scale, result.usable);
   if (r.min_speed > 0.0) mark_slow(r, result.usable);
   for (const auto gap : r.gap_after) result.usable[static_cast<std::size_t>(gap)] = 0;
+  for (const auto interval : r.doubtful) result.usable[static_cast<std::size_t>(interval)] = 0;
   return result;
 }
 

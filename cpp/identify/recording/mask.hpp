@@ -35,7 +35,8 @@ MotionScale motion_scale(const RecordingView& recording);
 /// is kept: dropping all slow samples biases viscous friction. But where a held command jumps by 5
 /// % of the largest torque at a reversal, as when friction is compensated by the sign of a
 /// velocity, two intervals either side are left out: the instant of the reversal within the
-/// interval is unknown. With a least speed also every interval that begins or ends below it.
+/// interval is unknown. With a least speed also every interval that begins or ends below it, and
+/// always those that the recording itself calls doubtful: a sample was late, or a command unseen.
 struct UsableIntervals {
   std::vector<std::uint8_t> usable;
   std::int64_t standing = 0;  ///< samples found sticking or standing still

@@ -63,6 +63,10 @@ void RecordingView::validate() const {
     if (gap < 0 || gap >= n - 1)
       throw std::invalid_argument("gap_after must lie inside the recording");
   }
+  for (const auto interval : doubtful) {
+    if (interval < 0 || interval >= n - 1)
+      throw std::invalid_argument("doubtful must lie inside the recording");
+  }
 }
 
 }  // namespace jointid::identify

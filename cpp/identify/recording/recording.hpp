@@ -37,11 +37,13 @@ struct RecordingView {
   Signal sensor;
   Hold torque_hold;
   std::vector<std::int64_t> gap_after;
-  double min_speed = 0.0;  ///< [rad/s or m/s]; what is slower is left out
+  double min_speed = 0.0;              ///< [rad/s or m/s]; what is slower is left out
+  std::vector<std::int64_t> doubtful;  ///< first sample of each interval that must not be used
 
   RecordingView(const Recording& r);  // implicit: a recording is its own view
   RecordingView(Signal time_, Signal position_, Signal velocity_, Signal torque_, Signal sensor_,
-                Hold hold, std::vector<std::int64_t> gaps, double slowest = 0.0)
+                Hold hold, std::vector<std::int64_t> gaps, double slowest = 0.0,
+                std::vector<std::int64_t> unusable = {})
       : time(time_),
         position(position_),
         velocity(velocity_),
@@ -49,7 +51,8 @@ struct RecordingView {
         sensor(sensor_),
         torque_hold(hold),
         gap_after(std::move(gaps)),
-        min_speed(slowest) {}
+        min_speed(slowest),
+        doubtful(std::move(unusable)) {}
   [[nodiscard]] Eigen::Index samples() const { return time.size(); }
   [[nodiscard]] bool has_sensor() const { return sensor.size() > 0; }
   /// As `Recording::validate`.

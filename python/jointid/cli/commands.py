@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from jointid.cli.arguments import fixed_values, load_all, refinements
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
 from jointid.cli.parser import BAD_USAGE
+from jointid.cli.proof import check, first_motion
 from jointid.cli.session import emulate, run
 from jointid.cli.simulation import simulate
 from jointid.cli.study import sweep
@@ -245,6 +246,8 @@ COMMANDS: dict[str, Callable[[argparse.Namespace], int | None]] = {
     "sweep": sweep,
     "run": run,
     "emulate": emulate,
+    "check": check,
+    "first-motion": first_motion,
     "report": report,
     "info": info,
 }

@@ -77,7 +77,16 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "output": "--output",
         "save": "--save",
     },
+    "check": {"emulate": "--emulate", "seed": "--seed"},
+    "first-motion": {
+        "emulate": "--emulate",
+        "seed": "--seed",
+        "compare_friction": "--unknown-friction",
+        "largest_torque": "--largest-torque",
+    },
     "emulate": {
+        "json": "--json",
+        "rest": "--rest",
         "interface": "--interface",
         "channel": "--channel",
         "duration": "--duration",
@@ -112,7 +121,7 @@ FILES: Mapping[str, str] = {
 FLAGS = frozenset(
     {
         *("--drop-copies", "--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run"),
-        *("--selftest", "--causes"),
+        *("--selftest", "--causes", "--unknown-friction", "--json"),
     }
 )
 """Options that may stand without a value."""

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from jointid.base.errors import InputError
 from jointid.cli.arguments import TEXT, decimal, whole, whole_seed
 from jointid.cli.outputs import check_folder, check_output_folder
+from jointid.cli.proof import missing_certificate
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
@@ -39,7 +40,9 @@ def add_run(commands: Any) -> None:
         formatter_class=TEXT,
     )
     run.add_argument("joint", type=Path, help="joint file (.toml) with a table [session]")
-    run.add_argument("--cycles", type=whole, default=2, help="number of cycles (default 2)")
+    run.add_argument(
+        "--cycles", type=whole, default=2, help="number of cycles (default 2); 0: only record"
+    )
     run.add_argument(
         "--emulate", action="store_true", help="an emulated drive and joint on virtual time"
     )
@@ -47,6 +50,11 @@ def add_run(commands: Any) -> None:
         "--dry-run", action="store_true", help="only run the pre-flight checks; the motor stays off"
     )
     run.add_argument("--yes", action="store_true", help="do not ask before a real joint moves")
+    run.add_argument(
+        "--force",
+        action="store_true",
+        help="move a real joint whose bench has no valid certificate of `jointid first-motion`",
+    )
     run.add_argument(
         "--seed",
         type=whole_seed,
@@ -94,6 +102,17 @@ def add_emulate(commands: Any) -> None:
     emulate.add_argument(
         "--seed", type=whole_seed, default=0, help="seed of the sensor's noise (default 0)"
     )
+    emulate.add_argument(
+        "--json",
+        action="store_true",
+        help="print what happens to the drive (state, motor, failure), a line of JSON each",
+    )
+    emulate.add_argument(
+        "--rest",
+        type=decimal,
+        default=0.0,
+        help="on a machine that wakes slowly: wake so seldom [s]; frames are so much later (default 0)",
+    )
 
 
 def emulate(arguments: argparse.Namespace) -> int:
@@ -104,21 +123,37 @@ def emulate(arguments: argparse.Namespace) -> int:
     from jointid.hardware.bench.bench import Bench
     from jointid.hardware.bench.opened_drive import emulated_devices
     from jointid.hardware.can.bus import open_bus
+    from jointid.hardware.emulated.journal import Journal
     from jointid.hardware.emulated.thread import EmulatorThread
+    from jointid.hardware.emulated.wire import bitrate_to_emulate
 
     bench = Bench.load(arguments.joint)
     duration = math.inf if arguments.duration is None else arguments.duration
     if not duration > 0.0:
         raise InputError("more than 0 s is expected", argument="duration", value=duration)
+    if not 0.0 <= arguments.rest <= 0.02:
+        raise InputError("0 to 0.02 s is expected", argument="rest", value=arguments.rest)
     interface = arguments.interface or bench.bus.interface
     channel = arguments.channel or bench.bus.channel
-    devices = emulated_devices(bench, arguments.seed)
+    devices: tuple[Any, ...] = emulated_devices(bench, arguments.seed)
+    bitrate = bitrate_to_emulate(interface, channel, float(bench.bus.bitrate))
+    journal = None
+    if arguments.json:
+        if not hasattr(devices[0], "condition"):
+            raise InputError(
+                f"the emulated drive of the type {bench.drive_type!r} does not tell what happens to it",
+                argument="json",
+            )
+        journal = Journal(devices[0], sys.stdout)
+        devices = (*devices, journal)
     with (
         open_bus(interface=interface, channel=channel, bitrate=bench.bus.bitrate) as bus,
-        EmulatorThread(bus, *devices) as emulator,
+        EmulatorThread(
+            bus, *devices, bitrate=bitrate, watch=journal, rest=arguments.rest
+        ) as emulator,
     ):
-        kind = bench.drive_type
-        print(f"emulated drive ({kind}) on {interface} {channel}; Ctrl-C ends it", flush=True)
+        said = f"emulated drive ({bench.drive_type}) on {interface} {channel}; Ctrl-C ends it"
+        print(said, file=sys.stderr if arguments.json else sys.stdout, flush=True)
         end = time.monotonic() + duration
         while emulator.running and time.monotonic() < end:
             time.sleep(min(0.05, max(0.0, end - time.monotonic())))
@@ -143,6 +178,11 @@ def run(arguments: argparse.Namespace) -> int:
                 ).run(dry_run=True)
             print("all pre-flight checks passed")
             return 0
+        if not (arguments.emulate or arguments.force):
+            refused = missing_certificate(arguments.joint, bench)
+            if refused:
+                print(f"jointid run: {refused}", file=sys.stderr)
+                return STOPPED
         if not (arguments.emulate or arguments.yes or _agreed(bench)):
             print("jointid run: not started", file=sys.stderr)
             return STOPPED
@@ -172,14 +212,19 @@ def run(arguments: argparse.Namespace) -> int:
     else:
         print(result.report())
         if arguments.output is not None:
-            print(f"\nrecordings, frame logs, estimates and tracking_error.png: {arguments.output}")
+            written = "recordings, frame logs" + (", estimates" if result.estimates else "")
+            print(f"\n{written} and tracking_error.png: {arguments.output}")
     return 0
 
 
 def _check(arguments: argparse.Namespace) -> None:
     """Before the joint moves: refuse outputs that cannot be written."""
-    if arguments.cycles < 1:
-        raise InputError("at least 1 is expected", argument="cycles", value=arguments.cycles)
+    if arguments.cycles < 0:
+        raise InputError("at least 0 is expected", argument="cycles", value=arguments.cycles)
+    if arguments.cycles == 0 and arguments.save is not None:
+        raise InputError(
+            "with 0 cycles nothing is identified", argument="save", value=arguments.save
+        )
     if arguments.save is not None and arguments.save.suffix != ".toml":
         raise InputError("a joint file ends in .toml", argument="save", value=arguments.save)
     check_folder("save", arguments.save)
@@ -257,6 +302,7 @@ def _write(result: Commissioning, folder: Path) -> None:
         tracking_error(result.recordings(), axes)
         figure.savefig(folder / "tracking_error.png", dpi=150, bbox_inches="tight")
         pyplot.close(figure)
-    save_report(result.estimates[-1], folder / "report.html", action=ADVICE.of_action)
+    if result.estimates:
+        save_report(result.estimates[-1], folder / "report.html", action=ADVICE.of_action)
     write_whole(folder / "ring.txt", (result.report() + "\n").encode())
     write_whole(folder / "ring.json", json.dumps(result.to_dict(), indent=1).encode())

@@ -12,17 +12,23 @@ if TYPE_CHECKING:
 def text_report(result: Commissioning) -> str:
     """Tables of tracking errors and parameters."""
     lines = _runs(result)
-    lines += ["", *_parameters(result)]
+    if result.estimates:
+        lines += ["", *_parameters(result)]
     if result.without_ripple is not None and result.truth:
         lines += ["", _ripple(result)]
-    warned = [f"- {found.code}: {found.message}" for found in result.estimates[-1].warnings]
+    warned = [
+        f"- {found.code}: {found.message}"
+        for estimate in result.estimates[-1:]
+        for found in estimate.warnings
+    ]
     if warned:
         lines += ["", "The last estimate warns:", *warned]
+    lines += _timing(result)
     return "\n".join(lines)
 
 
 def _runs(result: Commissioning) -> list[str]:
-    revolute = result.estimates[0].joint.kind == "revolute"
+    revolute = result.runs[0].recording.kind == "revolute"
     unit, factor = ("mrad", 1e3) if revolute else ("mm", 1e3)
     rows = [["run", f"rms error [{unit}]", f"largest [{unit}]", "than the first"]]
     last = () if result.true_run is None else (result.true_run,)
@@ -37,11 +43,31 @@ def _runs(result: Commissioning) -> list[str]:
         for run in (*result.runs, *last)
     ]
     lines = [*_table(rows), "", "Errors without each run's first sixth, by the encoder."]
+    if not result.estimates:
+        return lines
     summary = f"The tracking error fell by a factor of {result.improvement:.1f}"
     if result.true_run is not None:
         ratio = result.runs[-1].tracking_error / result.true_run.tracking_error
         summary += f"; it ended at {ratio:.3f} times that with the true parameters"
     return [*lines, summary + "."]
+
+
+def _timing(result: Commissioning) -> list[str]:
+    """How late samples and loop were in each run."""
+    head = ["timing", "cycles", "late or lost", "skipped", "most in a row"]
+    rows = [[*head, "woke late [ms]", "time left [ms]"]]
+    for name, recording in result.recordings().items():
+        timing = recording.metadata.get("timing")
+        if timing is None:
+            continue
+        row = [name, *(str(timing[key]) for key in ("cycles", "lost", "skipped", "most_in_row"))]
+        woke = f"{1e3 * timing['woke_late_median']:.2f} to {1e3 * timing['woke_late_most']:.2f}"
+        left = f"{1e3 * timing['slack_median']:.2f} to {1e3 * timing['slack_least']:.2f}"
+        rows.append([*row, woke, left])
+    if len(rows) == 1:
+        return []
+    legend = "Late or lost samples are left out of the estimates; times are median to worst."
+    return ["", *_table(rows), "", legend]
 
 
 def _compared(ratio: float) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,12 +17,14 @@ from jointid.hardware.bench.opened_drive import open_drive
 from jointid.hardware.session.session import Session
 from jointid.identification.identification import identify
 from jointid.identification.search.search import Search
+from jointid.joint.joint import Joint
 from jointid.joint.model import Model
 from jointid.recording.recording import Recording
 from jointid.simulation.arguments import Controller
 from jointid.simulation.scenario import believing
 
 Observer = Callable[..., object]
+_ENVELOPE = 2.0  # times what an identified joint needs
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,7 +59,7 @@ class Commissioning:
     runs : tuple of BenchRun
         The initial one, then one for each cycle that `agree` allowed.
     estimates : tuple of Estimate
-        One for each cycle, each of all that was recorded until then.
+        One for each cycle, each of all that was recorded until then; none when the joint was only recorded.
     truth : mapping of str to float
         Of an emulated joint; empty otherwise.
     true_run : BenchRun or None
@@ -128,7 +130,8 @@ def commission(
     bench : Bench
         Its joint holds the parameters assumed at first.
     cycles : int
-        Number of cycles: identify and run again. Default 2.
+        Number of cycles: identify and run again. Default 2. 0: the joint is moved once and recorded, by any
+        controller.
     emulate : bool
         Move an emulated joint on a bus with virtual time; at the end once with the true parameters.
         Default False: the real one.
@@ -148,17 +151,19 @@ def commission(
     Raises
     ------
     InputError
-        The controller uses no estimates, `cycles` is below 1, or the bench cannot be emulated.
+        The controller uses no estimates, `cycles` is negative, or the bench cannot be emulated.
     SessionRefusedError, SessionStoppedError
         As in `Session.run`; what was recorded until then is in the folder.
     Exception
         Whatever a session or a callable raises: with an attribute `recordings`, a dict of what was recorded
         until then by the name of the run, e.g. "initial"; the last one may be incomplete.
     """
-    if cycles < 1:
-        raise InputError("at least 1 is expected", argument="cycles", value=cycles)
+    if cycles < 0:
+        raise InputError("at least 0 is expected", argument="cycles", value=cycles)
     search = Search(seed=seed, threads=threads)
-    controller = believing(bench.controller, bench.joint)
+    controller = bench.controller
+    if cycles or "coulomb" in controller.asdict():
+        controller = believing(controller, bench.joint)
     report = callback if callback is not None else lambda _: None
     folder = None if output is None else Path(output)
     if folder is not None:
@@ -169,18 +174,22 @@ def commission(
     recordings: dict[str, Recording] = {}
     with open_drive(bench, emulate=emulate, seed=seed) as drive:
 
-        def run(name: str, law: Controller) -> BenchRun:
+        def run(name: str, law: Controller, found: Joint | None = None) -> BenchRun:
             report(f"run: {name}")
             place = None if folder is None else folder / f"{name.replace(' ', '_')}.csv"
+            limits = bench.limits
+            if found is not None and limits.torque_envelope is None:
+                limits = replace(limits, torque_envelope=_ENVELOPE)
             session = Session(
                 drive,
                 law,
                 bench.trajectory,
-                bench.limits,
+                limits,
                 options=bench.options,
                 output=place,
                 observer=observer,
                 real_time=None if emulate else bench.real_time,
+                joint=found,
             )
             try:
                 recording = session.run()
@@ -201,14 +210,15 @@ def commission(
                     estimate.save(folder / f"cycle_{cycle}.json")
                 if agree is not None and not agree(estimate):
                     break
-                runs.append(run(f"cycle {cycle}", believing(controller, estimate.joint)))
-            if emulate:
+                found = estimate.joint
+                runs.append(run(f"cycle {cycle}", believing(controller, found), found))
+            if emulate and cycles:
                 true_run = run("true parameters", believing(controller, true_joint(bench)))
         except (Exception, KeyboardInterrupt) as error:
             _keep(error, recordings)
             raise
     plain = None
-    if bench.joint.model.resolved.ripple:
+    if estimates and bench.joint.model.resolved.ripple:
         before = [each.recording for each in runs[: len(estimates)]]
         plain = identify(before, bench.joint, model=Model(ripple=()), search=search)
     truth = bench.emulation.truth if emulate and bench.emulation is not None else {}

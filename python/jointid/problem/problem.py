@@ -196,4 +196,5 @@ class Problem:
             torque_hold=_HOLDS[self.hold(number)],
             gap_after=[gap.index for gap in recording.gaps],
             min_speed=self.min_speed,
+            doubtful=list(recording.doubtful),
         )

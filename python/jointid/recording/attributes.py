@@ -25,6 +25,16 @@ def check_torque_hold(torque_hold: object) -> None:
         )
 
 
+def check_attributes(kind: object, torque_hold: object, name: object, derived: object) -> None:
+    """Raise `InputError` for an attribute of a recording that is of a wrong kind."""
+    check_kind(kind)
+    check_torque_hold(torque_hold)
+    if not isinstance(name, str):
+        raise InputError("a string is expected", argument="name", value=name)
+    if not isinstance(derived, bool):
+        raise InputError("true or false is expected", argument="velocity_derived", value=derived)
+
+
 def json_mapping(argument: str, mapping: Mapping[str, Any]) -> Mapping[str, Any]:
     """Return a read-only copy of a mapping, as JSON gives it back.
 

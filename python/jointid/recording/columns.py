@@ -154,6 +154,8 @@ def _candidates(table: Table, columns: Mapping[str, str | int | None]) -> dict[s
     for index, header in enumerate(table.headers):
         name, unit, unknown = parsed(header)
         signal_here = chosen.get(index) or ALIASES.get(name)
+        if signal_here == "late" and index not in chosen and table.saved is None:
+            continue  # elsewhere a column of this name may be anything
         if signal_here and (index in chosen or signal_here not in columns):
             column_here = Column(index=index, unit=unit, unknown=unknown)
             candidates.setdefault(signal_here, []).append(column_here)

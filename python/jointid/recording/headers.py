@@ -17,6 +17,7 @@ ALIASES: dict[str, str] = {
         "temperature": "temperature",
         "motor_torque": "motor_torque",
         "current": "current motor_current",
+        "late": "late late_cycles",
     }.items()
     for alias in aliases.split()
 }

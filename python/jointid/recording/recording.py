@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jointid.base.errors import InputError
-from jointid.recording.attributes import check_kind, check_torque_hold, json_mapping
+from jointid.recording.attributes import check_attributes, json_mapping
 from jointid.recording.derived import DerivedVelocity, derived_velocity
 from jointid.recording.gaps import Gap, find_gaps
 from jointid.recording.resampling import resampled
@@ -60,6 +60,9 @@ class Recording:
         Torque on the motor's side of the gear [N·m].
     current : array_like, shape (n,), optional
         Motor current [A].
+    late : array_like, shape (n,), optional
+        Cycles of a session that have no sample between the row before and this one, and half a cycle for a
+        command that was not confirmed; identification leaves such intervals out. Default: 0 throughout.
     kind : {"revolute", "prismatic"}
         Default ``"revolute"``.
     torque_hold : {"zoh", "linear"}, optional
@@ -90,6 +93,7 @@ class Recording:
     temperature: FloatArray | None
     motor_torque: FloatArray | None
     current: FloatArray | None
+    late: FloatArray | None
     kind: Kind
     torque_hold: TorqueHold | None
     velocity_derived: bool
@@ -110,6 +114,7 @@ class Recording:
         temperature: npt.ArrayLike | None = None,
         motor_torque: npt.ArrayLike | None = None,
         current: npt.ArrayLike | None = None,
+        late: npt.ArrayLike | None = None,
         kind: str = "revolute",
         torque_hold: str | None = None,
         velocity_derived: bool = False,
@@ -117,26 +122,10 @@ class Recording:
         metadata: Mapping[str, Any] | None = None,
         truth: Mapping[str, Any] | None = None,
     ) -> None:
-        check_kind(kind)
-        check_torque_hold(torque_hold)
-        if not isinstance(name, str):
-            raise InputError("a string is expected", argument="name", value=name)
-        if not isinstance(velocity_derived, bool):
-            raise InputError(
-                "true or false is expected", argument="velocity_derived", value=velocity_derived
-            )
-        arguments: dict[str, npt.ArrayLike | None] = {
-            "time": time,
-            "position": position,
-            "velocity": velocity,
-            "torque": torque,
-            "sensor": sensor,
-            "reference": reference,
-            "link_position": link_position,
-            "temperature": temperature,
-            "motor_torque": motor_torque,
-            "current": current,
-        }
+        check_attributes(kind, torque_hold, name, velocity_derived)
+        given = (time, position, velocity, torque, sensor, reference, link_position)
+        rest = (temperature, motor_torque, current, late)
+        arguments = dict(zip(SIGNALS, (*given, *rest), strict=True))
         for needed in ("time", "position"):
             if arguments[needed] is None:
                 raise InputError("a recording needs time and position", argument=needed, value=None)
@@ -216,6 +205,12 @@ class Recording:
     def gaps(self) -> tuple[Gap, ...]:
         """Intervals longer than 3.5 median sample periods, in order of time."""
         return find_gaps(self.time)
+
+    @functools.cached_property
+    def doubtful(self) -> tuple[int, ...]:
+        """First sample of each interval that is left out because of what `late` says."""
+        late = () if self.late is None else self.late[1:]
+        return tuple(np.flatnonzero(late).tolist())
 
     @functools.cached_property
     def derived(self) -> DerivedVelocity:

@@ -14,7 +14,7 @@ FloatArray = npt.NDArray[np.float64]
 
 SIGNALS = (
     *("time", "position", "velocity", "torque", "sensor", "reference", "link_position"),
-    *("temperature", "motor_torque", "current"),
+    *("temperature", "motor_torque", "current", "late"),
 )
 KINDS = ("revolute", "prismatic")
 SHORTEST = 8  # samples: fewer give no window with a residual
@@ -32,6 +32,7 @@ _DIMENSIONS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "temperature": (("temperature",), ("temperature",)),
     "motor_torque": (("torque",), ("torque",)),
     "current": (("current",), ("current",)),
+    "late": (("cycles",), ("cycles",)),
 }
 # Dimension → its SI unit in texts and in headers.
 _SI = {
@@ -45,6 +46,7 @@ _SI = {
     "raw reading": ("1", "raw"),
     "temperature": ("°C", "degC"),
     "current": ("A", "A"),
+    "cycles": ("1", "cycles"),
 }
 
 

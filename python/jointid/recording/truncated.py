@@ -75,7 +75,8 @@ def no_sample(metadata: Mapping[str, Any]) -> str:
 def unrecorded(saved: Mapping[str, Any], values: Mapping[str, FloatArray]) -> list[str]:
     """Return the signals that a session's file has a column for, but no values.
 
-    These are a current with missing numbers, and a sensor that reads exactly 0 throughout.
+    These are a current with missing numbers, a sensor that reads exactly 0 throughout, and a run in which
+    nothing was late.
     """
     metadata = saved.get("metadata")
     if not (isinstance(metadata, Mapping) and metadata.get("session") is True):
@@ -85,6 +86,8 @@ def unrecorded(saved: Mapping[str, Any], values: Mapping[str, FloatArray]) -> li
         found.append("current")
     if "sensor" in values and not values["sensor"].any():
         found.append("sensor")
+    if "late" in values and not values["late"].any():
+        found.append("late")
     return found
 
 

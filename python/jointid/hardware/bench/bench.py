@@ -11,6 +11,7 @@ from typing import Any
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.hardware.bench.drive_types import DEFAULT_TYPE, drive_type
+from jointid.hardware.bench.first_motion_options import FirstMotionOptions
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.options import SessionOptions
 from jointid.hardware.session.realtime import RealTimeOptions
@@ -101,6 +102,7 @@ class Bench:
         What an emulated drive moves.
     drive_type : str
         Name of the drive's type, see `DriveType`. Default: that of a joint file that names none.
+    first_motion : FirstMotionOptions
     """
 
     joint: Joint
@@ -113,6 +115,7 @@ class Bench:
     real_time: RealTimeOptions = field(default_factory=RealTimeOptions)
     emulation: Emulation | None = None
     drive_type: str = DEFAULT_TYPE
+    first_motion: FirstMotionOptions = field(default_factory=FirstMotionOptions)
 
     @property
     def address(self) -> str:

@@ -10,6 +10,7 @@ from jointid import _core
 from jointid.base.errors import InputError
 from jointid.hardware.bench.bench import Bench, BusOptions, Emulation, joint_with_truth
 from jointid.hardware.bench.drive_types import DEFAULT_TYPE, DriveType, drive_type, drive_type_names
+from jointid.hardware.bench.first_motion_options import FirstMotionOptions
 from jointid.hardware.bench.table import Table, types_of
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.options import SessionOptions, check_cycles
@@ -22,7 +23,16 @@ from jointid.simulation.scenario import believing
 from jointid.simulation.stepped import stepped_joint
 from jointid.simulation.trajectory import Trajectory
 
-_TABLES = ("bus", "drive", "trajectory", "controller", "limits", "real_time", "emulated")
+_TABLES = (
+    "bus",
+    "drive",
+    "trajectory",
+    "controller",
+    "limits",
+    "real_time",
+    "emulated",
+    "first_motion",
+)
 _REQUIRED = {
     "trajectory": "which describes the motion",
     "controller": "which describes the controller",
@@ -88,6 +98,7 @@ def load_bench(path: str | Path) -> Bench:
         if "emulated" in session.entries
         else None,
         drive_type=name,
+        first_motion=session.table("first_motion").make(FirstMotionOptions),
     )
 
 

@@ -127,6 +127,13 @@ class DriveType:
         found: Mapping[str, Any] = plain(options)
         return found
 
+    def wiring(self, options: Any) -> Mapping[str, Any]:
+        """Return those options that decide about signs and scales: a bench certificate is void when one changes.
+
+        Default: all of them.
+        """
+        return self.metadata(options)
+
     def recorded_options(self, metadata: Mapping[str, Any]) -> Any:
         """Return the options that `metadata` wrote; the default ones when a recording has none.
 

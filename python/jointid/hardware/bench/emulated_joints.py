@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.hardware.bench.bench import Bench, Emulation, joint_with_truth
@@ -9,18 +11,32 @@ from jointid.joint.joint import Joint
 from jointid.simulation.stepped import stepped_joint
 
 
-def true_joint(bench: Bench) -> Joint:
+def true_joint(bench: Bench, *, gear_ratio: float | None = None) -> Joint:
     """Return the emulated joint, with its true parameters.
+
+    Parameters
+    ----------
+    bench : Bench
+    gear_ratio : float, optional
+        The true one, where the joint file's is wrong. Default: the joint file's.
 
     Raises
     ------
     InputError
         The bench does not describe an emulated joint.
     """
-    return joint_with_truth(bench.joint, _emulation(bench).truth)
+    joint = joint_with_truth(bench.joint, _emulation(bench).truth)
+    return joint if gear_ratio is None else joint.replace(gear_ratio=gear_ratio)
 
 
-def emulated_joint(bench: Bench, seed: int = 0) -> _core.SteppedJoint:
+def emulated_joint(
+    bench: Bench,
+    seed: int = 0,
+    *,
+    gear_ratio: float | None = None,
+    sensor_sign: float = 1.0,
+    unlimited: bool = False,
+) -> _core.SteppedJoint:
     """Return the simulated joint that an emulated drive of this bench moves, at its first position.
 
     Parameters
@@ -28,13 +44,25 @@ def emulated_joint(bench: Bench, seed: int = 0) -> _core.SteppedJoint:
     bench : Bench
     seed : int
         Of the torque sensor's noise. Default 0.
+    gear_ratio : float, optional
+        The true one, where the joint file's is wrong. Default: the joint file's.
+    sensor_sign : float
+        -1: the torque sensor is connected the wrong way round. Default 1.
+    unlimited : bool
+        The joint file's torque limit does not hold for the true torque: the drive limits its current, and what
+        torque this gives the joint file does not know. Default False.
 
     Raises
     ------
     InputError
         The bench does not describe an emulated joint, or not completely.
     """
-    joint, emulation = true_joint(bench), _emulation(bench)
+    joint, emulation = true_joint(bench, gear_ratio=gear_ratio), _emulation(bench)
+    gain = joint.parameters.get("sensor_gain")
+    if sensor_sign < 0 and gain is not None and gain.value is not None:
+        joint = joint.with_parameters({"sensor_gain": -gain.value})
+    if unlimited:
+        joint = joint.replace(limits=replace(joint.limits, torque=None, current=None))
     return stepped_joint(
         joint,
         sensors=emulation.sensors,

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from jointid.base.errors import InputError
 from jointid.hardware.bench.drive_types import DEFAULT_TYPE, drive_type
 from jointid.hardware.can.frame_log import logged_frames
-from jointid.hardware.session.cycle import LoggedCycle, held_torque, target_at
+from jointid.hardware.session.cycle import LoggedCycle, capped, held_torque, target_at
 from jointid.joint.joint import Joint
 from jointid.recording.readers.loading import load
 from jointid.recording.recording import Recording
@@ -98,29 +98,32 @@ def replay(
         if stamped is not None:
             identity["stamped_frames"] = stamped
         every = adapter.decode(logged_frames(file), joint, drive_options, identity)
-        cycles = every[before:]
-        _check_count(len(cycles), before, session)
+        kept = _recorded(every, before)
+        late = _late(every, kept, before, session)
+        _check_count(len(kept), before, session)
     except InputError as error:
         raise error.at(str(file)) from error
     if session is not None and (trajectory is None or "truncated" not in metadata):
-        cycles = cycles[: len(session.time)]
-    torque = np.concatenate(([0.0], _column(every, "torque")))[before : before + len(cycles) + 1]
+        kept, late = kept[: len(session.time)], late[: len(session.time)]
+    cycles = [every[k] for k in kept]
+    torque = np.concatenate(([0.0], _column(every, "torque")))
     taken, current = _column(cycles, "taken"), _column(cycles, "current")
-    due = period * np.arange(len(cycles))
-    shift = np.round(taken - taken[0] - due, 9)
+    due = period * (np.arange(len(cycles)) + np.cumsum(np.floor(late)))
+    shift = np.round(taken - taken[0] - due + due[0], 9)
     acted = _column(cycles, "acted") - taken + adapter.command_latency(drive_options)
     sensor = _column(cycles, "reading")
     reference = None if session is None else session.reference
     if trajectory is not None:
         wanted = trajectory.sample(due)
-        reference = target_at(*wanted, shift)
+        reference = target_at(*wanted, capped(shift, period))
     return Recording(
         time=due + shift,
         position=_column(cycles, "position"),
-        torque=held_torque(torque[:-1], torque[1:], acted, period),
+        torque=held_torque(torque[kept], torque[kept + 1], acted, period),
         sensor=sensor if sensor.any() else None,  # 0 throughout: there is none
         reference=reference,
         current=None if np.isnan(current).any() else current,
+        late=late if late.any() else None,
         torque_hold="zoh",
         name=file.stem,
         metadata={**metadata, "replayed": file.name},
@@ -158,6 +161,32 @@ def _check_count(found: int, before: int, session: Recording | None) -> None:
         raise InputError(
             f"{max(0, found)} cycles after the first {before}; at least {_LEAST} are expected"
         )
+
+
+def _recorded(every: Sequence[LoggedCycle], before: int) -> npt.NDArray[np.intp]:
+    """Cycles of the run that a session keeps: those with a sample, but the first behind one without."""
+    lost = np.array([bool(cycle.lost) for cycle in every], dtype=np.bool_)
+    waited = np.concatenate([[False], lost[:-1]])
+    waited[before : before + 1] = False
+    return np.flatnonzero(~lost[before:] & ~waited[before:]) + before
+
+
+def _late(
+    every: Sequence[LoggedCycle],
+    kept: npt.NDArray[np.intp],
+    before: int,
+    session: Recording | None,
+) -> FloatArray:
+    """What was late before each row: as recorded; without a recording, as many cycles as have no sample."""
+    late = np.diff(kept, prepend=before - 1).astype(np.float64) - 1.0
+    if session is None:
+        return late
+    known = len(session.time)
+    recorded = np.zeros(known) if session.late is None else session.late
+    if late[:known].sum() > np.floor(recorded).sum():
+        raise InputError(next(cycle.lost for cycle in every[before:] if cycle.lost))
+    late[:known] = recorded[: len(late)]
+    return late
 
 
 def _column(cycles: Sequence[LoggedCycle], name: str) -> FloatArray:

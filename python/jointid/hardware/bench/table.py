@@ -16,6 +16,7 @@ _KINDS: dict[str, tuple[tuple[type, ...], str]] = {
     "str": ((str,), "a text"),
     "bool": ((bool,), "true or false"),
     "tuple[int, ...]": ((list,), "a list of whole numbers"),
+    "tuple[float, ...]": ((list,), "a list of numbers"),
     "tuple[float, float]": ((list,), "a list of two numbers"),
 }
 Made = TypeVar("Made")

@@ -20,7 +20,9 @@ LoggedFrame = tuple[float, int, bytes]  # time [s], identifier, payload
 def logged_frames(path: Path) -> Iterator[LoggedFrame]:
     """Yield the frames with 11-bit identifiers, in the file's order; error frames are left out.
 
-    A last line that is cut off is no frame. Errors do not name the file: the caller does.
+    Frames that were received although the host sends frames with their identifier are another master's,
+    and are left out too, where the file says which were sent. A last line that is cut off is no frame.
+    Errors do not name the file: the caller does.
 
     Parameters
     ----------
@@ -38,11 +40,15 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
             argument="log",
             value=path.name,
         )
-    number = 0
+    number, sent = 0, set[int]()
     try:
         for message in _messages(path):
             number += 1
-            if not (message.is_error_frame or message.is_remote_frame or message.is_extended_id):
+            if message.is_error_frame or message.is_remote_frame or message.is_extended_id:
+                continue
+            if not message.is_rx:
+                sent.add(message.arbitration_id)
+            if not message.is_rx or message.arbitration_id not in sent:
                 yield message.timestamp, message.arbitration_id, bytes(message.data)
     except FileNotFoundError:
         raise InputError("there is no such file") from None

@@ -27,6 +27,7 @@ class ElmoDecoder:
         self.reading = 0.0
         self.fresh = self.clipped = False
         self.readings = 0  # that have come
+        self.surplus = 0  # answers to no SYNC
         self._positions_due = self._readings_due = 0
 
     def begin(self) -> None:
@@ -57,6 +58,7 @@ class ElmoDecoder:
         source = self._options.torque
         if identifier == self._options.position_id and len(payload) >= 4:
             self.position = self._options.angle(struct.unpack_from("<i", payload)[0], self._joint)
+            self.surplus += not self._positions_due
             self._positions_due = max(0, self._positions_due - 1)
             if len(payload) >= 6:
                 share = struct.unpack_from("<h", payload, 4)[0]

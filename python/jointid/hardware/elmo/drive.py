@@ -10,30 +10,32 @@ import can
 
 from jointid.base.errors import InputError
 from jointid.hardware.can import canopen_frames as canopen
+from jointid.hardware.elmo import registers
 from jointid.hardware.elmo import setup as elmo_setup
 from jointid.hardware.elmo.codec import Command
 from jointid.hardware.elmo.decoder import ElmoDecoder
-from jointid.hardware.elmo.errors import DriveStatus, failure_meaning
+from jointid.hardware.elmo.errors import DriveStatus
 from jointid.hardware.elmo.link import ElmoLink, Tap
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.elmo.recorded_options import elmo_options_document
+from jointid.hardware.elmo.report import elmo_report
+from jointid.hardware.elmo.start_problems import IN_USE, reasons_not_to_start
+from jointid.hardware.elmo.switching import CYCLES, OFF, MotorSwitch
 from jointid.hardware.elmo.timing import command_latency
 from jointid.hardware.elmo.torque_source import AnalogInput, SyncedConverter
 from jointid.hardware.session.clock import Clock
 from jointid.hardware.session.drive import DriveEnd, DriveFaultError, DriveSample
+from jointid.hardware.session.drive_report import DriveReport, Reported
 from jointid.joint.joint import Joint
 
-_BOOT, _ENABLE = 2.0, 3.0  # [s] to wait for each
+_BOOT = 2.0  # [s] to wait for its message
 _UNIT_MODE = 0.5  # [s] that changing it may take
-_CYCLES = 1.0 / 3.0  # of the time that the drive waits for a heartbeat: one may be lost
 _IN_USE_ANSWER = (
     0.02  # [s] for an answer before the drive is reset: only one that is in use gives one
 )
-_SEEN_OFF = 0.2  # [s] that switching off is tried for, at most
-_SOON = 3  # times that switching off is repeated in the next cycle
 _UNREAD = 3  # questions for the sensor without an answer
-_ZERO, _OFF = Command(letters="TC", value=0.0), Command(letters="MO", value=0)
-_IN_USE = "the motor is on already: another program commands the drive; switch the motor off there"
+_LOST = 1.5  # periods after which an answer to a SYNC that has not come is lost
+_LEAST = 0.25  # of the time for an answer: with less left, none would come in time
 
 
 class ElmoDrive:
@@ -74,18 +76,21 @@ class ElmoDrive:
         self._link = ElmoLink(bus, self.options, self._seen, clock)
         self._per_ampere = joint.torque_constant * joint.gear_ratio
         self._command_id = self.options.command_id
-        self._heartbeat_id = canopen.heartbeat_id(self._link.master)
+        self._switch = MotorSwitch(self._link, self.options)
         self._asked = 0.0
+        self._given_up = -math.inf
         self._cycle = 0
         self._read = self._unread = self._unheard = 0
         self._period = 0.002
-        self._found_off = self._seen_off = False
-        self._failure = ""
+        self._found_off = False
         self._identity: dict[str, Any] = {
             "drive": "Elmo SimplIQ",
             "node": self.options.node,
+            "master": self.options.master_node,
             "stamped_frames": self._link.stamped,
         }
+        self._described: tuple[Reported, ...] = ()
+        self._limits: tuple[Reported, ...] = ()
         self._peak = math.inf
         self._most_current = joint.limits.current
 
@@ -109,8 +114,32 @@ class ElmoDrive:
         return self.options.resolution(self.joint)
 
     def identity(self) -> dict[str, Any]:
-        """What the drive reported about itself."""
-        return dict(self._identity)
+        """What the drive reported about itself, and what was wrong with the frames on its bus."""
+        found = dict(self._identity)
+        if self._link.echoes.lost:
+            found["lost_echoes"] = self._link.echoes.lost
+        if self._link.foreign.frames:
+            found["foreign_frames"] = list(self._link.foreign.frames)
+        return found
+
+    def report(self) -> DriveReport:
+        """What the drive is, how it is set and how it stands now; connected, its motor off.
+
+        Raises
+        ------
+        DriveFaultError
+            It does not answer, or its position does not come.
+        """
+        sample = self.read(0.1)
+        speed = self._link.number("VX")
+        return elmo_report(
+            self._link,
+            self.options,
+            identity=self._described,
+            settings=self._limits,
+            sample=sample,
+            velocity=math.nan if speed is None else speed * self.options.per_count(self.joint),
+        )
 
     def metadata(self) -> dict[str, Any]:
         """What a replay of the frame log needs: drive type and options."""
@@ -119,23 +148,28 @@ class ElmoDrive:
     def connect(self, period: float) -> None:
         """Reset the drive's communication, map its PDOs, arm the watchdogs; motor off, torque mode.
 
-        A drive whose motor is on is not changed: another program moves it.
+        Listens first. A drive whose motor is on, or that somebody else commands, is not changed.
         """
         link, node = self._link, self.options.node
-        if period > _CYCLES * self.options.heartbeat:
+        if period > CYCLES * self.options.heartbeat:
             raise DriveFaultError(
                 "drive_fault",
                 f"a period of {1e3 * period:g} ms is too long for a heartbeat awaited every "
                 f"{1e3 * self.options.heartbeat:g} ms, which each cycle sends; at most a third of it is expected",
             )
         self._period, self._cycle = period, 0
-        self._found_off = self._seen_off = link.up = False
-        self._failure = ""
+        self._found_off = link.up = False
+        self._switch.forget()
+        self._given_up = -math.inf
         self._read = self._unheard = self._seen.readings
         self._unread = -1
         link.drain(0.01)
         self._seen.forget()
+        link.forget_fault(but="bus")
+        link.listen(self.options.listen)
         self._refuse_if_motor_on(_IN_USE_ANSWER)
+        link.foreign.decide()
+        link.raise_foreign()
         link.booted = False
         link.forget_fault(but="bus")
         link.send(canopen.NMT, canopen.network(canopen.RESET_COMMUNICATION, node))
@@ -145,13 +179,14 @@ class ElmoDrive:
             f"no boot-up message from node {node}",
             advice="; check that the drive is on, and that this is its node",
         )
-        self._identity |= elmo_setup.identity(link)
+        self._described = registers.identity(link)
+        self._identity |= {each.meaning: each.value for each in self._described}
         elmo_setup.map_position(link, self.options)
         elmo_setup.arm_watchdogs(link, self.options)
         link.send(canopen.NMT, canopen.network(canopen.START, node))
         self._refuse_if_motor_on()
         self._found_off = True
-        for command in (_OFF, Command(letters="RM", value=0), Command(letters="UM", value=1)):
+        for command in (OFF, Command(letters="RM", value=0), Command(letters="UM", value=1)):
             link.ask(command)
         end = link.clock.now() + _UNIT_MODE
         while self._status().unit_mode != 1 and link.clock.now() < end:
@@ -159,65 +194,29 @@ class ElmoDrive:
         self._peak = float(link.ask(Command(letters="PL", index=1)).value)
         rated = float(link.ask(Command(letters="CL", index=1)).value)
         self._seen.rated_current = rated
-        self._identity |= {"peak_current": self._peak, "continuous_current": rated}
+        self._limits = registers.limits(link)
+        self._identity |= {
+            "peak_current": self._peak,
+            "continuous_current": rated,
+            "limits": {each.name: each.value for each in self._limits},
+        }
         link.heard = link.clock.now()
         link.up = True
 
     def problems(self, torque_limit: float) -> list[str]:
         """Reasons not to enable the motor."""
-        reasons = []
-        if not math.isfinite(torque_limit):
-            reasons.append(
-                "the session has no torque limit; give one in [limits] or [session.limits]"
-            )
-        if not self._peak > 0.0:
-            reasons.append(
-                f"the drive's peak current PL[1] is {self._peak:g} A; more than 0 is expected"
-            )
-        allowed = torque_limit / abs(self._per_ampere)
-        if self._most_current is not None:
-            allowed = min(allowed, self._most_current)
-        if self._peak > allowed * (1.0 + 1e-6):
-            reasons.append(
-                f"the drive's peak current PL[1] is {self._peak:g} A, the session allows {allowed:.4g} A; "
-                "set PL[1] down, or the session's torque limit or the joint's current limit up"
-            )
-        status = self._status()
-        if status.problem:
-            reasons.append(f"the drive reports {status.problem}")
-        if status.failure and not self.options.acknowledge:
-            meaning = failure_meaning(int(self._link.ask(Command(letters="MF")).value))
-            reasons.append(
-                f"the drive has shut its motor down before ({meaning or 'MF is 0'}); when that is "
-                "fixed, start with acknowledge = true"
-            )
-        if status.unit_mode != 1:
-            reasons.append(
-                f"the drive is in unit mode {status.unit_mode}, not in torque mode (UM=1)"
-            )
-        if status.motor_on:
-            reasons.append(_IN_USE)
-        return reasons
+        return reasons_not_to_start(
+            self._link,
+            self.options,
+            peak=self._peak,
+            allowed_current=self._most_current,
+            allowed_torque=torque_limit,
+            per_ampere=self._per_ampere,
+        )
 
     def enable(self) -> None:
         """Motor on, at zero torque, and watched: our heartbeat begins before the motor is on."""
-        link = self._link
-        self._seen_off = False
-        self._beat()
-        link.ask(Command(letters="MO", value=1))
-        end = link.clock.now() + _ENABLE
-        while not self._status().motor_on:
-            self._beat()
-            if link.clock.now() > end:
-                raise DriveFaultError("drive_fault", "the motor does not come on (MO=1, SR bit 4)")
-            link.clock.sleep_until(link.clock.now() + min(0.02, _CYCLES * self.options.heartbeat))
-        self._beat()
-        link.ask(_ZERO)
-        self._beat()
-
-    def _beat(self) -> None:
-        """Send our heartbeat."""
-        self._link.send(self._heartbeat_id, b"\x05")
+        self._switch.on()
 
     def read(self, timeout: float) -> DriveSample:
         """Position, current and sensor at a SYNC."""
@@ -226,6 +225,13 @@ class ElmoDrive:
         link.read_waiting()
         self._settle(timeout)
         asked = self._asked = link.clock.now()
+        if end - asked < _LEAST * timeout:
+            raise DriveFaultError(
+                "stale_position",
+                f"the answer to the SYNC before was late: of {1e3 * timeout:g} ms for another no time is left",
+                measured=asked - end + timeout,
+                allowed=timeout,
+            )
         seen.begin()
         link.watch.sent(link.send(canopen.SYNC, b""))
         source = self.options.torque
@@ -233,6 +239,7 @@ class ElmoDrive:
         self._cycle += 1
         self._answered(end - asked)
         self._look_alive()
+        link.echoes.check()
         return DriveSample(
             time=link.watch.sampled,
             position=seen.position,
@@ -241,6 +248,7 @@ class ElmoDrive:
             clipped=seen.clipped,
             current=seen.current,
             torque=seen.current * self._per_ampere,
+            confirmed=link.echoes.confirmed,
         )
 
     def command(self, torque: float) -> float:
@@ -248,7 +256,8 @@ class ElmoDrive:
         current = max(-self._peak, min(self._peak, torque / self._per_ampere))
         kept = self._kept(current)
         self._link.send(self._command_id, Command(letters="TC", value=kept).payload())
-        self._beat()
+        self._link.echoes.sent(kept)
+        self._switch.beat()
         return kept * self._per_ampere
 
     def _kept(self, current: float) -> float:
@@ -260,33 +269,20 @@ class ElmoDrive:
         return float(struct.unpack("<f", struct.pack("<f", current))[0])
 
     def disable(self) -> DriveEnd:
-        """TC = 0, then MO = 0, again in each cycle until the drive confirms that its motor is off.
+        """TC = 0, then MO = 0, again until the drive confirms that its motor is off; then SDO and NMT stop.
 
         A drive that is never reached stops by itself, because our heartbeat stays away.
         """
         if not self._found_off:
             return DriveEnd()  # another program moves its motor
-        link, register = self._link, None
-        end = link.clock.now() + _SEEN_OFF
-        tries, pause = 0, self._period
-        while not self._seen_off and link.clock.now() < end:
-            self._try(self._command_id, _ZERO.payload())
-            self._try(self._command_id, _OFF.payload())
-            register = link.number("SR", pause)
-            self._seen_off = register is not None and not DriveStatus.of(register).motor_on
-            if register is None:  # it may have restarted, and ignores commands then
-                self._try(canopen.NMT, canopen.network(canopen.START, self.options.node))
-            tries += 1
-            if tries > _SOON:  # a slow drive is not to be flooded
-                pause = min(2.0 * pause, 0.02)
-        if not self._seen_off:
-            return DriveEnd(motor_off=False)
-        if register is not None and DriveStatus.of(register).failure:
-            self._failure = failure_meaning(link.number("MF", 10.0 * self._period) or 0)
-        return DriveEnd(motor_off=True, failure=self._failure)
+        return self._switch.off(self._period)
 
     def close(self) -> None:
-        """Leave the drive pre-operational, its watchdogs disarmed when its motor is off."""
+        """Leave the drive pre-operational, its watchdogs disarmed when its motor is off.
+
+        Where somebody else commands the drive it is stopped: its motor goes off again if it is on, and it
+        takes no commands.
+        """
         link = self._link
         link.up = False
         if not self._found_off:
@@ -295,16 +291,20 @@ class ElmoDrive:
         try:
             link.drain(0.01)
             link.forget_fault()
-            if self._seen_off:
+            if self._switch.seen_off:
                 elmo_setup.disarm_watchdogs(link)
             link.send(canopen.NMT, canopen.network(canopen.PRE_OPERATIONAL, self.options.node))
             link.drain(0.01)
+            if (
+                link.foreign.frames
+            ):  # a command of theirs that still waited in the drive is done by now
+                link.send(canopen.NMT, canopen.network(canopen.STOP, self.options.node))
+                link.drain(0.01)
         except DriveFaultError:
             return
         finally:
-            self._found_off = self._seen_off = (
-                False  # from now on another program may use the drive
-            )
+            self._found_off = False  # from now on another program may use the drive
+            self._switch.forget()
 
     @property
     def command_latency(self) -> float:
@@ -327,18 +327,12 @@ class ElmoDrive:
             on = self._status().motor_on
         else:
             register = self._link.number("SR", timeout)
-            on = register is not None and DriveStatus.of(register).motor_on
+            on = register is not None and DriveStatus.of(int(register)).motor_on
         if on:
-            raise DriveFaultError("drive_fault", _IN_USE)
+            raise DriveFaultError("drive_fault", IN_USE)
 
     def _status(self) -> DriveStatus:
         return DriveStatus.of(int(self._link.ask(Command(letters="SR")).value))
-
-    def _try(self, identifier: int, payload: bytes) -> None:
-        try:
-            self._link.send(identifier, payload)
-        except Exception:  # after any error of a bus the next command is tried
-            return  # again in the next round; in the end the drive's own watchdog stops it
 
     def _ask_analog_in_turn(self) -> None:
         """Ask for the torque sensor in every few cycles; the answer may take some cycles, but not many."""
@@ -377,10 +371,22 @@ class ElmoDrive:
             self._link.wait(lambda: seen.readings > self._unheard, timeout, missing, kind="sensor")
 
     def _settle(self, timeout: float) -> None:
-        """Wait for the answer to the last SYNC before the next: an answer does not name its SYNC."""
-        if self._seen.complete:
+        """Wait for the answer to the last SYNC before the next: an answer does not name its SYNC.
+
+        An answer that is lost is given up after one period more. Should it come after all, it is taken for
+        the next one, and that one is then too many: this is a fault too.
+        """
+        seen, now = self._seen, self._link.clock.now()
+        if seen.surplus and now - self._given_up < self.options.heartbeat:
+            seen.surplus = 0
+            raise DriveFaultError(
+                "stale_position", "an answer to a SYNC came so late that it was taken for the next"
+            )
+        seen.surplus = 0
+        if seen.complete:
             return
-        if self._link.clock.now() - self._asked > self.options.heartbeat:
-            self._seen.forget()  # no answer comes so late, and the drive has stopped by itself
+        if now - self._asked > _LOST * self._period:
+            seen.forget()
+            self._given_up = now
         else:
             self._answered(timeout)

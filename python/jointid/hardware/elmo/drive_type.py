@@ -12,7 +12,7 @@ from jointid.hardware.bench.bench import Bench, BusOptions
 from jointid.hardware.bench.drive_types import DriveType
 from jointid.hardware.can.bus import open_bus
 from jointid.hardware.elmo.drive import ElmoDrive
-from jointid.hardware.elmo.emulated_bench import ElmoEmulation, elmo_devices
+from jointid.hardware.elmo.emulated_bench import ElmoEmulation, elmo_devices, elmo_emulation
 from jointid.hardware.elmo.logged_cycles import CycleReader
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.elmo.recorded_options import elmo_options_document, elmo_options_of
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from jointid.hardware.emulated.device import Device
     from jointid.hardware.session.cycle import LoggedCycle
     from jointid.joint.joint import Joint
+
+_WIRING = ("node", "counts_per_turn", "torque")
 
 
 class ElmoType(DriveType):
@@ -64,7 +66,14 @@ class ElmoType(DriveType):
     @contextmanager
     def emulate(self, bench: Bench, seed: int) -> Iterator[ElmoDrive]:
         """Yield the drive on an emulated bus with a clock of its own."""
-        with EmulatedBus(*elmo_devices(bench, seed), bitrate=float(bench.bus.bitrate)) as emulated:
+        emulation = elmo_emulation(bench)
+        with EmulatedBus(
+            *elmo_devices(bench, seed),
+            bitrate=float(bench.bus.bitrate),
+            clock_drift=emulation.clock_drift,
+            jitter=emulation.jitter,
+            seed=seed,
+        ) as emulated:
             yield ElmoDrive(emulated, bench.joint, bench.drive)
 
     def emulation(self, table: Table) -> ElmoEmulation:
@@ -78,6 +87,11 @@ class ElmoType(DriveType):
     def metadata(self, options: ElmoOptions) -> dict[str, Any]:
         """Return the options as JSON's types."""
         return elmo_options_document(options)
+
+    def wiring(self, options: ElmoOptions) -> dict[str, Any]:
+        """Return node, encoder counts, and how the torque sensor is read and scaled."""
+        document = elmo_options_document(options)
+        return {name: document[name] for name in _WIRING if name in document}
 
     def recorded_options(self, metadata: Mapping[str, Any]) -> ElmoOptions:
         """Return the options that a recording names."""

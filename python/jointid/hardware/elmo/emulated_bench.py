@@ -15,26 +15,92 @@ from jointid.simulation.plant import torque_limit
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ElmoEmulation:
-    """What an emulated drive does to a command.
+    """What an emulated drive does to a command, and how it is wired in truth.
+
+    The joint file says how the bench should be; with these a wrong bench is emulated.
 
     Attributes
     ----------
     idle_loop : float
-        Time between two interpreter commands of the drive [s].
+        Time between two interpreter commands of the drive [s]. Default 0.0003.
     mantissa_bits : int
-        Of a current command that count: 24 for a float, 4 for the thesis's link.
+        Of a current command that count: 24 for a float, 4 for the thesis's link. Default 24.
+    idle_jitter : float
+        How much longer that may be, each time anew [s]. Default 0.
+    enable_time : float
+        From MO=1 until the motor is on [s]: a brake opens, commutation is found. Default 0.
+    brake : float
+        Torque at the output of a brake that closes when the motor is off [N·m]. Default 0: none, and a load
+        falls.
+    clock_drift : float
+        By what share the host's clock is faster than the drive's: 1e-4 are 100 ppm. Default 0.
+    jitter : float
+        So much later than it wanted the host goes on, at most, whenever it has waited [s]. Default 0.
+    torque_sign : float
+        1, or -1: a positive current gives a negative torque. Default 1.
+    encoder_sign : float
+        1, or -1: the encoder counts down in the positive direction. Default 1.
+    torque_scale : float
+        True torque constant over that of the joint file. Default 1.
+    gear_ratio : float, optional
+        The true one. Default: that of the joint file.
+    sensor_sign : float
+        1, or -1: the torque sensor reads less for a positive torque. Default 1.
+
+    Raises
+    ------
+    InputError
+        A value is not within its range.
     """
 
     idle_loop: float = 0.3e-3
     mantissa_bits: int = 24
+    idle_jitter: float = 0.0
+    enable_time: float = 0.0
+    brake: float = 0.0
+    clock_drift: float = 0.0
+    jitter: float = 0.0
+    torque_sign: float = 1.0
+    encoder_sign: float = 1.0
+    torque_scale: float = 1.0
+    gear_ratio: float | None = None
+    sensor_sign: float = 1.0
 
     def __post_init__(self) -> None:
+        for name in ("torque_sign", "encoder_sign", "sensor_sign"):
+            if getattr(self, name) not in (1, -1):
+                raise InputError("1 or -1 is expected", argument=name, value=getattr(self, name))
+        # 0 is a motor without current: a phase or the brake's supply is missing.
+        if not 0.0 <= self.torque_scale <= 1e3:
+            raise InputError(
+                "0 to 1000 is expected", argument="torque_scale", value=self.torque_scale
+            )
+        ratio = self.gear_ratio
+        if ratio is not None and not 1e-3 <= abs(ratio) <= 1e6:
+            raise InputError("0.001 to 1e6 is expected", argument="gear_ratio", value=ratio)
         if not 0.0 <= self.idle_loop <= 0.01:
             raise InputError("0 to 0.01 s is expected", argument="idle_loop", value=self.idle_loop)
+        if not -0.01 <= self.clock_drift <= 0.01:
+            raise InputError(
+                "-0.01 to 0.01 is expected", argument="clock_drift", value=self.clock_drift
+            )
+        if not 0.0 <= self.brake <= 1e6:
+            raise InputError("0 to 1e6 N·m is expected", argument="brake", value=self.brake)
+        for name, most in (("idle_jitter", 0.01), ("enable_time", 2.0), ("jitter", 0.1)):
+            if not 0.0 <= getattr(self, name) <= most:
+                raise InputError(
+                    f"0 to {most:g} s is expected", argument=name, value=getattr(self, name)
+                )
         if not 1 <= self.mantissa_bits <= 24:
             raise InputError(
                 "1 to 24 is expected", argument="mantissa_bits", value=self.mantissa_bits
             )
+
+
+def elmo_emulation(bench: Bench) -> ElmoEmulation:
+    """Return what a bench's emulated drive does; the defaults where its joint file says nothing."""
+    found = bench.emulation.drive if bench.emulation is not None else None
+    return found if found is not None else ElmoEmulation()
 
 
 def elmo_devices(
@@ -53,26 +119,37 @@ def elmo_devices(
     InputError
         The bench does not describe an emulated joint, or not completely.
     """
-    joint, stepped = true_joint(bench), emulated_joint(bench, seed)
-    emulation = bench.emulation.drive if bench.emulation is not None else None
-    if emulation is None:
-        emulation = ElmoEmulation()
+    emulation = elmo_emulation(bench)
+    joint = true_joint(bench, gear_ratio=emulation.gear_ratio)
+    stepped = emulated_joint(
+        bench,
+        seed,
+        gear_ratio=emulation.gear_ratio,
+        sensor_sign=emulation.sensor_sign,
+        unlimited=emulation.torque_scale != 1.0 or emulation.gear_ratio is not None,
+    )
     if joint.torque_constant is None:
         raise InputError(
             "missing, so no torque can be commanded; it stands in the joint file under [drive]",
             argument="torque_constant",
         )
-    limit = torque_limit(joint)
-    largest = 1e3 if limit is None else limit / (joint.torque_constant * abs(joint.gear_ratio))
+    limit = torque_limit(bench.joint)
+    largest = (
+        1e3 if limit is None else limit / (joint.torque_constant * abs(bench.joint.gear_ratio))
+    )
     source = bench.drive.torque
     settings = ElmoSettings(
         node=bench.drive.node,
-        counts_per_turn=bench.drive.counts_per_turn,
+        # Signs that the drive does not know of are in what it knows: counts fall, current pulls back.
+        counts_per_turn=int(emulation.encoder_sign) * bench.drive.counts_per_turn,
         gear_ratio=joint.gear_ratio,
-        torque_constant=joint.torque_constant,
+        torque_constant=emulation.torque_sign * emulation.torque_scale * joint.torque_constant,
         peak_current=largest,
         continuous_current=largest,
         idle_loop=emulation.idle_loop,
+        idle_jitter=emulation.idle_jitter,
+        enable_time=emulation.enable_time,
+        brake=emulation.brake,
         mantissa_bits=emulation.mantissa_bits,
         position_offset=bench.drive.position_offset,
         cob_command=bench.drive.cob_command,

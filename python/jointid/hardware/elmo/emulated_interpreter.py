@@ -1,22 +1,33 @@
-"""The binary interpreter of an emulated drive: what it refuses, what it does, what it answers."""
+"""The interpreters of an emulated drive, binary and of text: a queue, refusals, answers."""
 
 from __future__ import annotations
 
 import math
+import re
 import struct
 from collections import deque
+from random import Random
 from typing import TYPE_CHECKING
 
 from jointid.base.errors import InputError
 from jointid.hardware.elmo.codec import Command, Reply, refusal
+from jointid.hardware.elmo.emulated_registers import (
+    BAD_COMMAND,
+    BAD_INDEX,
+    NO_MEANING,
+    NOT_ASSIGNED,
+    Number,
+    registers,
+)
 
 if TYPE_CHECKING:
     from jointid.hardware.elmo.emulated_drive import EmulatedElmo
 
-_KNOWN = {"MO", "UM", "RM", "TC", "PX", "VX", "IQ", "ID", "PL", "CL", "SR", "MF", "EC", "ST"}
-_KNOWN |= {"HL", "AN", "MS"}
-_INDEXED = ("PL", "CL", "HL", "AN")
-_READ_ONLY = ("IQ", "ID", "SR", "MF", "VX", "AN")
+VERSION = "Cello 2.02.00.00 emulated"
+_TEXTS = {"VR": VERSION}  # which four bytes cannot hold
+_TEXT = re.compile(r"([A-Z]{2})(?:\[(\d+)\])?(?:=([-+.\deE]+))?;?\s*")
+# Status of 1023h:2.
+NO_REPLY, REPLY, ERROR_REPLY = 0, 1, 3
 
 
 class Interpreter:
@@ -29,123 +40,101 @@ class Interpreter:
 
     def __init__(self, drive: EmulatedElmo) -> None:
         self._drive = drive
+        self._registers = registers(drive, lambda: self.last_error)
         self._waiting: deque[Command] = deque()
-        self._busy_until = 0.0
+        self._busy = False
+        self._random = Random(drive.settings.node)
         self.last_error = 0
+        self.text_status, self.text = NO_REPLY, b""
 
     def forget(self) -> None:
         """What waits is lost with a restart."""
         self._waiting.clear()
 
     def take(self, payload: bytes) -> None:
-        """A command's frame has arrived; it waits for the idle loop."""
-        drive = self._drive
+        """A binary command's frame has arrived; it waits for the idle loop."""
         try:
             command = Command.of(payload)
         except InputError:
-            self._refuse(payload[:2].decode("latin-1").ljust(2, "?"), 0, 2)
+            self._refuse(payload[:2].decode("latin-1").ljust(2, "?"), 0, BAD_COMMAND)
             return
         self._waiting.append(command)
-        now = drive.bus.now()
-        self._busy_until = max(now, self._busy_until) + drive.settings.idle_loop
-        drive.bus.at(self._busy_until, self._interpret)
+        if not self._busy:
+            self._begin()
+
+    def take_text(self, given: bytes) -> None:
+        """Take a command of the text interpreter, e.g. ``VR`` or ``PL[1]``; its answer is kept."""
+        wording = given.rstrip(b"\0").decode("latin-1").strip().upper()
+        match = _TEXT.fullmatch(wording)
+        if match is None:
+            self.text_status, self.text = ERROR_REPLY, f"{BAD_COMMAND};".encode("ascii")
+            return
+        letters, index, value = match[1], int(match[2] or 0), match[3]
+        if letters in _TEXTS and value is None:
+            self.text_status, self.text = REPLY, f"{_TEXTS[letters]};".encode("ascii")
+            return
+        try:
+            number: Number | None = None if value is None else _number(value)
+        except ValueError:
+            self.text_status, self.text = ERROR_REPLY, f"{BAD_COMMAND};".encode("ascii")
+            return
+        self._drive.advance()
+        error, found = self._done(letters, index, number)
+        if error:
+            self.last_error = error
+        self.text_status = ERROR_REPLY if error else REPLY
+        self.text = f"{error if error else found};".encode("ascii")
+
+    def _begin(self) -> None:
+        drive = self._drive
+        self._busy = True
+        jitter = drive.settings.idle_jitter
+        late = self._random.uniform(0.0, jitter) if jitter else 0.0
+        drive.bus.at(drive.bus.now() + drive.settings.idle_loop + late, self._interpret)
 
     def _interpret(self) -> None:
-        drive = self._drive
-        drive.advance()
+        enabling = self._drive.settings.enable_time
+        if self._waiting and enabling and self._waiting[0].letters == "MO":
+            command = self._waiting[0]
+            if command.value == 1 and not self._drive.motor_on:
+                self._drive.bus.at(self._drive.bus.now() + enabling, self._act)
+                return
+        self._act()
+
+    def _act(self) -> None:
+        self._drive.advance()
+        self._busy = False
         if not self._waiting:
             return
         command = self._waiting.popleft()
-        error = self._error(command)
+        error, value = self._done(command.letters, command.index, command.value)
         if error:
             self._refuse(command.letters, command.index, error)
-            return
-        value = self._act(command)
-        if command.letters == "TC" and not drive.objects.get(0x2F20, 2, 0x80000000):
-            return
-        drive.reply(_payload(command, value))
+        else:
+            self._drive.reply(_payload(command, value))
+        if self._waiting:
+            self._begin()
 
-    def _error(self, command: Command) -> int:
-        """EC of what is wrong with a command, 0 if nothing."""
-        drive = self._drive
-        letters, value = command.letters, command.value
-        if letters not in _KNOWN:
-            return 2
-        if letters in _INDEXED and command.index not in (1, 2):
-            return 3
+    def _done(self, letters: str, index: int, value: Number | None) -> tuple[int, Number]:
+        """Read or assign; EC, 0 if nothing is wrong, and the value of the answer."""
+        register = self._registers.get(letters)
+        if register is None:
+            return (NO_MEANING if letters in _TEXTS else BAD_COMMAND), 0
+        if index not in register.indices:
+            return BAD_INDEX, 0
         if value is None:
-            return 0
-        if letters in _READ_ONLY:
-            return 23
-        if letters == "UM":
-            return 57 if drive.motor_on else 0 if value in (1, 2, 3, 4, 5) else 21
-        if letters == "PX":
-            return 57 if drive.motor_on else 0
-        if letters == "MO":
-            return 21 if value not in (0, 1) else 66 if value and drive.problem else 0
-        if letters == "TC":
-            if not drive.motor_on:
-                return 58
-            if drive.unit_mode != 1:
-                return 60
-            return 21 if abs(value) > drive.current_limits[0] + 1e-6 else 0
-        return 0
-
-    def _act(self, command: Command) -> int | float:
-        drive = self._drive
-        letters, value = command.letters, command.value
-        if value is None:
-            return self._read(letters, command.index)
-        if letters == "MO":
-            drive.switch(on=bool(value))
-        elif letters == "TC":
-            drive.current = drive.stage_gain * self._quantised(float(value))
-            drive.torque_commands.append((drive.bus.now(), drive.current))
-        elif letters == "UM" and drive.fixed_unit_mode is None:
-            drive.unit_mode = int(value)
-        elif letters == "PX":
-            drive.count_offset += int(value) - drive.counts()
-        elif letters == "RM":
-            drive.reference_mode = int(value)
-        elif letters in ("PL", "CL") and command.index == 1:
-            drive.current_limits[letters == "CL"] = float(value)
-        return value
-
-    def _read(self, letters: str, index: int) -> int | float:
-        drive = self._drive
-        if letters == "ST":
-            drive.current = 0.0
-            return 0
-        readings: dict[str, int | float] = {
-            "MO": int(drive.motor_on),
-            "UM": drive.unit_mode,
-            "RM": drive.reference_mode,
-            "TC": float(drive.current),
-            "PX": drive.counts(),
-            "VX": drive.speed(),
-            "IQ": float(drive.current if drive.motor_on else 0.0),
-            "ID": 0.0,
-            "PL": float(drive.current_limits[0] if index == 1 else 3.0),
-            "CL": float(drive.current_limits[1]),
-            "HL": int(drive.settings.speed_limit),
-            "SR": drive.status(),
-            "MF": drive.failure,
-            "EC": self.last_error,
-            "AN": drive.voltage(),
-            "MS": 0,
-        }
-        return readings[letters]
-
-    def _quantised(self, current: float) -> float:
-        bits = self._drive.settings.mantissa_bits
-        if bits >= 24 or current == 0.0:
-            return current
-        mantissa, exponent = math.frexp(current)
-        return math.ldexp(math.trunc(mantissa * 2**bits) / 2**bits, exponent)
+            return 0, register.read(index)
+        if register.write is None:
+            return NOT_ASSIGNED, 0
+        return register.write(index, value), value
 
     def _refuse(self, letters: str, index: int, code: int) -> None:
         self.last_error = code
         self._drive.reply(refusal(letters, index, code))
+
+
+def _number(wording: str) -> Number:
+    return float(wording) if set(wording) & set(".eE") else int(wording)
 
 
 def _payload(command: Command, value: int | float) -> bytes:

@@ -1,87 +1,202 @@
-"""The object dictionary of an emulated drive: what a session reads and sets, and which PDO it gets."""
+"""The object dictionary of an emulated Elmo drive: CiA 301's objects, CiA 402's and Elmo's own.
+
+After Elmo's CANopen DS 301 implementation guide (MAN-CAN301IG); what it leaves open is as in CiA 301 and 402.
+"""
 
 from __future__ import annotations
 
-from jointid.base.errors import InputError
-from jointid.hardware.can.canopen_frames import SdoRequest, sdo_abort, sdo_answer
+from typing import TYPE_CHECKING
 
-_MAPPABLE = {0x60640020: "position", 0x60690020: "velocity", 0x606C0020: "velocity"}
-_MAPPABLE |= {0x60770010: "torque"}
-_IDENTITY = {0x1018_01: 0x9A, 0x1018_02: 0x00030924, 0x1018_03: 0x01010301}
-_OFF = 0xC0000000  # of a PDO's COB-ID: it is not sent
+from jointid.hardware.elmo.emulated_interpreter import VERSION
+from jointid.hardware.emulated.object_dictionary import (
+    NOT_STORED,
+    AccessError,
+    Entry,
+    ObjectDictionary,
+    one_of,
+    within,
+)
+from jointid.hardware.emulated.pdo import EVENT, OFF, Pdo, TransmitPdo
+from jointid.hardware.emulated.sdo_server import SdoServer
+
+if TYPE_CHECKING:
+    from jointid.hardware.elmo.emulated_drive import EmulatedElmo
+
+VENDOR, PRODUCT, REVISION = 0x9A, 0x00030924, 0x01010301
+_SERVO = 0x00020192  # 1000h: a servo drive after CiA 402
+_NO_REMOTE = 0x40000000  # in a PDO's COB-ID: no remote frames
+_TYPES_SENT = frozenset({*range(241), *EVENT})
+_TYPES_RECEIVED = frozenset({1, *EVENT})
+_WATCHED = 1  # heartbeats at most
+_SIGNATURES = {0x1010: 0x65766173, 0x1011: 0x64616F6C}  # "save", "load"
+_BINARY_RESULT = 0x80000000  # of 2F20h:2: TPDO2 is sent when the interpreter has done a command
+# Objects of CiA 402 that are kept and do nothing: the binary interpreter moves this drive.
+_MODES = (-1, 1, 3, 4, 6)
 
 
-class ObjectDictionary:
-    """Objects by index and subindex, and what they stand for.
+class ElmoObjects(ObjectDictionary):
+    """Objects of one drive, and what they stand for.
 
     Parameters
     ----------
-    node : int
+    drive : EmulatedElmo
     """
 
-    def __init__(self, node: int) -> None:
-        self._node = node
-        self.reset()
+    def __init__(self, drive: EmulatedElmo) -> None:
+        super().__init__()
+        self._drive = drive
+        self._server = SdoServer(self)
+        self.result = bytes(8)  # 2013h: of the binary interpreter
+        self._identify()
+        self._watch()
+        self._measure()
+        self._control()
+        node, settings = drive.settings.node, drive.settings
+        # The interpreter's frames may have other identifiers than the node's own.
+        received = [OFF | 0x200 + node, settings.command_id, OFF | 0x400 + node, OFF | 0x500 + node]
+        sent = [OFF | 0x180 + node, settings.reply_id, OFF | 0x380 + node, OFF | 0x480 + node]
+        taken = [(0x60400010,), (0x20120040,), (), ()]
+        given = [(0x60410010,), (0x20130040,), (), ()]
+        self.received = [
+            Pdo(
+                *(self, 0x1400 + k, 0x1600 + k),
+                cob=received[k],
+                mapped=taken[k],
+                types=_TYPES_RECEIVED,
+                sent=False,
+            )
+            for k in range(4)
+        ]
+        self.sent = [
+            TransmitPdo(
+                *(self, 0x1800 + k, 0x1A00 + k),
+                cob=_NO_REMOTE | sent[k],
+                mapped=given[k],
+                types=_TYPES_SENT,
+                sent=True,
+            )
+            for k in range(4)
+        ]
 
     def reset(self) -> None:
         """As after power-up; also a reset of the communication does that."""
-        self._values = dict(_IDENTITY)
-        self.mapping: list[str] = []
-        self.sync_every = 0
-        self._position_cob = _OFF | (0x480 + self._node)
+        super().reset()
+        self._server.forget()
+        for pdo in (*self.received, *self.sent):
+            pdo.reset()
 
-    def get(self, index: int, subindex: int, default: int = 0) -> int:
-        """The value of an object."""
-        return self._values.get(index << 8 | subindex, default)
-
-    @property
-    def position_id(self) -> int | None:
-        """COB-ID of the PDO with the position; None while it is not sent."""
-        off = self._position_cob >> 31 or not self.sync_every
-        return None if off else self._position_cob & 0x7FF
+    def answer(self, payload: bytes) -> bytes | None:
+        """Return the answer to an SDO frame; None where it asks for none."""
+        return self._server.answer(payload)
 
     @property
     def master(self) -> int:
         """The node whose heartbeat is watched."""
-        return self.get(0x1016, 1) >> 16 & 0x7F
+        return self.value(0x1016, 1) >> 16 & 0x7F
 
     @property
     def consumer_time(self) -> float:
         """Time for which that heartbeat may be missing [s]; 0: without limit."""
-        return (self.get(0x1016, 1) & 0xFFFF) * 1e-3
+        return (self.value(0x1016, 1) & 0xFFFF) * 1e-3 if self.master else 0.0
 
     @property
     def producer_time(self) -> float:
         """Between two heartbeats of the drive's own [s]; 0: it sends none."""
-        return (self.get(0x1017, 0) & 0xFFFF) * 1e-3
+        return self.value(0x1017, 0) * 1e-3
 
-    def answer(self, payload: bytes) -> bytes | None:
-        """The answer to a request's bytes; None when they are none."""
-        try:
-            request = SdoRequest.of(payload)
-        except InputError:
-            return None
-        key = request.index << 8 | request.subindex
-        if request.value is not None:
-            return self._assign(request, key, request.value)
-        if key in self._values:
-            return sdo_answer(request, self._values[key])
-        return sdo_abort(request, 0x06020000)
+    def replies(self, number: int) -> bool:
+        """Whether a PDO, counted from 0, is sent when the interpreter has a result."""
+        return bool(self.value(0x2F20, number + 1) & _BINARY_RESULT)
 
-    def _assign(self, request: SdoRequest, key: int, value: int) -> bytes:
-        if key == 0x1803_01:
-            self._position_cob = value
-        elif key == 0x1803_02:
-            self.sync_every = value if 1 <= value <= 240 else 0
-        elif key == 0x1A03_00:
-            if value and not self._position_cob >> 31:
-                return sdo_abort(request, 0x08000022)
-            self.mapping = self.mapping[:value]
-        elif request.index == 0x1A03:
-            if value not in _MAPPABLE:
-                return sdo_abort(request, 0x06040041)
-            self.mapping = [*self.mapping[: request.subindex - 1], _MAPPABLE[value]]
-        elif request.index in (0x1803, 0x1018):
-            return sdo_abort(request, 0x06010000)
-        self._values[key] = value
-        return sdo_answer(request)
+    def number(self, index: int, subindex: int) -> int:
+        """The number that an object holds."""
+        entry = self.entry(index, subindex)
+        return int.from_bytes(self.read(index, subindex), "little", signed=entry.signed)
+
+    def emergency_wanted(self, bit: int) -> bool:
+        """Whether 2F21h lets an event's emergency through."""
+        return bool(self.value(0x2F21, 0) >> bit & 1)
+
+    # The entries.
+
+    def _identify(self) -> None:
+        serial = self._drive.settings.serial
+        self.constant(0x1000, 0, 4, _SERVO)
+        self.variable(0x1005, 0, 4, 0x80, check=one_of(0x80))
+        for index, text in ((0x1008, "Cello"), (0x1009, "emulated"), (0x100A, VERSION)):
+            self.add(index, 0, Entry(size=0, read=lambda text=text: text.encode("ascii")))  # type: ignore[misc]
+        for index, signature in _SIGNATURES.items():
+            self.constant(index, 0, 1, 1)
+            self.add(
+                *(index, 1),
+                Entry(size=4, read=lambda: 1, write=lambda v, s=signature: _signed(v, s)),  # type: ignore[misc]
+            )
+        self.constant(0x1018, 0, 1, 4)
+        for subindex, number in enumerate((VENDOR, PRODUCT, REVISION, serial), start=1):
+            self.constant(0x1018, subindex, 4, number)
+        self.constant(0x1200, 0, 1, 2)
+        self.constant(0x1200, 1, 4, 0x600 + self._drive.settings.node)
+        self.constant(0x1200, 2, 4, 0x580 + self._drive.settings.node)
+
+    def _watch(self) -> None:
+        settings = self._drive.settings
+        self.constant(0x1016, 0, 1, _WATCHED)
+        self.variable(0x1016, 1, 4, check=within(0, 0xFFFFFF))  # node and time
+        self.variable(0x1017, 0, 2)
+        self.constant(0x1029, 0, 1, 1)
+        self.variable(0x1029, 1, 1, settings.error_behaviour, check=one_of(0, 1, 2))
+        self.variable(*(0x6007, 0, 2, settings.abort_option), signed=True, check=one_of(0, 1, 2, 3))
+        self.constant(0x2F20, 0, 1, 4)
+        for subindex in range(1, 5):
+            default = _BINARY_RESULT if subindex == 2 else 0
+            self.variable(0x2F20, subindex, 4, default)
+        self.variable(0x2F21, 0, 2, settings.emergency_events, check=within(0, 0x3FF))
+
+    def _measure(self) -> None:
+        drive = self._drive
+
+        def measured(index: int, size: int, read: object, *, signed: bool = True) -> None:
+            self.add(index, 0, Entry(size=size, signed=signed, read=read, sent=True))  # type: ignore[arg-type]
+
+        measured(0x6041, 2, drive.power.status, signed=False)
+        measured(0x6064, 4, lambda: drive.counts())  # asked for each time: faults replace it
+        for index in (0x6069, 0x606B, 0x606C):
+            measured(index, 4, lambda: drive.speed())
+        for index in (0x6074, 0x6077, 0x6078):  # torque asked for, torque and current measured
+            measured(index, 2, drive.share_of_rated)
+        measured(0x6079, 4, lambda: round(1e3 * drive.settings.supply), signed=False)
+        self.add(0x6075, 0, Entry(size=4, read=lambda: round(1e3 * drive.rated_current)))
+        self.add(0x6076, 0, Entry(size=4, read=lambda: round(1e3 * drive.rated_torque)))
+        self.constant(0x6502, 0, 4, 0x2D)  # profile position, velocity, torque; homing
+
+    def _control(self) -> None:
+        drive = self._drive
+        self.add(
+            *(0x6040, 0),
+            Entry(
+                size=2,
+                read=lambda: drive.power.word,
+                write=drive.power.control,
+                received=True,
+            ),
+        )
+        self.variable(0x6060, 0, 1, -1, signed=True, check=one_of(*_MODES))
+        self.add(
+            0x6061, 0, Entry(size=1, signed=True, read=lambda: self.value(0x6060, 0), sent=True)
+        )
+        # The text interpreter: command, status, reply (1023h).
+        self.constant(0x1023, 0, 1, 3)
+        self.add(
+            *(0x1023, 1),
+            Entry(size=0, write_bytes=lambda given: drive.interpreter.take_text(given)),
+        )
+        self.add(0x1023, 2, Entry(size=1, read=lambda: drive.interpreter.text_status))
+        self.add(0x1023, 3, Entry(size=0, read=lambda: drive.interpreter.text))
+        self.add(0x2012, 0, Entry(size=8, write_bytes=drive.interpret, received=True))
+        self.add(0x2013, 0, Entry(size=8, read=lambda: self.result, sent=True))
+
+
+def _signed(value: int, signature: int) -> None:
+    """Refuse to store or restore without the signature; with it nothing changes: nothing is kept here."""
+    if value != signature:
+        raise AccessError(NOT_STORED)

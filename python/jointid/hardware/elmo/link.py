@@ -10,10 +10,13 @@ import can
 
 from jointid.base.errors import InputError
 from jointid.hardware.can import canopen_frames as canopen
+from jointid.hardware.can import sdo_upload
 from jointid.hardware.can.bus_errors import error_frame_meaning
 from jointid.hardware.elmo.codec import Command, DriveError, Reply
 from jointid.hardware.elmo.decoder import ElmoDecoder
+from jointid.hardware.elmo.echoes import CommandEchoes
 from jointid.hardware.elmo.errors import Emergency
+from jointid.hardware.elmo.foreign import ForeignWatch
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.elmo.timing import SyncWatch
 from jointid.hardware.session.clock import Clock, MonotonicClock
@@ -23,6 +26,7 @@ _ANSWER = 0.2  # [s] to wait for one
 _HOST_HEARTBEAT = 0x8130  # emergency: ours has stayed away
 _MOST_WAITING = 10_000  # frames; a bus that brings more at once is not read to its end
 Tap = Callable[[float, int, bytes, bool], None]  # time, identifier, payload, whether sent
+Meanwhile = Callable[[], float]  # something to be done while waiting; returns when next [s]
 
 
 class ElmoLink:
@@ -56,14 +60,9 @@ class ElmoLink:
         self._virtual = clock is None and own is bus
         self.stamped = self._virtual or "socketcan" in type(bus).__module__.split(".")
         self.watch = SyncWatch(options.bitrate, stamped=self.stamped)
-        node = options.node
         self._command_id, self._reply_id = options.command_id, options.reply_id
-        self.master = options.master
-        # Some interfaces, e.g. udp_multicast, give us our own frames back.
-        self._ours = {
-            *(canopen.NMT, canopen.SYNC, self._command_id, 0x600 + node),
-            canopen.heartbeat_id(self.master),
-        }
+        self.foreign = ForeignWatch(options)
+        self.echoes = CommandEchoes()
         self._replies: dict[tuple[str, int], Reply | DriveError] = {}
         self._answers: list[bytes] = []
         self._fault: DriveFaultError | None = None
@@ -79,6 +78,7 @@ class ElmoLink:
             The bus does not take it.
         """
         message = can.Message(arbitration_id=identifier, data=payload, is_extended_id=False)
+        self.foreign.sent(self.clock.now(), identifier, payload)
         try:
             self._bus.send(message, timeout=0.01)
         except (can.CanError, OSError) as error:  # some interfaces let the system's errors through
@@ -93,31 +93,64 @@ class ElmoLink:
         self._replies.pop(command.key, None)
         self.send(self._command_id, command.payload())
 
-    def ask(self, command: Command, timeout: float = _ANSWER) -> Reply:
+    def ask(
+        self, command: Command, timeout: float = _ANSWER, *, meanwhile: Meanwhile | None = None
+    ) -> Reply:
         """Send a command and wait for its reply; one of a kind at a time."""
         self.command(command)
-        self.wait(lambda: command.key in self._replies, timeout, f"no reply to {command.letters}")
+        self.wait(
+            lambda: command.key in self._replies,
+            timeout,
+            f"no reply to {command.letters}",
+            meanwhile=meanwhile,
+        )
         reply = self._replies.pop(command.key)
         if isinstance(reply, DriveError):
             raise DriveFaultError("drive_fault", str(reply))
         return reply
 
-    def number(self, letters: str, timeout: float = _ANSWER) -> int | None:
+    def number(self, letters: str, timeout: float = _ANSWER, index: int = 0) -> int | float | None:
         """The value of a register, even when the drive reports a fault; None without an answer."""
-        command = Command(letters=letters)
+        command = Command(letters=letters, index=index)
+        self._replies.pop(command.key, None)
+        sent = (self._command_id, command.payload())
+        if not self._tried(*sent, lambda: command.key in self._replies, timeout):
+            return None
+        reply = self._replies.pop(command.key)
+        return reply.value if isinstance(reply, Reply) else None
+
+    def object_value(self, request: canopen.SdoRequest, timeout: float) -> int | None:
+        """The value of an object, even when the drive reports a fault; None without one."""
+        self._answers.clear()
+        found: list[int] = []
+
+        def answered() -> bool:
+            try:
+                results = [canopen.sdo_result(payload, request) for payload in self._answers]
+            except canopen.SdoAbortError:
+                return True
+            found.extend(result for result in results if result is not None)
+            return bool(found)
+
+        self._tried(0x600 + self._options.node, request.payload(), answered, timeout)
+        return found[0] if found else None
+
+    def _tried(
+        self, identifier: int, payload: bytes, done: Callable[[], bool], timeout: float
+    ) -> bool:
+        """Send a question and wait for its answer, whatever fails; whether it came."""
         end = self.clock.now() + timeout
         try:
-            self.command(command)
-            while command.key not in self._replies:
+            self.send(identifier, payload)
+            while not done():
                 left = end - self.clock.now()
                 if left <= 0.0:
-                    return None
+                    return False
                 self.receive(left)
         except Exception:
             self.clock.sleep_until(end)  # the bus may come back
-            return None
-        reply = self._replies.pop(command.key)
-        return int(reply.value) if isinstance(reply, Reply) else None
+            return False
+        return True
 
     def transfer(self, request: canopen.SdoRequest) -> int:
         """Read or write an object.
@@ -142,6 +175,26 @@ class ElmoLink:
         self.wait(answered, _ANSWER, f"no answer to object {request.index:04X}h")
         return found[0]
 
+    def upload(self, index: int, subindex: int) -> bytes:
+        """Read an object of any length, e.g. a text.
+
+        Raises
+        ------
+        SdoAbortError
+            The drive refuses.
+        InputError
+            Its answer cannot be read.
+        DriveFaultError
+        """
+
+        def exchange(request: bytes) -> bytes:
+            self._answers.clear()
+            self.send(0x600 + self._options.node, request)
+            self.wait(lambda: bool(self._answers), _ANSWER, f"no answer to object {index:04X}h")
+            return self._answers[0]
+
+        return sdo_upload.upload(exchange, index, subindex)
+
     # From the drive.
 
     def wait(
@@ -151,6 +204,8 @@ class ElmoLink:
         missing: str,
         kind: str = "drive_fault",
         advice: str = "",
+        *,
+        meanwhile: Meanwhile | None = None,
     ) -> None:
         """Receive until a condition holds, or a fault is known.
 
@@ -163,8 +218,10 @@ class ElmoLink:
         begin = self.clock.now()
         end = begin + timeout
         while not done():
-            left = end - self.clock.now()
-            if (not self.receive(max(0.0, left)) and left <= 0.0) or left < -timeout:
+            left = pause = end - self.clock.now()
+            if meanwhile is not None:
+                pause = min(left, meanwhile())
+            if (not self.receive(max(0.0, pause)) and left <= 0.0) or left < -timeout:
                 raise DriveFaultError(
                     kind,
                     f"{missing} within {1e3 * timeout:g} ms{advice}",
@@ -179,6 +236,25 @@ class ElmoLink:
         for _ in range(_MOST_WAITING):
             if not self.receive(max(0.0, end - self.clock.now())):
                 break
+
+    def listen(self, duration: float) -> None:
+        """Hear for a while whether somebody else is the drive's master; nothing is sent.
+
+        Raises
+        ------
+        DriveFaultError
+            "foreign_master", as soon as one is heard.
+        """
+        self.foreign.begin()
+        end = self.clock.now() + duration
+        while (left := end - self.clock.now()) > 0.0:
+            self.receive(left)
+            self.raise_foreign()
+
+    def raise_foreign(self) -> None:
+        """Raise the known fault if it is another master."""
+        if self._fault is not None and self._fault.kind == "foreign_master":
+            self.raise_fault()
 
     def read_waiting(self) -> None:
         """Read what has come, e.g. while the host stood still.
@@ -212,15 +288,16 @@ class ElmoLink:
         if message is None:
             return False
         if message.is_error_frame:
-            meaning = error_frame_meaning(message.arbitration_id)
+            meaning = error_frame_meaning(message.arbitration_id, bytes(message.data))
             if meaning:
                 self._note("bus", f"an error frame of the CAN controller: {meaning}")
             return True
         if message.is_extended_id or message.is_remote_frame:
             return True  # none of the drive's
-        if message.arbitration_id in self._ours:
-            return True
         payload, when = bytes(message.data), self._arrival(message)
+        if self.foreign.concerns(message.arbitration_id):
+            self._take_foreign(when, message.arbitration_id, payload)
+            return True
         if self.tap is not None:
             self.tap(when, message.arbitration_id, payload, False)
         answers = message.arbitration_id == self._options.position_id
@@ -250,6 +327,16 @@ class ElmoLink:
         elif identifier == canopen.heartbeat_id(node) and len(payload) == 1:
             self._take_heartbeat(payload[0])
 
+    def _take_foreign(self, when: float, identifier: int, payload: bytes) -> None:
+        """A frame that only a master sends: ours that comes back, or another one's."""
+        if self.foreign.is_own(self.clock.now(), identifier, payload):
+            return
+        meaning = self.foreign.meaning(when, identifier, payload)
+        if self.tap is not None:
+            self.tap(when, identifier, payload, False)
+        if meaning:
+            self._note("foreign_master", meaning)
+
     def _take_reply(self, payload: bytes) -> None:
         try:
             reply = Reply.of(payload)
@@ -264,6 +351,10 @@ class ElmoLink:
             return
         if reply.letters == "AN":
             self._seen.take_voltage(float(reply.value))
+        if reply.key == ("TC", 0):
+            wrong = self.echoes.came(float(reply.value))
+            if wrong:
+                self._note("command_echo", wrong)
         self._replies[reply.key] = reply
 
     def _take_emergency(self, payload: bytes) -> None:

@@ -39,7 +39,7 @@ class CycleReader:
         self._per_ampere = constant * joint.gear_ratio
         self._seen = ElmoDecoder(joint, options)
         self._seen.rated_current = rated_current
-        self._ours = canopen.heartbeat_id(options.master)
+        self._ours = canopen.heartbeat_id(options.master_node)
         self._sent_by_us = {canopen.NMT, options.command_id, 0x600 + options.node, self._ours}
         self._watch = SyncWatch(options.bitrate, stamped=stamped)
         self._synced = math.nan
@@ -70,10 +70,15 @@ class CycleReader:
                 self._replied(payload)
             else:
                 self._seen.take(identifier, payload)
+        self._last()
 
     def _begin(self, when: float) -> None:
+        self._last()  # the sample that ended a run, behind which the joint was braked
         if self._open and self.cycles:  # in a run no SYNC is without a command
-            self._miss("command" if self._commanded is None else "host's heartbeat")
+            what = "command" if self._commanded is None else "host's heartbeat"
+            raise InputError(self._missing(what, when))
+        if not self._seen.complete:
+            self._seen.forget()  # the session has given up the last answer, too
         self._seen.begin()
         self._synced, self._commanded = when, None
         self._open = True
@@ -101,30 +106,40 @@ class CycleReader:
         if not self.cycles and (not self._open or self._commanded is None):
             self._open = False  # the motor is being switched on: our heartbeat has begun
             return
-        if not self._open:
-            raise InputError(
-                f"the SYNC before the host's heartbeat at {when:.6f} s is missing, in cycle "
-                f"{len(self.cycles) + 1}; frames are missing from the log"
-            )
         if self._commanded is None:
-            self._miss("command")
-        if not self._seen.complete:
-            self._miss(f"{self._seen.lacking} that answers")
+            raise InputError(self._missing("command" if self._open else "", when))
+        torque, self._commanded = self._per_ampere * self._commanded, None
+        if self._open and self._seen.complete:
+            self._keep(when, torque)
+        else:  # the session held its torque; or the log lacks a frame: only its recording can tell
+            what = f"{self._seen.lacking} that answers" if self._open else ""
+            lost = self._missing(what, when)
+            self.cycles.append(
+                LoggedCycle(taken=math.nan, acted=when, position=math.nan, torque=torque, lost=lost)
+            )
+        self._open = False
+
+    def _last(self) -> None:
+        """A sample without a command is the one that ended the run."""
+        if self._open and self.cycles and self._seen.complete and self._commanded in (None, 0.0):
+            self._keep(self._watch.sampled, self.cycles[-1].torque)
+            self._open = False
+
+    def _keep(self, acted: float, torque: float) -> None:
         self.cycles.append(
             LoggedCycle(
                 taken=self._watch.sampled,
-                acted=when,
+                acted=acted,
                 position=self._seen.position,
                 reading=self._seen.reading,
                 current=self._seen.current,
-                torque=0.0 if self._commanded is None else self._per_ampere * self._commanded,
+                torque=torque,
             )
         )
-        self._open = False
 
-    def _miss(self, what: str) -> None:
+    def _missing(self, what: str, when: float) -> str:
         link = "" if what.endswith("answers") else " that follows"
-        raise InputError(
-            f"the {what}{link} the SYNC at {self._synced:.6f} s is missing, in cycle "
-            f"{len(self.cycles) + 1}; frames are missing from the log"
-        )
+        missing = f"the {what}{link} the SYNC at {self._synced:.6f} s is missing"
+        if not what:
+            missing = f"the SYNC before the host's heartbeat at {when:.6f} s is missing"
+        return f"{missing}, in cycle {len(self.cycles) + 1}; frames are missing from the log"

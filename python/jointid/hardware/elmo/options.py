@@ -26,6 +26,11 @@ class ElmoOptions:
     cob_command, cob_reply, cob_position : int, optional
         COB-IDs of interpreter commands, replies, and the position's PDO. Default: 0x300, 0x280 and
         0x480 plus the node.
+    master : int, optional
+        Our node, 1 to 127, whose heartbeat the drive watches: no other node on the bus may have it. Default: 1,
+        or 2 if the drive is node 1.
+    listen : float
+        Before the drive is touched: time in which nobody else may beat as our node, or command the drive [s].
     heartbeat : float
         Time without our heartbeat after which the drive stops by itself; without the drive's, the session [s].
     drive_heartbeat : float
@@ -49,6 +54,8 @@ class ElmoOptions:
     cob_command: int | None = None
     cob_reply: int | None = None
     cob_position: int | None = None
+    master: int | None = None
+    listen: float = 0.25
     heartbeat: float = 0.05
     drive_heartbeat: float = 0.02
     acknowledge: bool = False
@@ -77,6 +84,14 @@ class ElmoOptions:
             )
         if not 1 <= self.node <= 127:
             raise InputError("1 to 127 is expected", argument="node", value=self.node)
+        if not 1 <= self.master_node <= 127 or self.master == self.node:
+            raise InputError(
+                f"1 to 127 is expected, not {self.node}, which is the drive's",
+                argument="master",
+                value=self.master,
+            )
+        if not 0.0 <= self.listen <= 60.0:
+            raise InputError("0 to 60 s is expected", argument="listen", value=self.listen)
         if self.counts_per_turn < 1:
             raise InputError(
                 "at least 1 is expected", argument="counts_per_turn", value=self.counts_per_turn
@@ -131,13 +146,15 @@ class ElmoOptions:
         return self.cob_position if self.cob_position is not None else 0x480 + self.node
 
     @property
-    def master(self) -> int:
-        """Our node, whose heartbeat the drive watches: the first that is not the drive's."""
+    def master_node(self) -> int:
+        """Our node: the given one, else the first that is not the drive's."""
+        if self.master is not None:
+            return self.master
         return 2 if self.node == 1 else 1
 
     @property
-    def received(self) -> tuple[int, ...]:
-        """COB-IDs of the frames that a session receives: replies, position, emergency, boot-up, SDO, sensor."""
+    def answering(self) -> tuple[int, ...]:
+        """COB-IDs of what the drive and the sensor send: replies, position, emergency, boot-up, SDO, sensor."""
         found = [
             self.reply_id,
             self.position_id,
@@ -149,9 +166,26 @@ class ElmoOptions:
             found.append(self.torque.identifier)
         return tuple(sorted(set(found)))
 
+    @property
+    def commanding(self) -> tuple[int, ...]:
+        """COB-IDs that only a master of this drive sends: NMT, SYNC, the drive's RPDOs and SDO, our heartbeat."""
+        found = {canopen.NMT, canopen.SYNC, self.command_id, 0x600 + self.node}
+        found |= {0x200 + self.node, 0x400 + self.node, 0x500 + self.node}
+        found.add(canopen.heartbeat_id(self.master_node))
+        return tuple(sorted(found - set(self.answering)))
+
+    @property
+    def received(self) -> tuple[int, ...]:
+        """COB-IDs of the frames that a session receives: the drive's, the sensor's, and another master's."""
+        return tuple(sorted({*self.answering, *self.commanding}))
+
     def resolution(self, joint: Joint) -> float:
         """Output angle of an encoder count [rad]."""
         return 2.0 * math.pi / abs(self.counts_per_turn * joint.gear_ratio)
+
+    def per_count(self, joint: Joint) -> float:
+        """Output angle of an encoder count, with its sign [rad]."""
+        return 2.0 * math.pi / (self.counts_per_turn * joint.gear_ratio)
 
     def angle(self, counts: int, joint: Joint) -> float:
         """Output angle of encoder counts [rad]."""

@@ -6,20 +6,12 @@ from jointid.hardware.can.canopen_frames import SdoAbortError, SdoRequest
 from jointid.hardware.elmo.link import ElmoLink
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.session.drive import DriveFaultError
+from jointid.hardware.session.drive_report import Reported
 
 _Write = tuple[int, int, int, int]  # index, subindex, value, size
-
-
-def identity(link: ElmoLink) -> dict[str, str]:
-    """Identity of the drive, from object 1018h."""
-    found = {}
-    for name, subindex in (("vendor", 1), ("product", 2), ("revision", 3)):
-        try:
-            value = link.transfer(SdoRequest(index=0x1018, subindex=subindex))
-        except SdoAbortError:
-            continue
-        found[name] = f"0x{value:X}"
-    return found
+_EMERGENCIES = (
+    0x188  # events of 2F21h that a session must hear of: heartbeat, motor failure, command refused
+)
 
 
 def map_position(link: ElmoLink, options: ElmoOptions) -> None:
@@ -38,14 +30,65 @@ def map_position(link: ElmoLink, options: ElmoOptions) -> None:
 
 
 def arm_watchdogs(link: ElmoLink, options: ElmoOptions) -> None:
-    """Let the drive stop by itself when our heartbeat is missing, and send its own."""
+    """Let the drive stop by itself when our heartbeat is missing, and send its own.
+
+    Raises
+    ------
+    DriveFaultError
+        The drive refuses an object, or has another value afterwards.
+    """
     _write(
         link,
-        (0x1016, 1, link.master << 16 | round(1e3 * options.heartbeat), 4),
+        (0x1016, 1, options.master_node << 16 | round(1e3 * options.heartbeat), 4),
         (0x1017, 0, round(1e3 * options.drive_heartbeat), 2),
         (0x6007, 0, 2, 2),
         (0x1029, 1, 1, 1),
-        (0x2F21, 0, _object(link, 0x2F21, 0) | 0x188, 4),
+        (0x2F21, 0, _object(link, 0x2F21, 0) | _EMERGENCIES, 2),
+    )
+    for each in watchdog_objects(link, options):
+        if each.differs:
+            raise DriveFaultError(
+                "drive_fault",
+                f"the drive's watchdog is not armed: object {each}; it would go on when this program has died",
+            )
+
+
+def watchdog_objects(link: ElmoLink, options: ElmoOptions) -> tuple[Reported, ...]:
+    """Return what makes the drive stop by itself, read from it, with what a session needs."""
+    watched = options.master_node << 16 | round(1e3 * options.heartbeat)
+    emergencies = _object(link, 0x2F21, 0)
+    return (
+        Reported(
+            name="1016h:1",
+            meaning=f"heartbeat awaited from node {options.master_node}, within {1e3 * options.heartbeat:g} ms",
+            value=_hexadecimal(_object(link, 0x1016, 1), 8),
+            expected=_hexadecimal(watched, 8),
+        ),
+        Reported(
+            name="1017h",
+            meaning="between two heartbeats of its own",
+            value=_object(link, 0x1017, 0),
+            unit="ms",
+            expected=round(1e3 * options.drive_heartbeat),
+        ),
+        Reported(
+            name="6007h",
+            meaning="what it does without our heartbeat (0: nothing, 2: motor off)",
+            value=_object(link, 0x6007, 0),
+            expected=2,
+        ),
+        Reported(
+            name="1029h:1",
+            meaning="state it enters then (1: none, it goes on to answer)",
+            value=_object(link, 0x1029, 1),
+            expected=1,
+        ),
+        Reported(
+            name="2F21h",
+            meaning="emergencies that it sends, of those needed",
+            value=_hexadecimal(emergencies & _EMERGENCIES, 3),
+            expected=_hexadecimal(_EMERGENCIES, 3),
+        ),
     )
 
 
@@ -60,6 +103,10 @@ def _object(link: ElmoLink, index: int, subindex: int) -> int:
         return int(link.transfer(SdoRequest(index=index, subindex=subindex)))
     except SdoAbortError:
         return 0
+
+
+def _hexadecimal(value: int, digits: int) -> str:
+    return f"{value:0{digits}X}h"
 
 
 def _write(link: ElmoLink, *objects: _Write) -> None:

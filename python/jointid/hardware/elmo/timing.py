@@ -7,6 +7,7 @@ import math
 from jointid.hardware.can.canopen_frames import bits_on_wire
 from jointid.hardware.elmo.options import ElmoOptions
 
+_TIE = 1e-6  # [s]; of frames that begin together the SYNC goes first, and a log rounds its stamps
 POSITION_LENGTH = 6
 """Bytes of the position's frame, as `elmo_setup.map_position` has it."""
 
@@ -39,7 +40,7 @@ class SyncWatch:
     def came(self, when: float, length: int, *, answers: bool) -> None:
         """A frame of so many bytes has come [s]; the position's answers the SYNC."""
         begun = when - bits_on_wire(length) / self._bitrate
-        if begun < self._sent < when:
+        if begun < self._sent - _TIE and self._sent < when:
             self._free = when
         if answers:
             self._latest = begun

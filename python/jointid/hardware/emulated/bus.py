@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from random import Random
 from typing import Any
 
 import can
 
-from jointid.hardware.emulated.device import Agenda, Device, Event, Wire
+from jointid.base.errors import InputError
+from jointid.hardware.emulated.device import Agenda, Device, Event, Port
 from jointid.hardware.emulated.faults import BusFault
+from jointid.hardware.emulated.wire import Wire
 
 
 class EmulatedBus(can.BusABC):
@@ -25,38 +27,62 @@ class EmulatedBus(can.BusABC):
         [bit/s]; None: frames take no time. Default 500 000.
     faults : sequence of BusFault
         What goes wrong on the wire, and when.
+    clock_drift : float
+        By what share the host's clock is faster than the devices' and the joint's: 1e-4 are 100 ppm.
+        Default 0. All times of this class are the host's.
+    jitter : float
+        So much later the host goes on, at most, whenever it has waited: for a time or a frame [s].
+        Default 0.
+    seed : int
+        Of the jitter. Default 0.
+
+    Raises
+    ------
+    InputError
+        `clock_drift` is not within 1 %, or `jitter` not from 0 to 0.1 s.
     """
 
     def __init__(
-        self, *devices: Device, bitrate: float | None = 500_000.0, faults: tuple[BusFault, ...] = ()
+        self,
+        *devices: Device,
+        bitrate: float | None = 500_000.0,
+        faults: tuple[BusFault, ...] = (),
+        clock_drift: float = 0.0,
+        jitter: float = 0.0,
+        seed: int = 0,
     ) -> None:
+        if not -0.01 <= clock_drift <= 0.01:
+            raise InputError("-0.01 to 0.01 is expected", argument="clock_drift", value=clock_drift)
+        if not 0.0 <= jitter <= 0.1:
+            raise InputError("0 to 0.1 s is expected", argument="jitter", value=jitter)
         super().__init__(channel="emulated")
         self.channel_info = "emulated bus on virtual time"
         self.bitrate = bitrate
+        self._rate = 1.0 + clock_drift
+        self._jitter, self._random = jitter, Random(seed)
         self._faults = faults
-        self._time = 0.0
-        self._wire = Wire(bitrate, faults)
+        self._time = 0.0  # of the devices and the joint
         self._agenda = Agenda()
+        self._wire = Wire(self._true_time, self._at, bitrate, faults)
         self._inbox: deque[can.Message] = deque()
         self.sent = 0
         self.host_work = 0.0  # [s] that passes with each frame of the host's: its own computing
         self._devices = devices
         for device in devices:
-            device.attach(self)
+            device.attach(Port(self._true_time, self._at, self._transmit, device))
 
     def now(self) -> float:
         """Virtual time [s]."""
-        return self._time
+        return self._time * self._rate
 
     def at(self, when: float, event: Event) -> None:
         """Run something when the clock gets there."""
-        self._agenda.add(max(when, self._time), event)
+        self._at(when / self._rate, event)
 
     def sleep_until(self, deadline: float) -> None:
         """Run what is due until the deadline, and be there."""
-        while self._agenda.next <= deadline:
-            self._run_next()
-        self._time = max(self._time, deadline)
+        end = deadline / self._rate
+        self._run_until(end + self._lateness() if end > self._time else end)
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
         """Put a frame of the host's on the wire.
@@ -68,14 +94,14 @@ class EmulatedBus(can.BusABC):
         """
         del timeout  # an emulated wire always takes a frame
         if self.host_work > 0.0:
-            self.sleep_until(self._time + self.host_work)
+            self._run_until(self._time + self.host_work)
         self._check_up()
         self.sent += 1
-        self._on_wire(msg, self._to_devices, from_host=True)
+        self._wire.put(msg, self, self._to_devices, from_host=True)
 
     def transmit(self, message: can.Message) -> None:
-        """Put a device's frame on the wire."""
-        self._on_wire(message, self._to_host, from_host=False)
+        """Put the frame of another node on the wire: the host and all devices receive it."""
+        self._transmit(message, None)
 
     def recv(self, timeout: float | None = None) -> can.Message | None:
         """The next frame for the host, waiting on virtual time.
@@ -85,16 +111,20 @@ class EmulatedBus(can.BusABC):
         can.CanOperationError
             The bus is down.
         """
-        deadline = self._time + (3600.0 if timeout is None else timeout)
+        deadline = self._time + (3600.0 if timeout is None else timeout / self._rate)
+        waited = False
         while True:
             self._check_up()
             if self._inbox:
+                if waited:
+                    self._run_until(self._time + self._lateness())
                 return self._inbox.popleft()
             if self._agenda.next > deadline:
-                self._time = deadline
+                self._run_until(deadline + (self._lateness() if deadline > self._time else 0.0))
                 self._check_up()
-                return None
+                return self._inbox.popleft() if self._inbox else None
             self._run_next()
+            waited = True
 
     def _recv_internal(self, timeout: float | None) -> tuple[can.Message | None, bool]:
         return self.recv(timeout), True
@@ -103,23 +133,40 @@ class EmulatedBus(can.BusABC):
         """Nothing to give back."""
         super().shutdown()
 
+    def _true_time(self) -> float:
+        return self._time
+
+    def _at(self, when: float, event: Event) -> None:
+        self._agenda.add(when, event)
+
+    def _lateness(self) -> float:
+        return self._random.uniform(0.0, self._jitter) if self._jitter else 0.0
+
+    def _run_until(self, end: float) -> None:
+        while self._agenda.next <= end:
+            self._run_next()
+        self._time = max(self._time, end)
+
     def _run_next(self) -> None:
         when, event = self._agenda.pop()
         self._time = max(self._time, when)
         event()
 
-    def _on_wire(
-        self, message: can.Message, arrive: Callable[[can.Message], None], *, from_host: bool
-    ) -> None:
-        for copy, when in self._wire.arrivals(message, self._time, from_host=from_host):
-            self.at(when, lambda arrived=copy: arrive(arrived))  # type: ignore[misc]
+    def _transmit(self, message: can.Message, sender: Device | None) -> None:
+        def arrive(arrived: can.Message) -> None:
+            for device in self._devices:
+                if device is not sender:
+                    device.receive(arrived)
+            self._to_host(arrived)
+
+        self._wire.put(message, sender, arrive, from_host=False)
 
     def _to_devices(self, message: can.Message) -> None:
         for device in self._devices:
             device.receive(message)
 
     def _to_host(self, message: can.Message) -> None:
-        message.timestamp = self._time
+        message.timestamp = self.now()
         self._inbox.append(message)
 
     def _check_up(self) -> None:

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import heapq
 import itertools
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from typing import Protocol
 
 import can
-
-from jointid.hardware.can.canopen_frames import bits_on_wire
-from jointid.hardware.emulated.faults import BusFault, mangled
 
 Event = Callable[[], None]
 
@@ -35,7 +32,7 @@ class Device(Protocol):
         """Remember the bus."""
 
     def receive(self, message: can.Message) -> None:
-        """A frame from the host has arrived, now."""
+        """A frame of the host's or of another device's has arrived, now."""
 
 
 class Agenda:
@@ -60,28 +57,26 @@ class Agenda:
         return when, event
 
 
-class Wire:
-    """Two wires that one frame at a time is on, for as long as its bits take.
+class Port:
+    """Where one device is connected: the services of a bus, and who sends.
 
     Parameters
     ----------
-    bitrate : float or None
-        [bit/s]; None: frames take no time.
-    faults : sequence of BusFault
-        What goes wrong, and when.
+    now, at, transmit : callable
+        The bus's clock and agenda; what it does with a frame and its sender.
+    device : Device
     """
 
-    def __init__(self, bitrate: float | None, faults: Sequence[BusFault] = ()) -> None:
-        self._bitrate, self._faults = bitrate, faults
-        self._free = 0.0
+    def __init__(
+        self,
+        now: Callable[[], float],
+        at: Callable[[float, Event], None],
+        transmit: Callable[[can.Message, Device], None],
+        device: Device,
+    ) -> None:
+        self.now, self.at = now, at
+        self._transmit, self._device = transmit, device
 
-    def arrivals(
-        self, message: can.Message, now: float, *, from_host: bool
-    ) -> Iterator[tuple[can.Message, float]]:
-        """What arrives of a frame sent now, and when [s]."""
-        for copy, delay in mangled(message, self._faults, now, from_host=from_host):
-            begin = max(now + delay, self._free)
-            took = 0.0 if self._bitrate is None else bits_on_wire(copy.dlc) / self._bitrate
-            if delay == 0.0:
-                self._free = begin + took
-            yield copy, begin + took
+    def transmit(self, message: can.Message) -> None:
+        """Put the device's frame on the wire."""
+        self._transmit(message, self._device)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from random import Random
 
 import can
 
@@ -38,7 +39,11 @@ class BusFault:
     identifier : int, optional
         Only frames with this identifier. Default: all.
     delay : float
-        [s], of "delay".
+        [s], of "delay"; the wire is free meanwhile.
+    probability : float
+        Share of these frames that it hits. Default 1.
+    seed : int
+        Of the choice of these frames. Default 0.
     """
 
     kind: str
@@ -47,14 +52,26 @@ class BusFault:
     identifier: int | None = None
     delay: float = 0.0
     reported: bool = False
+    probability: float = 1.0
+    seed: int = 0
+    _random: Random = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         if self.kind not in BUS_FAULTS:
             raise InputError(f"known are {', '.join(BUS_FAULTS)}", argument="kind", value=self.kind)
+        if not 0.0 <= self.probability <= 1.0:
+            raise InputError("0 to 1 is expected", argument="probability", value=self.probability)
+        self._random = Random(self.seed)
 
     def acts(self, now: float) -> bool:
         """Whether it is on."""
         return self.start <= now < self.stop
+
+    def hits(self, identifier: int, now: float) -> bool:
+        """Whether it hits a frame that is sent now."""
+        if not self.acts(now) or self.identifier not in (None, identifier):
+            return False
+        return self.probability >= 1.0 or self._random.random() < self.probability
 
 
 def drive_failure(kind: str) -> tuple[int, int]:
@@ -70,13 +87,21 @@ def drive_failure(kind: str) -> tuple[int, int]:
     return DRIVE_FAILURES[kind]
 
 
+def error_register(emergency: int) -> int:
+    """Bits of the error register 1001h that belong to an emergency's code (CiA 301)."""
+    by_class = {0x2: 0x03, 0x3: 0x05, 0x4: 0x09}  # current, voltage, temperature
+    if emergency == 0x8130:
+        return 0x11  # communication
+    return by_class.get(emergency >> 12, 0x81)  # else the manufacturer's
+
+
 def mangled(
     message: can.Message, faults: Sequence[BusFault], now: float, *, from_host: bool
 ) -> Iterator[tuple[can.Message, float]]:
     """What becomes of a frame: copies of it, each with its extra delay [s]."""
     copies = [(_copy(message), 0.0)]
     for fault in faults:
-        if not fault.acts(now) or fault.identifier not in (None, message.arbitration_id):
+        if not fault.hits(message.arbitration_id, now):
             continue
         if fault.kind in ("drop", "bus_off", "down"):
             copies = []

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointid import _core
-from jointid.hardware.session.cycle import held_torque, target_at
+from jointid.hardware.session.cycle import capped, held_torque, target_at
 from jointid.hardware.session.drive import Drive, DriveFaultError, DriveSample
 from jointid.hardware.session.guard import Guard
 from jointid.hardware.session.interruptions import Interruptions
+from jointid.hardware.session.lateness import Lateness
 from jointid.hardware.session.options import SessionOptions
 from jointid.hardware.session.recorder import Recorder
 from jointid.hardware.session.stop import LimitError
@@ -20,6 +21,8 @@ from jointid.hardware.session.velocity_estimator import VelocityEstimator
 from jointid.simulation.trajectory import Trajectory
 
 Observer = Callable[[str, float, DriveSample, float, float], object]
+UNCONFIRMED = 0.5
+"""What a command that was not confirmed adds to `Recording.late`; whole numbers are cycles without a sample."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,10 +86,22 @@ class Follower:
         self._stamp = -math.inf  # of the last sample [s]
         self.phase, self.began = "check", drive.clock.now()
         self.rows: list[tuple[float, ...]] = []
-        self.late: list[float] = []
+        self.late: list[float] = []  # the cycles' ends, against the begins of the next [s]
+        self.woke: list[float] = []  # the cycles' begins, against when they were due [s]
         self.cycles = self.cycles_before = 0  # in which a torque was commanded; before the run
+        self.newest: DriveSample | None = None
         self.velocity_measured = False  # by the drive; the controller got it in some cycle
         self._held = 0.0  # of the last command [N·m]: enabling commands zero
+        self._first: float | None = (
+            None  # how long after a cycle's begin the first sample was taken
+        )
+        self._missing = 0.0  # cycles without a sample before the next one
+        self._waited = False  # for a sample, in the last cycle
+
+    @property
+    def lateness(self) -> Lateness:
+        """Counts the cycles without a sample."""
+        return self._guard.lateness
 
     def enter(self, phase: str) -> None:
         """Begin a phase: a stop names it and the time since."""
@@ -117,60 +132,129 @@ class Follower:
         Exception
             Of the controller or the observer.
         """
-        options, clock, guard = self._options, self._drive.clock, self._guard
+        options, clock, lateness = self._options, self._drive.clock, self._guard.lateness
         period = options.period
-        timeout = 0.75 * period if options.answer_timeout is None else options.answer_timeout
-        reference, velocity, acceleration = course.reference, course.velocity, course.acceleration
+        timeout = options.timeout
         running = self.phase == "run"
         begin = clock.now() + period
-        first: float | None = None  # how long after a cycle's begin the first sample was taken
+        self._first, self._missing, self._waited = None, 0.0, False
         if running and recorder is not None:
             recorder.begin({"cycles_before": self.cycles})
         if running:
             self.cycles_before = self.cycles
-        for k in range(len(reference)):
-            if settled is not None and self.phase == "move" and k * period > settled:
-                self.enter("settle")
+        k = 0
+        while k < len(course.reference):
             clock.sleep_until(begin + k * period)
             if self._interruptions.reason is not None:
                 raise LimitError("user", self._interruptions.reason)
-            sample = self._drive.read(timeout)
-            self._check_stamp(sample.time)
-            estimated = self._estimate(sample.time, sample.position)
-            measures = not math.isnan(sample.velocity)
-            speed = sample.velocity if measures else estimated
-            self.velocity_measured = self.velocity_measured or measures
-            # The larger one for the limit: a velocity that a drive no longer updates must not disarm it.
-            fastest = estimated if abs(estimated) > abs(speed) else speed
-            late = sample.time - begin - k * period
-            first = late if first is None else first
-            # To the nanosecond: rounding errors would turn the sign of a velocity of 0.
-            shift = round(late - first, 9)
-            pace = velocity[k] + shift * acceleration[k]
-            target = target_at(reference[k] + offset, velocity[k], acceleration[k], shift)
-            elapsed = k * period + shift
-            error = sample.position - target if self._feedback else None
-            guard.measured(sample, fastest, error)
-            torque = self._asked(elapsed, sample, speed, (target, pace, acceleration[k]))
-            guard.commanded(torque, self._law.saturations)
+            woke = clock.now() - begin - k * period
+            self.woke.append(woke)
+            # What is over is not caught up: the joint is asked for where it should be now.
+            passed = int(woke / period)
+            k += passed
+            if k >= len(course.reference):
+                self._sample(timeout)  # a drive that has stopped meanwhile says why
+                lateness.skip(passed, woke)
+                break
+            if settled is not None and self.phase == "move" and k * period > settled:
+                self.enter("settle")
+            sample = self._sample(timeout)
+            if passed:  # behind the reading: a drive that has stopped meanwhile says why
+                lateness.skip(passed, woke)
+            self._missing += passed
+            if isinstance(sample, str):
+                lateness.late(sample)
+                self._missing += 1.0
+                self._waited = True
+                self._hold()
+            else:
+                # Behind a late answer the bus is not quiet: when this sample was taken is known less well.
+                kept = running and not self._waited
+                self._waited = False
+                lateness.on_time()
+                wanted = (course.reference[k] + offset, course.velocity[k], course.acceleration[k])
+                self._answer(sample, k * period, begin, wanted, recorder if kept else None, kept)
+            k += 1
+            missed = clock.now() - (begin + k * period)
+            self.late.append(missed)
+            self._guard.timed(missed)
+
+    def _answer(
+        self,
+        sample: DriveSample,
+        due: float,
+        begin: float,
+        wanted: tuple[float, float, float],
+        recorder: Recorder | None,
+        kept: bool,
+    ) -> None:
+        """Check a sample, command a torque, keep the row; a sample that ends the session is kept, too."""
+        guard, clock, period = self._guard, self._drive.clock, self._options.period
+        self.newest = sample
+        estimated = self._estimate(sample.time, sample.position)
+        measures = not math.isnan(sample.velocity)
+        speed = sample.velocity if measures else estimated
+        self.velocity_measured = self.velocity_measured or measures
+        # The larger one for the limit: a velocity that a drive no longer updates must not disarm it.
+        fastest = estimated if abs(estimated) > abs(speed) else speed
+        late = sample.time - begin - due
+        self._first = late if self._first is None else self._first
+        # To the nanosecond: rounding errors would turn the sign of a velocity of 0.
+        shift = round(late - self._first, 9)
+        elapsed = due + shift
+        reference, velocity, acceleration = wanted
+        ahead = capped(shift, period)
+        pace = velocity + ahead * acceleration
+        target = target_at(reference, velocity, acceleration, ahead)
+        if not sample.confirmed:
+            self._missing += UNCONFIRMED
+        accepted, held = self._held, self._held
+        try:
+            guard.measured(sample, fastest, sample.position - target if self._feedback else None)
+            aim = target, pace, acceleration
+            torque = self._asked(elapsed, sample, speed, aim)
+            guard.commanded(torque, self._law.saturations, aim if self._feedback else None)
             accepted = self._accepted(torque)
             acted = clock.now() - sample.time + self._drive.command_latency
             self.cycles += 1
+            held = held_torque(self._held, accepted, acted, period)
             guard.accepted(torque, accepted)
-            if running:
-                held = held_torque(self._held, accepted, acted, period)
+        finally:
+            if kept and math.isfinite(sample.position + sample.reading):
                 row = (elapsed, sample.position, held, sample.reading, target, sample.current)
-                self.rows.append(row)
-                if recorder is not None:
-                    recorder.sample(row)
-                    if recorder.failure is not None:
-                        raise unwritten(recorder.failure)
-            self._held = accepted
-            if self._observer is not None:
-                self._observer(self.phase, elapsed, sample, target, accepted)
-            missed = clock.now() - (begin + (k + 1) * period)
-            self.late.append(missed)
-            guard.timed(missed)
+                self._keep((*row, self._missing), recorder)
+        # A command that was lost, or acts only in the next cycle, makes the next one's torque uncertain, too.
+        doubtful = acted > period or not sample.confirmed
+        self._missing = (UNCONFIRMED if doubtful else 0.0) + (
+            0.0 if kept else math.floor(self._missing) + 1.0
+        )
+        self._held = accepted
+        if self._observer is not None:
+            self._observer(self.phase, elapsed, sample, target, accepted)
+
+    def _keep(self, row: tuple[float, ...], recorder: Recorder | None) -> None:
+        """Keep a row of the run."""
+        self.rows.append(row)
+        if recorder is not None:
+            recorder.sample(row)
+            if recorder.failure is not None:
+                raise unwritten(recorder.failure)
+
+    def _sample(self, timeout: float) -> DriveSample | str:
+        """Return the drive's state; if none has come in time, the reason."""
+        try:
+            sample = self._drive.read(timeout)
+        except DriveFaultError as error:
+            if error.kind != "stale_position":
+                raise
+            return str(error)
+        self._check_stamp(sample.time)
+        return sample
+
+    def _hold(self) -> None:
+        """Command the last torque again; this also shows the drive that the host is alive."""
+        self._held = self._accepted(self._held)
+        self.cycles += 1
 
     def _check_stamp(self, stamp: float) -> None:
         """See that a sample is younger than the one before it: else it is not of this cycle."""

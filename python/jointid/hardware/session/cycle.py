@@ -27,6 +27,8 @@ class LoggedCycle:
         Of the torque sensor; 0: there is none.
     current : float
         Active, in the motor [A]; not a number: not known.
+    lost : str
+        Why the cycle has no sample, in a sentence; the torque was commanded all the same. Default: it has one.
     """
 
     taken: float
@@ -35,6 +37,7 @@ class LoggedCycle:
     torque: float
     reading: float = 0.0
     current: float = float("nan")
+    lost: str = ""
 
 
 def held_torque(before: Value, accepted: Value, acted: Value, period: float) -> Value:
@@ -54,6 +57,13 @@ def held_torque(before: Value, accepted: Value, acted: Value, period: float) -> 
         return share * before + (1.0 - share) * accepted
     shares = np.minimum(1.0, acted / period)
     return shares * before + (1.0 - shares) * accepted
+
+
+def capped(shift: Value, period: float) -> Value:
+    """How far a cycle's reference is extrapolated [s]: at most a period, because what is later is skipped."""
+    if isinstance(shift, float):
+        return max(-period, min(period, shift))
+    return np.clip(shift, -period, period)
 
 
 def target_at(reference: Value, velocity: Value, acceleration: Value, shift: Value) -> Value:

@@ -18,6 +18,8 @@ FAULT_KINDS = (
     "host_heartbeat_lost",
     "bus",
     "sensor",
+    "foreign_master",
+    "command_echo",
 )
 
 
@@ -31,9 +33,12 @@ class DriveFaultError(RuntimeError):
     Parameters
     ----------
     kind : str
-        "stale_position": no new state within the time allowed; "drive_fault": the drive has shut down or
+        "stale_position": no new state within the time allowed, which a session stands for a few cycles while
+        the motor moves (`SessionLimits.late_samples`); "drive_fault": the drive has shut down or
         refuses a command; "heartbeat_lost": it does not answer any more; "host_heartbeat_lost": it reports that
-        the host does not; "bus": the bus has failed; "sensor": a reading is missing or not finite.
+        the host does not; "bus": the bus has failed; "sensor": a reading is missing or not finite;
+        "foreign_master": somebody else commands the drive, or feeds its watchdog; "command_echo": the drive
+        acknowledges another torque than was commanded, or none.
     message : str
         One sentence: what happened, with the numbers.
     measured, allowed : float, optional
@@ -76,6 +81,9 @@ class DriveSample:
         Active, in the motor [A]. Default: not a number, not known.
     torque : float
         Of that current, at the output [N·m]. Default: not a number.
+    confirmed : bool
+        The drive has confirmed the last command. When it has not, the recording marks the cycle: its torque
+        is in doubt. Default True.
     velocity : float
         Measured by the drive, at the output [rad/s], for the controller. Default: not a number; the
         controller then gets the estimate from times and positions. The velocity limit holds for both.
@@ -88,6 +96,7 @@ class DriveSample:
     clipped: bool = False
     current: float = float("nan")
     torque: float = float("nan")
+    confirmed: bool = True
     velocity: float = float("nan")
 
 
@@ -124,7 +133,8 @@ class Drive(Protocol):
     for the frame log. It may have an attribute `resolution`, the output angle of an encoder count [rad],
     which `SessionOptions` must give otherwise; an attribute `joint`, a `Joint`; and a method `metadata`,
     which returns ``{"drive_type": name, "drive_options": …}``, of JSON's types. Both are kept in the
-    recording, so that a replay of the frame log finds them.
+    recording, so that a replay of the frame log finds them. It may have a method `report`, which returns a
+    `DriveReport` once it is connected, its motor off.
     """
 
     @property
@@ -172,7 +182,8 @@ class Drive(Protocol):
         Raises
         ------
         DriveFaultError
-            "stale_position": nothing came in time.
+            "stale_position": nothing came in time. While the motor moves, the session then sends the last
+            torque again and asks anew in the next cycle, a few times.
         """
 
     def command(self, torque: float) -> float:

@@ -6,6 +6,8 @@ import math
 from collections import deque
 
 from jointid.hardware.session.drive import DriveSample
+from jointid.hardware.session.foresight import Foresight
+from jointid.hardware.session.lateness import Lateness
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.stop import LimitError
 
@@ -28,10 +30,25 @@ class Guard:
         [s]
     resolution : float
         Output angle of an encoder count [rad].
+    foresight : Foresight, optional
+        Checks that need to know the joint. Default: none.
+
+    Attributes
+    ----------
+    lateness : Lateness
+        Counts the cycles without a sample.
     """
 
-    def __init__(self, limits: SessionLimits, period: float, resolution: float) -> None:
+    def __init__(
+        self,
+        limits: SessionLimits,
+        period: float,
+        resolution: float,
+        foresight: Foresight | None = None,
+    ) -> None:
+        self._foresight = foresight
         self._limits, self._period = limits, period
+        self.lateness = Lateness(limits, period)
         self._largest_measured = limits.largest_measured
         self._largest_difference = limits.largest_difference
         self._moving = _MOVING * resolution / period
@@ -72,13 +89,29 @@ class Guard:
         _hold("velocity", velocity, limits.velocity, "rad/s")
         if error is not None:
             _hold("tracking_error", error, limits.tracking_error, "rad")
+        if self._foresight is not None:
+            self._foresight.driven(position, velocity, self._accepted)
+            self._foresight.moving(position, velocity, self._accepted)
         self._read(sample)
         self._repeats(position, velocity)
         if not math.isnan(sample.torque):
             self._felt(sample.torque)
 
-    def commanded(self, torque: float, saturations: int) -> None:
+    def commanded(
+        self,
+        torque: float,
+        saturations: int,
+        wanted: tuple[float, float, float] | None = None,
+    ) -> None:
         """Check the torque that the controller asks for [N·m], before it is commanded.
+
+        Parameters
+        ----------
+        torque : float
+        saturations : int
+            Of the controller, in all.
+        wanted : tuple of float, optional
+            Position, velocity and acceleration of the reference. Default: there is none.
 
         Raises
         ------
@@ -101,6 +134,8 @@ class Guard:
                 measured=cut,
                 allowed=limits.saturated_samples,
             )
+        if self._foresight is not None and wanted is not None:
+            self._foresight.commanded(torque, *wanted)
 
     def accepted(self, asked: float, accepted: float) -> None:
         """Check the torque accepted by the drive against the torque asked for [N·m]: it has limits of its own.

@@ -44,6 +44,15 @@ class SessionLimits:
         before, or the torque has since changed by more than `torque`: an encoder that hangs, or a blocked joint.
     clipped_samples : int
         Readings in a row at the end of the sensor's range.
+    late_samples : int
+        Cycles in a row without a sample in time, because an answer was late or lost or the loop stood
+        still. The last torque is held meanwhile, and the recording marks them (`Recording.late`).
+    late_share : float
+        Share of such cycles in the last 5 s; as many as `late_samples` are never too many.
+    torque_envelope : float, optional
+        How many times the torque that the reference needs by the joint's values (friction, inertia, weight)
+        may be commanded for longer than 50 ms; a twentieth of `torque` is added. Default: not watched;
+        `commission` takes 2 for runs with an identified joint.
 
     Raises
     ------
@@ -62,6 +71,9 @@ class SessionLimits:
     missed_deadlines: int = 5
     repeated_positions: int = 10
     clipped_samples: int = 5
+    late_samples: int = 4
+    late_share: float = 0.01
+    torque_envelope: float | None = None
 
     def __post_init__(self) -> None:
         window = tuple(self.position) if isinstance(self.position, Iterable) else ()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 from jointid.base.argument_checks import whole_number
 from jointid.base.errors import InputError
@@ -76,6 +76,11 @@ class SessionOptions:
                 )
         check_cycles("settle", self.settle, self.period)
 
+    @property
+    def timeout(self) -> float:
+        """For an answer in a cycle [s]."""
+        return 0.75 * self.period if self.answer_timeout is None else self.answer_timeout
+
 
 def check_cycles(name: str, time: float, period: float) -> None:
     """Check that a time [s] has no more cycles than a session can keep.
@@ -92,3 +97,22 @@ def check_cycles(name: str, time: float, period: float) -> None:
             argument=name,
             value=time,
         )
+
+
+def with_resolution(options: SessionOptions, drive: object) -> SessionOptions:
+    """Return options whose resolution is known: their own, or the drive's.
+
+    Raises
+    ------
+    InputError
+        Neither is known.
+    """
+    if options.resolution is not None:
+        return options
+    resolution = getattr(drive, "resolution", None)
+    if resolution is None:
+        raise InputError(
+            "not known: neither the session's options nor the drive give the output angle of an encoder count",
+            argument="resolution",
+        )
+    return replace(options, resolution=float(resolution))

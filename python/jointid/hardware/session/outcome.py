@@ -64,12 +64,18 @@ def ending_of(
     """Return the metadata that is known at the end of a session, of JSON's types."""
     late = np.array(() if follower is None else follower.late)
     timing = None
-    if len(late):
+    if follower is not None and len(late):
+        lateness = follower.lateness
         timing = {
             "cycles": len(late),
             "missed": int((late > 0.0).sum()),
             "slack_least": float(-late.max()),
             "slack_median": float(-np.median(late)),
+            "lost": lateness.lost,
+            "skipped": lateness.skipped,
+            "most_in_row": lateness.most_in_row,
+            "woke_late_median": float(np.median(follower.woke)),
+            "woke_late_most": float(max(follower.woke)),
         }
     measured = follower is not None and follower.velocity_measured
     return {
@@ -89,7 +95,7 @@ def recording_of(
     """Return the recording of the run; None when there are too few samples for one."""
     if follower is None or len(follower.rows) < _FEWEST:
         return None
-    time, position, torque, sensor, reference, current = map(
+    time, position, torque, sensor, reference, current, late = map(
         np.array, zip(*follower.rows, strict=True)
     )
     return Recording(
@@ -99,6 +105,7 @@ def recording_of(
         sensor=sensor if sensor.any() else None,  # 0 throughout: there is none
         reference=reference,
         current=None if np.isnan(current).any() else current,
+        late=late if late.any() else None,  # 0 throughout: nothing was
         torque_hold="zoh",
         name=name,
         metadata=metadata,

@@ -22,6 +22,7 @@ COLUMNS = (
     "sensor_raw",
     "reference_rad",
     "current_A",
+    "late_cycles",
 )
 _FLUSH = 0.02  # [s]: not much more is lost when the program is killed
 _SYNC = 0.5  # [s]: not much more is lost with the power

@@ -13,13 +13,16 @@ import numpy as np
 
 from jointid import _core
 from jointid.base.errors import InputError
+from jointid.hardware.session.braking import Braked, brake_after
 from jointid.hardware.session.control_loop import Course, Follower, Observer, unwritten
 from jointid.hardware.session.drive import Drive, DriveEnd, DriveFaultError, check_drive
+from jointid.hardware.session.foresight import foresight_of
 from jointid.hardware.session.guard import Guard
 from jointid.hardware.session.interruptions import Interruptions
 from jointid.hardware.session.limits import SessionLimits
-from jointid.hardware.session.metadata import session_metadata
-from jointid.hardware.session.options import SessionOptions, check_cycles
+from jointid.hardware.session.metadata import plain, session_metadata
+from jointid.hardware.session.moving_joint import MovingJoint
+from jointid.hardware.session.options import SessionOptions, check_cycles, with_resolution
 from jointid.hardware.session.outcome import ending_of, recording_of, stop_of
 from jointid.hardware.session.realtime import RealTime, RealTimeOptions
 from jointid.hardware.session.recorder import Frame, Recorder, check_output
@@ -36,6 +39,7 @@ from jointid.hardware.session.stop import (
     Stop,
     is_bug,
 )
+from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
 from jointid.simulation.arguments import Controller
 from jointid.simulation.trajectory import Trajectory
@@ -72,6 +76,8 @@ class Session:
     real_time : RealTimeOptions, optional
         What to ask of the operating system while the motor is on; what it does not grant is in the
         recording's metadata. Default: nothing.
+    joint : Joint, optional
+        What limits that look ahead believe of inertia, friction and weight. Default: the drive's `joint`.
 
     Attributes
     ----------
@@ -96,19 +102,20 @@ class Session:
         output: str | Path | None = None,
         observer: Observer | None = None,
         real_time: RealTimeOptions | None = None,
+        joint: Joint | None = None,
     ) -> None:
         check_drive(drive)
         self._drive, self._controller, self._trajectory = drive, controller, trajectory
         self._limits = limits
-        self._options = _with_resolution(
-            options if options is not None else SessionOptions(), drive
-        )
+        self._moved = MovingJoint.of(getattr(drive, "joint", None) if joint is None else joint)
+        self._options = with_resolution(options if options is not None else SessionOptions(), drive)
         self._output = None if output is None else Path(output)
         self._observer = observer
         self._real_time = RealTime(real_time)
         self._follower: Follower | None = None
         self._end: DriveEnd | None = None
         self._bug: Exception | None = None
+        self._braked: Braked | None = None
         self.recording: Recording | None = None
 
     def check(self) -> list[str]:
@@ -181,6 +188,7 @@ class Session:
         recorder: Recorder | None = None
         cause: Exception | KeyboardInterrupt | None = None
         self._follower, self._end, self._bug, self.recording = None, None, None, None
+        self._braked = None
         early: list[Frame] = []  # frames of bringing the drive up, before there is a recorder
         if self._output is not None and not dry_run:
             check_output(self._output)
@@ -277,7 +285,12 @@ class Session:
             follower = Follower(
                 self._drive,
                 law,
-                Guard(limits, options.period, options.resolution),
+                Guard(
+                    limits,
+                    options.period,
+                    options.resolution,
+                    foresight_of(self._moved, self._drive, limits, options),
+                ),
                 options,
                 interruptions=interruptions,
                 observer=self._observer,
@@ -294,6 +307,7 @@ class Session:
             follower.follow(course, recorder)
         except (Exception, KeyboardInterrupt) as error:
             moment = self._drive.clock.now()
+            self._brake(error)
             self._switch_off()
             return error, moment
         moment = self._drive.clock.now()
@@ -315,6 +329,18 @@ class Session:
         return float(self._trajectory.sample(np.zeros(1))[0][0])
 
     # Ways out.
+
+    def _brake(self, cause: BaseException) -> None:
+        """Bring the joint to rest, where that is no risk; the motor goes off next in any case."""
+        try:
+            sample = None if self._follower is None else self._follower.newest
+            self._braked = brake_after(
+                cause, self._drive, self._moved, self._limits, self._options, sample
+            )
+        except (DriveFaultError, OSError, KeyboardInterrupt):
+            return  # the drive has failed, or somebody is in a hurry
+        except Exception as bug:
+            self._note_bug(bug)
 
     def _switch_off(self) -> None:
         """Torque to zero, motor off; an exception of the drive must not prevent the following steps."""
@@ -355,7 +381,8 @@ class Session:
         )
 
     def _ending(self, stop: Stop | None) -> dict[str, Any]:
-        return ending_of(self._follower, self._end, stop, self._real_time.notes)
+        ending = ending_of(self._follower, self._end, stop, self._real_time.notes)
+        return ending if self._braked is None else {**ending, "braked": plain(self._braked)}
 
     def _recording(self, stop: Stop | None) -> Recording | None:
         metadata = {**self._metadata(), "session": True, **self._ending(stop)}
@@ -368,16 +395,3 @@ def _noted(error: Exception, note: str) -> Exception:
     if note:
         error.add_note(note)
     return error
-
-
-def _with_resolution(options: SessionOptions, drive: object) -> SessionOptions:
-    """Options whose resolution is known: their own, or the drive's."""
-    if options.resolution is not None:
-        return options
-    resolution = getattr(drive, "resolution", None)
-    if resolution is None:
-        raise InputError(
-            "not known: neither the session's options nor the drive give the output angle of an encoder count",
-            argument="resolution",
-        )
-    return replace(options, resolution=float(resolution))

@@ -31,6 +31,7 @@ FILES = (
     "standing",
     "few_windows",
     "gaps",
+    "late",
     "assumed_units",
 )
 

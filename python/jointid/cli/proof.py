@@ -1,0 +1,208 @@
+"""The commands `check` and `first-motion`, and what `run` asks of a bench before it moves a real joint."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointid.base.errors import InputError
+from jointid.cli.arguments import TEXT, decimal, whole_seed
+
+if TYPE_CHECKING:
+    from jointid.hardware.bench.bench import Bench
+
+REFUSED = 3
+"""Exit code when a bench is refused."""
+
+
+def add_check(commands: Any) -> None:
+    """Add the command's grammar."""
+    check = commands.add_parser(
+        "check",
+        help="show which drive is connected, how it is set, and what differs from the joint file",
+        epilog=(
+            "examples:\n"
+            "  jointid check joint.toml\n"
+            "  jointid check joint.toml --emulate\n"
+            "reads only, the motor stays off. Exit code 3: something speaks against moving the joint."
+        ),
+        formatter_class=TEXT,
+    )
+    _add_common(check, "print what was found as JSON")
+
+
+def add_first_motion(commands: Any) -> None:
+    """Add the command's grammar."""
+    first = commands.add_parser(
+        "first-motion",
+        help="move a joint for the first time, by less than half a degree: signs, breakaway, scales",
+        epilog=(
+            "examples:\n"
+            "  jointid first-motion joint.toml --emulate\n"
+            "  jointid first-motion joint.toml\n"
+            "  jointid first-motion joint.toml --unknown-friction --largest-torque 20\n"
+            "a real bench that passes gets the certificate that `jointid run` asks for, beside the joint\n"
+            "file. Before: docs/hardware.md and `jointid check`. Exit code 3: the bench is refused."
+        ),
+        formatter_class=TEXT,
+    )
+    _add_common(first, "print passed, reason, travel, torques, signs and what is unchecked as JSON")
+    first.add_argument("--yes", action="store_true", help="do not ask before a real joint moves")
+    first.add_argument(
+        "--largest-torque",
+        type=decimal,
+        help="without motion, the torque ends there [N·m, by the joint file's constants]; default: five "
+        "times the friction that the joint file states, and never more than the torque limit",
+    )
+    first.add_argument(
+        "--unknown-friction",
+        action="store_true",
+        help="the joint file's friction is only a guess: no scale is held against it",
+    )
+    first.add_argument("--quiet", action="store_true", help="no line for each step")
+
+
+def _add_common(command: Any, printed: str) -> None:
+    command.add_argument("joint", type=Path, help="joint file (.toml) with a table [session]")
+    command.add_argument(
+        "--emulate", action="store_true", help="an emulated drive and joint on virtual time"
+    )
+    command.add_argument("--json", action="store_true", help=printed)
+    command.add_argument(
+        "--seed", type=whole_seed, default=0, help="seed of the emulated noise (default 0)"
+    )
+
+
+def check(arguments: argparse.Namespace) -> int:
+    """Show what is connected."""
+    from jointid.hardware.bench.bench import Bench
+    from jointid.hardware.proof.check import check_bench
+
+    bench = Bench.load(arguments.joint)
+    found = check_bench(bench, emulate=arguments.emulate, seed=arguments.seed)
+    certified = None if arguments.emulate else _objections(arguments.joint, bench, found.identity)
+    if arguments.json:
+        document = {**found.to_dict(), "certificate": certified}
+        print(json.dumps(document, indent=1, ensure_ascii=False))
+    else:
+        print(found.text())
+        if certified is not None:
+            print("certificate: " + ("; ".join(certified) if certified else "holds"))
+    return 0 if found.passed else REFUSED
+
+
+def first_motion(arguments: argparse.Namespace) -> int:
+    """Move a joint for the first time; a real one that passes is certified."""
+    from jointid.hardware.bench.bench import Bench
+    from jointid.hardware.proof.certificate import Certificate, certificate_path
+    from jointid.hardware.proof.procedure import first_motion as move
+
+    bench = Bench.load(arguments.joint)
+    options = bench.first_motion
+    if arguments.largest_torque is not None:
+        options = replace(options, largest_torque=arguments.largest_torque)
+    if arguments.unknown_friction:
+        options = replace(options, compare_friction=False)
+    bench = replace(bench, first_motion=options)
+    if not (arguments.emulate or arguments.yes or _agreed(bench)):
+        print("jointid first-motion: not started", file=sys.stderr)
+        return REFUSED
+    show = not (arguments.quiet or arguments.json)
+    result = move(
+        bench,
+        emulate=arguments.emulate,
+        seed=arguments.seed,
+        callback=_show if show else None,
+    )
+    if arguments.json:
+        print(json.dumps(result.to_dict(), indent=1, ensure_ascii=False))
+    else:
+        print(result.verdict())
+    if not result.passed and arguments.json:
+        print(f"jointid first-motion: refused ({result.reason}): {result.message}", file=sys.stderr)
+    if not result.passed:
+        return REFUSED
+    if not arguments.emulate:
+        path = certificate_path(arguments.joint)
+        Certificate.of(bench, result).save(path)
+        print(f"certificate: {path}", file=sys.stderr)
+    return 0
+
+
+def missing_certificate(joint_file: Path, bench: Bench) -> str:
+    """Return why a real joint must not be moved by `run`; empty when its certificate holds.
+
+    The drive is asked who it is: its motor stays off.
+
+    Parameters
+    ----------
+    joint_file : Path
+    bench : Bench
+
+    Raises
+    ------
+    InputError
+        The certificate cannot be read, or the drive cannot be opened.
+    """
+    from jointid.hardware.bench.opened_drive import open_drive
+    from jointid.hardware.session.drive import DriveFaultError
+
+    objections = _objections(joint_file, bench, None)
+    if not objections:
+        try:
+            with open_drive(bench) as drive:
+                try:
+                    drive.connect(bench.options.period)
+                    objections = _objections(joint_file, bench, drive.identity())
+                finally:
+                    drive.disable()
+                    drive.close()
+        except (DriveFaultError, OSError) as error:
+            return f"the drive does not say who it is: {error}"
+    if not objections:
+        return ""
+    return (
+        "this bench is not certified: "
+        + "; ".join(objections)
+        + "; run `jointid first-motion` first, or give --force"
+    )
+
+
+def _objections(joint_file: Path, bench: Bench, identity: Any) -> list[str]:
+    """What speaks against the certificate of a joint file."""
+    from jointid.hardware.proof.certificate import Certificate, certificate_path
+
+    path = certificate_path(joint_file)
+    if not path.exists():
+        return [f"there is no {path.name}"]
+    try:
+        return Certificate.load(path).objections(bench, identity)
+    except InputError as error:
+        return [str(error)]
+
+
+def _show(line: str) -> None:
+    print(line, flush=True)
+
+
+def _agreed(bench: Bench) -> bool:
+    """Whether the user agrees that the real joint moves."""
+    travel = bench.first_motion.travel
+    print(
+        f"'{bench.joint.name}' will move by up to {travel:.4f} rad, over {bench.address}. With a wrong gear ratio it "
+        "is more.",
+        file=sys.stderr,
+    )
+    if not sys.stdin.isatty():
+        print("give --yes to start without being asked", file=sys.stderr)
+        return False
+    try:
+        return (
+            input("Is the space free, and the emergency stop at hand? [yes/no] ").strip() == "yes"
+        )
+    except EOFError:
+        return False

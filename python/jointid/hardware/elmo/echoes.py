@@ -1,0 +1,87 @@
+"""Replies to the torque commands, compared with what was sent: the drive does what we command, and only that."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+
+from jointid.hardware.session.drive import DriveFaultError
+
+_MOST_MISSING = 5  # commands in a row without their echo
+_ROUNDING = 1e-6  # of a 32-bit float, relative; also absolute [A]
+
+
+class CommandEchoes:
+    """The drive answers each TC by its value; these answers are compared with the commands.
+
+    Attributes
+    ----------
+    lost : int
+        Echoes, or commands, that were lost one by one: a later one was answered.
+    """
+
+    def __init__(self) -> None:
+        self._waiting: deque[float] = deque()
+        self._last: float | None = None
+        self._compares = False
+        self.lost = 0
+
+    def begin(self) -> None:
+        """The motor is on at zero torque; commands follow."""
+        self._waiting.clear()
+        self._last, self._compares, self.lost = 0.0, True, 0
+
+    def end(self) -> None:
+        """The motor is being switched off."""
+        self._compares = False
+
+    def sent(self, current: float) -> None:
+        """A command [A]."""
+        if self._compares:
+            self._waiting.append(current)
+
+    @property
+    def confirmed(self) -> bool:
+        """Whether every command has been answered by now; by the next sample the last one should have been."""
+        return not self._waiting
+
+    def came(self, current: float) -> str:
+        """Compare an echo [A]; returns what is wrong with it, empty when nothing is."""
+        if not self._compares:
+            return ""
+        for place, wanted in enumerate(self._waiting):
+            if math.isclose(current, wanted, rel_tol=_ROUNDING, abs_tol=_ROUNDING):
+                for _ in range(place + 1):
+                    self._last = self._waiting.popleft()
+                self.lost += place
+                return "" if place < _MOST_MISSING else self._unanswered(place)
+        if self._last is not None and current == self._last:
+            return ""  # a frame that came twice
+        wanted_text = f", sent was {self._waiting[0]:.6g} A" if self._waiting else ""
+        return (
+            f"the drive acknowledges TC = {current:.6g} A{wanted_text}: a command was changed on its way, "
+            "or somebody else commands the drive"
+        )
+
+    def check(self) -> None:
+        """See that echoes come.
+
+        Raises
+        ------
+        DriveFaultError
+            "command_echo": five commands in a row were not answered.
+        """
+        missing = len(self._waiting) - 1  # the newest may still be on its way
+        if missing >= _MOST_MISSING:
+            raise DriveFaultError(
+                "command_echo",
+                self._unanswered(missing),
+                measured=missing,
+                allowed=_MOST_MISSING - 1,
+            )
+
+    def _unanswered(self, count: int) -> str:
+        return (
+            f"the drive has not acknowledged {count} torque commands in a row, {_MOST_MISSING - 1} may be "
+            "lost: its torque is not what was commanded"
+        )

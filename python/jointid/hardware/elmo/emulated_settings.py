@@ -1,0 +1,87 @@
+"""Properties and stored settings of an emulated Elmo drive."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from jointid.hardware.elmo.torque_source import SensorScaling
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ElmoSettings:
+    """Properties and settings of an emulated drive.
+
+    What a drive keeps through a reset is a worst case here: nothing is armed until somebody arms it.
+
+    Attributes
+    ----------
+    node : int
+    counts_per_turn : int
+        Encoder counts of a motor turn.
+    gear_ratio, torque_constant : float
+        Motor's angle per output angle; [N·m/A].
+    peak_current, continuous_current : float
+        PL[1], CL[1] [A].
+    rated_current : float, optional
+        6075h, by which 6077h is scaled [A]. Default: CL[1].
+    speed_limit : float
+        HL[2], and LL[2] with the other sign: motor counts a second; beyond, it shuts down.
+    idle_loop, idle_jitter : float
+        Time between two interpreter commands, and how much more it may be each time [s].
+    enable_time : float
+        From MO=1 until the motor is on and says so: brake, commutation [s].
+    mantissa_bits : int
+        Of the current command that count; 24 is a float's own, 4 the thesis's link.
+    position_offset : float
+        Output angle at count 0 [rad].
+    analog : SensorScaling
+        Between the torque sensor's reading and the voltage at the analog input.
+    cob_command, cob_reply : int, optional
+        COB-IDs of interpreter commands and replies. Default: 0x300 and 0x280 plus the node.
+    brake : float
+        Torque at the output of a brake that closes when the motor is off [N·m]; 0: none, and a load falls.
+    serial : int
+        1018h:4.
+    abort_option, error_behaviour, emergency_events : int
+        6007h, 1029h:1 and 2F21h after a reset of the communication. Default 0: a lost heartbeat stops no
+        motor, the drive leaves the state operational, and no emergency is sent.
+    modulo : tuple of int
+        XM[1], XM[2]: between these the counts wrap; two equal ones: at 32 bits.
+    supply, temperature : float
+        [V], [°C].
+    """
+
+    node: int = 127
+    counts_per_turn: int = 8000
+    gear_ratio: float = 101.0
+    torque_constant: float = 0.198
+    peak_current: float = 8.0
+    continuous_current: float = 8.0
+    rated_current: float | None = None
+    speed_limit: float = 1e9
+    idle_loop: float = 0.3e-3
+    idle_jitter: float = 0.0
+    enable_time: float = 0.0
+    mantissa_bits: int = 24
+    position_offset: float = 0.0
+    analog: SensorScaling = field(default_factory=SensorScaling)
+    cob_command: int | None = None
+    cob_reply: int | None = None
+    brake: float = 0.0
+    serial: int = 0x0BAD5EED
+    abort_option: int = 0
+    error_behaviour: int = 0
+    emergency_events: int = 0
+    modulo: tuple[int, int] = (0, 0)
+    supply: float = 48.0
+    temperature: float = 30.0
+
+    @property
+    def command_id(self) -> int:
+        """COB-ID of interpreter commands."""
+        return self.cob_command if self.cob_command is not None else 0x300 + self.node
+
+    @property
+    def reply_id(self) -> int:
+        """COB-ID of interpreter replies."""
+        return self.cob_reply if self.cob_reply is not None else 0x280 + self.node

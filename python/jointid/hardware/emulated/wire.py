@@ -1,0 +1,120 @@
+"""Two wires that one frame at a time is on; of those that wait, the lowest identifier goes next."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import can
+
+from jointid.hardware.can.canopen_frames import bits_on_wire
+from jointid.hardware.emulated.device import Event
+from jointid.hardware.emulated.faults import BusFault, mangled
+
+_NETWORKS = Path("/sys/class/net")
+_WITHOUT_WIRE = ("virtual", "udp_multicast")
+Arrive = Callable[[can.Message], None]
+
+
+@dataclass(slots=True, kw_only=True)
+class _Frame:
+    """A frame that waits for the wire, or is on it."""
+
+    message: can.Message
+    arrive: Arrive
+    put: float  # [s], when
+    delay: float  # [s], behind the wire
+
+
+class Wire:
+    """Gives each frame its time, and the wire to the frame of highest priority.
+
+    A sender's own frames keep their order: a queue in front of one controller.
+
+    Parameters
+    ----------
+    now, at : callable
+        The clock [s], and what runs something at a time.
+    bitrate : float or None
+        [bit/s]; None: frames take no time.
+    faults : sequence of BusFault
+        What goes wrong, and when.
+    """
+
+    def __init__(
+        self,
+        now: Callable[[], float],
+        at: Callable[[float, Event], None],
+        bitrate: float | None,
+        faults: Sequence[BusFault] = (),
+    ) -> None:
+        self._now, self._at = now, at
+        self._bitrate, self._faults = bitrate, faults
+        self._queues: dict[int, deque[_Frame]] = {}
+        self._busy = False
+        self._free = 0.0  # [s], when the last frame was over
+
+    def put(self, message: can.Message, sender: object, arrive: Arrive, *, from_host: bool) -> None:
+        """Let a frame wait for its turn.
+
+        Parameters
+        ----------
+        message : can.Message
+        sender : object
+            Whose queue it waits in.
+        arrive : callable
+            Is given what arrives.
+        from_host : bool
+        """
+        now = self._now()
+        queue = self._queues.setdefault(id(sender), deque())
+        for copy, delay in mangled(message, self._faults, now, from_host=from_host):
+            queue.append(_Frame(message=copy, arrive=arrive, put=now, delay=delay))
+        if queue and not self._busy:
+            self._at(now, self._arbitrate)  # behind whatever else is put now
+
+    def _arbitrate(self) -> None:
+        waiting = [queue for queue in self._queues.values() if queue]
+        if self._busy or not waiting:
+            return
+        frame = min(waiting, key=lambda queue: _priority(queue[0].message)).popleft()
+        took = 0.0 if self._bitrate is None else bits_on_wire(frame.message.dlc) / self._bitrate
+        end = max(frame.put, self._free) + took
+        self._busy = True
+        self._at(end, lambda: self._finish(frame, end))
+
+    def _finish(self, frame: _Frame, end: float) -> None:
+        self._busy, self._free = False, end
+        if frame.delay:
+            self._at(end + frame.delay, lambda: frame.arrive(frame.message))
+        else:
+            frame.arrive(frame.message)
+        self._arbitrate()
+
+
+def _priority(message: can.Message) -> tuple[int, bool]:
+    """The lower wins, bit by bit; of two with one identifier the one with content."""
+    identifier = message.arbitration_id
+    return (identifier if message.is_extended_id else identifier << 18), message.is_remote_frame
+
+
+def bitrate_to_emulate(interface: str, channel: str | None, bitrate: float) -> float | None:
+    """Return the bit rate by which an emulator's frames are to take their time on a bus.
+
+    Parameters
+    ----------
+    interface, channel : str
+        As python-can names them.
+    bitrate : float
+        Of the bus that is emulated [bit/s].
+
+    Returns
+    -------
+    float or None
+        None where a controller sends the frames, on a wire that takes its own time.
+    """
+    if interface == "socketcan":
+        return None if (_NETWORKS / str(channel) / "device").exists() else bitrate
+    return bitrate if interface in _WITHOUT_WIRE else None

@@ -1,0 +1,1 @@
+"""A bench proven before it is trusted: check, first motion, certificate."""

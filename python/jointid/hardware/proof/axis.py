@@ -1,0 +1,203 @@
+"""A joint in the hands of a first motion: one cycle after the other, each within its bounds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jointid.hardware.bench.first_motion_options import FirstMotionOptions
+from jointid.hardware.proof.refusal import RefusedBenchError
+from jointid.hardware.session.drive import Drive, DriveFaultError, DriveSample
+from jointid.hardware.session.interruptions import Interruptions
+from jointid.hardware.session.limits import SessionLimits
+
+_LOST = 3  # samples in a row that may not come; their torque is held, never raised
+_SETTLED = 0.1  # [s] without a count: the joint stands
+_STOPPING = 3.0  # [s] that it may take to
+_FOLLOWED = 20  # cycles over which the drive's current is compared with the command
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """What some cycles measured.
+
+    Attributes
+    ----------
+    time, position, torque, reading : ndarray
+        [s]; [rad]; commanded from this sample on [N·m]; raw reading of the torque sensor.
+    """
+
+    time: npt.NDArray[np.float64]
+    position: npt.NDArray[np.float64]
+    torque: npt.NDArray[np.float64]
+    reading: npt.NDArray[np.float64]
+
+
+class Axis:
+    """Reads and commands a drive in turn, and refuses whatever is beyond the bounds of a first motion.
+
+    Parameters
+    ----------
+    drive : Drive
+        Connected; its motor is off at first.
+    limits : SessionLimits
+    options : FirstMotionOptions
+    period : float
+        [s]
+    resolution : float
+        Output angle of an encoder count [rad].
+    interruptions : Interruptions
+
+    Attributes
+    ----------
+    travel : float
+        Farthest from the start until now [rad].
+    largest_torque : float
+        Largest magnitude that was accepted by the drive [N·m].
+    sample : DriveSample
+        The last one.
+    """
+
+    def __init__(
+        self,
+        drive: Drive,
+        limits: SessionLimits,
+        options: FirstMotionOptions,
+        *,
+        period: float,
+        resolution: float,
+        interruptions: Interruptions,
+    ) -> None:
+        self._drive, self._limits, self._options = drive, limits, options
+        self._interruptions = interruptions
+        self.period, self.resolution = period, resolution
+        self.travel = self.largest_torque = 0.0
+        self.on = False
+        self._torque = 0.0
+        self._lost = 0
+        self._unfollowed = 0
+        self._begin = self._switched = drive.clock.now()
+        self.rows: list[tuple[float, float, float, float]] = []
+        self.sample = drive.read(10.0 * period)
+        self._start = self.sample.position
+
+    @property
+    def now(self) -> float:
+        """Time since the first motion began [s]."""
+        return self._drive.clock.now() - self._begin
+
+    @property
+    def latency(self) -> float:
+        """From sending a command until it acts [s]."""
+        return self._drive.command_latency
+
+    def enable(self) -> None:
+        """Switch the motor on, at no torque."""
+        self._drive.enable()
+        self.on, self._switched = True, self._drive.clock.now()
+        self._next = self._switched
+
+    def read(self) -> DriveSample:
+        """Return the state of the next cycle; a sample that does not come is awaited under the same torque.
+
+        Raises
+        ------
+        RefusedBenchError
+            Beyond the bounds.
+        DriveFaultError
+            The drive has failed, or samples are lost one after the other.
+        """
+        clock = self._drive.clock
+        while True:
+            # A late cycle is not caught up with: the next one is a period from now at least.
+            self._next = (
+                max(self._next + self.period, clock.now()) if self.on else clock.now() + self.period
+            )
+            clock.sleep_until(self._next)
+            if self._interruptions.reason is not None:
+                raise RefusedBenchError("user", self._interruptions.reason)
+            if self.on and clock.now() - self._switched > self._options.longest:
+                raise RefusedBenchError(
+                    "too_long", f"the motor has been on for {self._options.longest:g} s"
+                )
+            try:
+                sample = self._drive.read(0.75 * self.period)
+            except DriveFaultError as error:
+                self._lost += 1
+                if error.kind != "stale_position" or self._lost >= _LOST:
+                    raise
+                if self.on:
+                    self._drive.command(self._torque)
+                continue
+            self._lost = 0
+            self._hold(sample)
+            self.sample = sample
+            return sample
+
+    def command(self, torque: float) -> None:
+        """Command a torque until the next cycle [N·m]."""
+        accepted = self._drive.command(torque)
+        self._torque = torque
+        self.largest_torque = max(self.largest_torque, abs(accepted))
+        sample = self.sample
+        self.rows.append((sample.time, sample.position, accepted, sample.reading))
+
+    def rest(self) -> None:
+        """Command no torque until the joint stands.
+
+        Raises
+        ------
+        RefusedBenchError
+            It does not.
+        """
+        self.command(0.0)
+        place, since, end = self.sample.position, self.now, self.now + _STOPPING
+        while self.now - since < _SETTLED:
+            sample = self.read()
+            self.command(0.0)
+            if abs(sample.position - place) > 1.5 * self.resolution:  # a count of jitter is none
+                place, since = sample.position, self.now
+            if self.now > end:
+                raise RefusedBenchError(
+                    "does_not_stop",
+                    f"the joint still moves {_STOPPING:g} s after the torque went to zero; is there "
+                    "gravity without a brake, or hardly any friction?",
+                )
+
+    def trace(self, begin: int = 0) -> Trace:
+        """Return the cycles from a row on."""
+        return Trace(*np.array(self.rows[begin:], dtype=float).reshape(-1, 4).T)
+
+    def _hold(self, sample: DriveSample) -> None:
+        """Refuse a state beyond the bounds."""
+        options, before = self._options, self.sample
+        position = sample.position
+        if not math.isfinite(position):
+            raise RefusedBenchError("not_ready", f"the position is {position}")
+        self.travel = max(self.travel, abs(position - self._start))
+        if self.travel > options.travel:
+            raise RefusedBenchError(
+                "too_far",
+                f"the joint is {self.travel:.5f} rad from its start, more than {options.travel:.5f} rad",
+            )
+        speed = (position - before.position) / max(sample.time - before.time, 0.5 * self.period)
+        if abs(speed) > options.velocity:
+            raise RefusedBenchError(
+                "too_fast",
+                f"the joint moves at {speed:.3f} rad/s, more than {options.velocity:g} rad/s",
+            )
+        if self.on and not math.isnan(sample.torque):
+            self._follow(sample.torque)
+
+    def _follow(self, torque: float) -> None:
+        """Refuse a current that stays away from the command: a phase that is open, a limit in the drive."""
+        apart = abs(torque - self._torque) > 0.25 * abs(self._torque) + 0.01 * self._limits.torque
+        self._unfollowed = self._unfollowed + 1 if apart else 0
+        if self._unfollowed > _FOLLOWED:
+            raise RefusedBenchError(
+                "current_does_not_follow",
+                f"the drive reports a current of {torque:.3g} N·m where {self._torque:.3g} N·m are commanded",
+            )

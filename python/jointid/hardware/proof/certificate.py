@@ -1,0 +1,234 @@
+"""The bench certificate: what a first motion has found, kept beside the joint file, void when the bench changes."""
+
+from __future__ import annotations
+
+import json
+import math
+import platform
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+from jointid import _core
+from jointid.base.errors import InputError
+from jointid.base.files import write_whole
+from jointid.base.schema import Number, Plain, Record, TableOf, Text, read_text
+from jointid.hardware.bench.bench import Bench
+from jointid.hardware.bench.drive_types import drive_type
+from jointid.hardware.proof.result import FirstMotion
+
+SCHEMA = 1
+VALID = timedelta(days=30)
+_CLOCK = timedelta(minutes=5)  # that this machine's clock may have been ahead when it was written
+
+_TABLES = ("joint", "wiring", "drive", "found", "limits", "versions")
+_SCHEMA = Record(
+    {
+        "schema": Number(low=SCHEMA, high=SCHEMA, whole=True),
+        "date": Text(longest=100),
+        **{name: TableOf(Plain()) for name in _TABLES},
+    }
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Certificate:
+    """A first motion that was passed, and the bench that passed it.
+
+    Attributes
+    ----------
+    date : datetime
+        With its zone.
+    joint : mapping
+        What the joint file stated: gear ratio, torque constant, sign of the sensor's gain.
+    wiring : mapping
+        Options of the drive that decide about signs and scales, see `DriveType.wiring`.
+    drive : mapping
+        Identity of the drive, its serial number with it.
+    found : mapping
+        Signs, breakaway in both directions, travel, largest torque, inertia, and what was not checked.
+    limits : mapping
+        Of the session, then.
+    versions : mapping
+        Of jointid and Python.
+    """
+
+    date: datetime
+    joint: Mapping[str, Any]
+    wiring: Mapping[str, Any]
+    drive: Mapping[str, Any]
+    found: Mapping[str, Any] = field(default_factory=dict)
+    limits: Mapping[str, Any] = field(default_factory=dict)
+    versions: Mapping[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, bench: Bench, result: FirstMotion, date: datetime | None = None) -> Certificate:
+        """Return the certificate of a first motion that was passed.
+
+        Parameters
+        ----------
+        bench : Bench
+        result : FirstMotion
+        date : datetime, optional
+            Default: now.
+
+        Raises
+        ------
+        InputError
+            It was not passed.
+        """
+        if not result.passed:
+            raise InputError("only one that was passed is certified", argument="first motion")
+        low, high = bench.limits.position
+        found = {
+            **result.to_dict(),
+            "inertia": result.inertia,
+            "sensor_zero": result.sensor_zero,
+            "duration": result.duration,
+        }
+        return cls(
+            date=(date or datetime.now(UTC)).astimezone(UTC),
+            joint=joint_facts(bench),
+            wiring=_plain(drive_type(bench.drive_type).wiring(bench.drive)),
+            drive=_plain(identity_facts(result.identity)),
+            found=_plain({name: value for name, value in found.items() if name != "passed"}),
+            limits=_plain(
+                {
+                    "position": [low, high],
+                    "velocity": bench.limits.velocity,
+                    "torque": bench.limits.torque,
+                }
+            ),
+            versions={"jointid": _core.__version__, "python": platform.python_version()},
+        )
+
+    def save(self, path: str | Path) -> None:
+        """Write it as TOML, whole or not at all."""
+        lines = [
+            "# Written by `jointid first-motion`; `jointid run` on a real joint asks for it. Not to be edited.",
+            f"schema = {SCHEMA}",
+            f'date = "{self.date.isoformat(timespec="seconds")}"',
+        ]
+        for name in _TABLES:
+            lines += ["", f"[{name}]"]
+            lines += [
+                f"{json.dumps(key)} = {_toml(value)}" for key, value in getattr(self, name).items()
+            ]
+        write_whole(Path(path), ("\n".join(lines) + "\n").encode())
+
+    @classmethod
+    def load(cls, path: str | Path) -> Certificate:
+        """Read one.
+
+        Raises
+        ------
+        InputError
+            It cannot be read, or is no certificate; names the file.
+        """
+        source = Path(path)
+        try:
+            table = _SCHEMA.read(tomllib.loads(read_text(source)), "")
+            date = datetime.fromisoformat(table["date"])
+        except (tomllib.TOMLDecodeError, RecursionError) as error:
+            raise InputError(f"this is no certificate: {error}", place=str(source)) from error
+        except InputError as error:
+            raise error.at(str(source)) if error.place != str(source) else error from error
+        except ValueError as error:
+            raise InputError("no date", argument="date", place=str(source)) from error
+        if date.tzinfo is None:
+            raise InputError("a date with its zone is expected", argument="date", place=str(source))
+        return cls(date=date, **{name: table[name] for name in _TABLES})
+
+    def objections(
+        self,
+        bench: Bench,
+        identity: Mapping[str, Any] | None = None,
+        now: datetime | None = None,
+    ) -> list[str]:
+        """Return why it does not hold for a bench; empty when it does.
+
+        Parameters
+        ----------
+        bench : Bench
+        identity : mapping, optional
+            What the drive that is connected reports. Default: not looked at.
+        now : datetime, optional
+            Default: now.
+        """
+        age = (now or datetime.now(UTC)) - self.date
+        found = []
+        if age > VALID:
+            found.append(f"it is {age.days} days old, more than {VALID.days}")
+        if age < -_CLOCK:
+            found.append(f"it is dated {self.date.isoformat(timespec='minutes')}, in the future")
+        found += _changes("the joint file's", self.joint, joint_facts(bench))
+        wiring = _plain(drive_type(bench.drive_type).wiring(bench.drive))
+        found += _changes("the joint file's", self.wiring, wiring)
+        if identity is not None:
+            found += _changes("the drive's", self.drive, _plain(identity_facts(identity)))
+        return found
+
+
+def certificate_path(joint_file: str | Path) -> Path:
+    """Return where the certificate of a joint file is: `joint.toml` has `joint.certificate.toml`."""
+    return Path(joint_file).with_suffix(".certificate.toml")
+
+
+def joint_facts(bench: Bench) -> dict[str, Any]:
+    """Return what a joint file states that a first motion was held against."""
+    joint = bench.joint
+    gain = joint.parameters.get("sensor_gain")
+    value = None if gain is None else gain.value
+    return _plain(
+        {
+            "drive_type": bench.drive_type,
+            "gear_ratio": joint.gear_ratio,
+            "torque_constant": joint.torque_constant,
+            "sensor_sign": math.copysign(1.0, value) if value and joint.sensor else None,
+        }
+    )
+
+
+def identity_facts(identity: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a drive reports about itself that is its own: its texts, node and serial number."""
+    return {
+        name: value
+        for name, value in identity.items()
+        if isinstance(value, str) or (name in ("node", "serial") and value is not None)
+    }
+
+
+def _changes(whose: str, before: Mapping[str, Any], after: Mapping[str, Any]) -> list[str]:
+    return [
+        f"{whose} {name} was {before.get(name, 'not there')} and is {after.get(name, 'not there')}"
+        for name in dict.fromkeys((*before, *after))
+        if before.get(name) != after.get(name)
+    ]
+
+
+def _plain(values: Mapping[str, Any]) -> dict[str, Any]:
+    """What TOML can hold: without None and numbers that are not finite; tables inside become their texts."""
+    kept: dict[str, Any] = {}
+    for name, value in values.items():
+        if isinstance(value, Mapping):
+            kept |= {f"{name}.{key}": each for key, each in _plain(value).items()}
+        elif isinstance(value, list | tuple):
+            kept[name] = [each for each in value if each is not None]
+        elif value is not None and not (isinstance(value, float) and not math.isfinite(value)):
+            kept[name] = value
+    return kept
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, list):
+        return "[" + ", ".join(_toml(each) for each in value) + "]"
+    if isinstance(value, float):
+        return repr(value) if math.isfinite(value) else str(value)
+    if isinstance(value, int):
+        return str(value)
+    return json.dumps(str(value), ensure_ascii=True)

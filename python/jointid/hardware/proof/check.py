@@ -1,0 +1,199 @@
+"""What is connected, and whether it may be moved: read only, the motor stays off."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from jointid.base.argument_checks import require_kind
+from jointid.base.errors import InputError
+from jointid.hardware.bench.bench import Bench
+from jointid.hardware.bench.opened_drive import open_drive
+from jointid.hardware.session.drive import Drive, DriveFaultError
+from jointid.hardware.session.drive_report import DriveReport
+from jointid.hardware.session.start_checks import problems_at_rest
+
+_DRIFT = 5.0  # counts within the time that the joint is watched
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BenchCheck:
+    """What is connected.
+
+    Attributes
+    ----------
+    address : str
+        Where the drive is.
+    identity : mapping
+        What it reported about itself.
+    report : DriveReport or None
+        How it is set; None where this drive gives none.
+    position, velocity : float
+        Output angle [rad] and mean speed [rad/s] while it was watched.
+    reading, noise : float
+        Mean and standard deviation of the torque sensor's raw readings; not a number without a sensor.
+    differences : tuple of str
+        Between the drive's settings and what the joint file needs.
+    problems : tuple of str
+        Reasons not to move the joint.
+    """
+
+    address: str
+    identity: Mapping[str, Any] = field(default_factory=dict)
+    report: DriveReport | None = None
+    position: float = math.nan
+    velocity: float = math.nan
+    reading: float = math.nan
+    noise: float = math.nan
+    differences: tuple[str, ...] = ()
+    problems: tuple[str, ...] = ()
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing was found against moving the joint."""
+        return not (self.differences or self.problems)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The fields, of JSON's types: a number that is not known is None."""
+        numbers = {
+            name: value if math.isfinite(value) else None
+            for name in ("position", "velocity", "reading", "noise")
+            for value in (getattr(self, name),)
+        }
+        return {
+            "passed": self.passed,
+            "address": self.address,
+            "identity": dict(self.identity),
+            "report": None if self.report is None else self.report.to_dict(),
+            **numbers,
+            "differences": list(self.differences),
+            "problems": list(self.problems),
+        }
+
+    def text(self) -> str:
+        """Return all of it, in lines."""
+        lines = [f"drive: {self.address}"]
+        if self.report is None:
+            lines += [f"  {name}: {value}" for name, value in self.identity.items()]
+        else:
+            lines.append(f"  {self.report.drive}")
+            for title, entries in (
+                ("identity", self.report.identity),
+                ("settings", self.report.settings),
+                ("watchdog", self.report.watchdog),
+            ):
+                lines.append(f"{title}:")
+                lines += [f"  {entry}" for entry in entries]
+            lines += [
+                f"{name}: {value:.4g} {unit}"
+                for name, value, unit in (
+                    ("supply", self.report.supply, "V"),
+                    ("temperature", self.report.temperature, "°C"),
+                )
+                if math.isfinite(value)
+            ]
+        lines.append(f"position: {self.position:+.5f} rad, speed {self.velocity:+.5f} rad/s")
+        if math.isfinite(self.reading):
+            lines.append(f"torque sensor: reads {self.reading:+.3f} ± {self.noise:.3f}")
+        lines += [f"DIFFERENT: {each}" for each in self.differences]
+        lines += [f"PROBLEM: {each}" for each in self.problems]
+        if self.passed:
+            lines.append("nothing speaks against a first motion")
+        return "\n".join(lines)
+
+
+def check_bench(
+    bench: Bench, *, emulate: bool = False, seed: int = 0, drive: Drive | None = None
+) -> BenchCheck:
+    """Read what is connected, and hold it against the joint file; the motor stays off.
+
+    Parameters
+    ----------
+    bench : Bench
+    emulate : bool
+        An emulated drive on virtual time. Default False: the real one.
+    seed : int
+        Of the emulated noise. Default 0.
+    drive : Drive, optional
+        One that is open already; it is left closed. Default: the bench's.
+
+    Returns
+    -------
+    BenchCheck
+
+    Raises
+    ------
+    InputError
+        This is no Bench, or its drive cannot be opened.
+
+    Examples
+    --------
+    >>> jid.hardware.check_bench(bench, emulate=True).passed
+    True
+    """
+    require_kind("bench", bench, Bench)
+    if drive is not None:
+        return _checked(bench, drive, bench.address)
+    with open_drive(bench, emulate=emulate, seed=seed) as opened:
+        return _checked(bench, opened, "emulated" if emulate else bench.address)
+
+
+def _checked(bench: Bench, drive: Drive, address: str) -> BenchCheck:
+    found: dict[str, Any] = {"address": address}
+    try:
+        _read(bench, drive, found)
+    except DriveFaultError as error:
+        found["problems"] = (*found.get("problems", ()), str(error))
+    except OSError as error:
+        found["problems"] = (*found.get("problems", ()), f"{type(error).__name__}: {error}")
+    finally:
+        try:
+            drive.disable()
+        finally:
+            drive.close()
+    return BenchCheck(**found)
+
+
+def _read(bench: Bench, drive: Drive, found: dict[str, Any]) -> None:
+    period, clock = bench.options.period, drive.clock
+    drive.connect(period)
+    found["identity"] = drive.identity()
+    ask = getattr(drive, "report", None)
+    report = ask() if callable(ask) else None
+    found["report"] = report if isinstance(report, DriveReport) else None
+    if found["report"] is not None:
+        found["differences"] = tuple(str(each) for each in found["report"].differences)
+    problems = list(drive.problems(bench.limits.torque))
+    found["problems"] = tuple(problems)
+    begin = clock.now()
+    samples = []
+    for k in range(max(2, round(bench.first_motion.still_time / period))):
+        clock.sleep_until(begin + k * period)
+        try:
+            samples.append(drive.read(10.0 * period))
+        except DriveFaultError as error:
+            if error.kind != "stale_position" or len(samples) < 2:
+                raise
+    last = samples[-1]
+    resolution = bench.options.resolution or getattr(drive, "resolution", None)
+    if resolution is None:
+        raise InputError("missing; this drive has none", argument="resolution")
+    positions = np.array([each.position for each in samples])
+    duration = max(last.time - samples[0].time, period)
+    found["position"] = last.position
+    found["velocity"] = (last.position - samples[0].position) / duration
+    if bench.joint.sensor:
+        readings = np.array([each.reading for each in samples])
+        found["reading"], found["noise"] = float(readings.mean()), float(readings.std())
+    problems += problems_at_rest(last, bench.limits)
+    moved = float(np.ptp(positions)) / resolution
+    if not moved <= _DRIFT:
+        problems.append(
+            f"the joint moves: {moved:.0f} counts within {duration:.2f} s, motor off; hold it still, and "
+            "support it against gravity"
+        )
+    found["problems"] = tuple(problems)

@@ -1,0 +1,122 @@
+"""A first motion: what can be told of a bench with a fraction of a degree and little more than breakaway."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from jointid.base.argument_checks import require_kind
+from jointid.base.errors import InputError
+from jointid.hardware.bench.bench import Bench
+from jointid.hardware.bench.opened_drive import open_drive
+from jointid.hardware.proof.refusal import RefusedBenchError
+from jointid.hardware.proof.result import FirstMotion
+from jointid.hardware.proof.steps import Steps
+from jointid.hardware.session.drive import Drive, DriveEnd, DriveFaultError
+from jointid.hardware.session.interruptions import Interruptions
+
+
+def first_motion(
+    bench: Bench,
+    *,
+    emulate: bool = False,
+    seed: int = 0,
+    drive: Drive | None = None,
+    callback: Callable[[str], object] | None = None,
+) -> FirstMotion:
+    """Move a joint for the first time: signs, breakaway and scales, before anything can go far.
+
+    Still, motor off; still, motor on at no torque; the torque up from zero until the first counts, in both
+    directions; short pushes just above breakaway; small slow motions under control. Every step has its own
+    stop, and the first thing that is wrong ends it with the motor off.
+
+    Parameters
+    ----------
+    bench : Bench
+    emulate : bool
+        An emulated drive and joint on virtual time. Default False: the real ones.
+    seed : int
+        Of the emulated noise. Default 0.
+    drive : Drive, optional
+        One that is open already; it is left closed. Default: the bench's.
+    callback : callable, optional
+        Called with each line as it is known.
+
+    Returns
+    -------
+    FirstMotion
+        A bench that is refused is a result, not an exception.
+
+    Raises
+    ------
+    InputError
+        This is no Bench, or its drive cannot be opened.
+    Exception
+        A bug in the drive; the motor is switched off first.
+
+    Examples
+    --------
+    >>> result = jid.hardware.first_motion(bench, emulate=True)
+    >>> result.passed, result.reason
+    (True, None)
+    """
+    require_kind("bench", bench, Bench)
+    if drive is not None:
+        return _moved(bench, drive, callback)
+    with open_drive(bench, emulate=emulate, seed=seed) as opened:
+        return _moved(bench, opened, callback)
+
+
+def _moved(bench: Bench, drive: Drive, callback: Callable[[str], object] | None) -> FirstMotion:
+    """The steps, and the motor off on every way out."""
+    steps = Steps(bench, drive, callback)
+    reason, message = None, ""
+    identity: dict[str, Any] = {}
+    try:
+        with Interruptions() as interruptions, _switched_off(drive) as ended:
+            try:
+                steps.run(interruptions)
+            except RefusedBenchError as refusal:
+                reason, message = refusal.reason, str(refusal)
+            except DriveFaultError as error:
+                reason, message = error.kind, str(error)
+            except InputError as error:
+                if steps.axis is None:
+                    raise
+                reason, message = "error", str(error)
+            except OSError as error:
+                reason, message = "error", f"{type(error).__name__}: {error}"
+            except KeyboardInterrupt:
+                reason, message = "user", "interrupted from the keyboard"
+            identity = drive.identity()
+    finally:
+        drive.close()
+    (end,) = ended
+    if end.motor_off is False and reason is None:
+        reason, message = "drive_fault", "the motor was not seen off at the end"
+    axis = steps.axis
+    return FirstMotion(
+        passed=reason is None,
+        reason=reason,
+        message=f"{message}; the drive reports: {end.failure}" if end.failure else message,
+        travel=0.0 if axis is None else axis.travel,
+        largest_torque=0.0 if axis is None else axis.largest_torque,
+        duration=0.0 if axis is None else axis.now,
+        signs=steps.signs,
+        unchecked=tuple(steps.unchecked),
+        motor_off=end.motor_off,
+        identity=identity,
+        steps=tuple(steps.lines),
+        **steps.found,
+    )
+
+
+@contextmanager
+def _switched_off(drive: Drive) -> Iterator[list[DriveEnd]]:
+    """The motor off on every way out, and how that went."""
+    ended: list[DriveEnd] = []
+    try:
+        yield ended
+    finally:
+        ended.append(drive.disable() or DriveEnd())

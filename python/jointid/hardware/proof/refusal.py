@@ -1,0 +1,41 @@
+"""Why a bench is refused: a code for programs, a sentence for people."""
+
+from __future__ import annotations
+
+REASONS = {
+    "not_ready": "drive or joint are not ready",
+    "moving": "the joint moves although nothing drives it",
+    "moves_at_zero_torque": "the joint moves as soon as the motor is on, at no torque",
+    "no_motion_up_to_torque_cap": "nothing moved up to the largest torque allowed",
+    "current_does_not_follow": "the drive's current is not the one commanded",
+    "torque_and_encoder_disagree": "a positive torque makes the encoder count down",
+    "moves_one_way": "the joint moves the same way under torques of both signs",
+    "torque_constant": "the torque is not what the joint file's torque constant makes of the current",
+    "gear_ratio": "the gear ratio, or the encoder's counts a turn, are not those of the joint file",
+    "torque_constant_or_gear_ratio": "the torque constant or the gear ratio of the joint file is wrong",
+    "sensor_sign": "the torque sensor reads the negative of the torque",
+    "sensor_moves_alone": "the torque sensor shows a motion, or a blocked joint, and the encoder stands",
+    "does_not_stop": "the joint does not stop when the torque is gone",
+    "too_far": "the joint went farther than a first motion may",
+    "too_fast": "the joint went faster than a first motion may",
+    "control": "a small slow motion under control failed",
+    "too_long": "the motor was on for longer than a first motion may last",
+    "user": "stopped by the user",
+}
+"""Codes of a refusal and what they mean; beside them the kinds of a drive's faults, such as "bus"."""
+
+
+class RefusedBenchError(Exception):
+    """A bench is refused.
+
+    Parameters
+    ----------
+    reason : str
+        One of `REASONS`, or the kind of a drive's fault.
+    message : str
+        What was measured, with numbers, and what to look at.
+    """
+
+    def __init__(self, reason: str, message: str) -> None:
+        super().__init__(message)
+        self.reason = reason

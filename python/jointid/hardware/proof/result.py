@@ -1,0 +1,105 @@
+"""Result of a first motion: whether the bench is right, why not, and what nobody checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+UNCHECKED = {
+    "positive_direction": "torque and encoder inverted together look like a right bench: see which way the link goes",
+    "homing": "that the joint's zero is where position_offset says",
+    "backlash": "how far the motor turns without the output",
+    "torque_constant": "the torque constant: the joint file states neither friction nor inertia to hold it against",
+    "gear_ratio": "the gear ratio and the encoder's counts: there is no encoder at the output, and no friction "
+    "in the joint file to hold them against",
+    "sensor_sign": "the sign of the torque sensor: it shows too little of the joint's acceleration",
+    "watchdog": "that the drive stops by itself when the host is gone: pull the plug once",
+    "emergency_stop": "the emergency stop, the brake and the end stops",
+    "control": "a motion under control: the inertia is not known",
+}
+"""What a first motion can leave open, by code."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FirstMotion:
+    """Result of a first motion.
+
+    Attributes
+    ----------
+    passed : bool
+    reason : str or None
+        Code of the refusal, one of `refusal.REASONS` or the kind of a drive's fault; None when passed.
+    message : str
+        One sentence about the refusal, with numbers; empty when passed.
+    travel : float
+        Farthest from the start, by the joint file's gear ratio [rad].
+    largest_torque : float
+        Largest commanded magnitude, by the joint file's constants [N·m].
+    breakaway : tuple of float or None
+        In the positive and in the negative direction [N·m]; None: not found.
+    signs : mapping
+        "torque_and_encoder" and "sensor": 1 as the joint file says, -1 inverted, None not known.
+    unchecked : tuple of str
+        Codes of `UNCHECKED`.
+    inertia, stated_breakaway, stated_inertia : float or None
+        Measured; by the joint file [kg·m²], [N·m].
+    sensor_zero : float or None
+        Mean reading of the torque sensor at rest.
+    duration : float
+        Bench time [s].
+    motor_off : bool or None
+        Whether the drive confirmed that its motor is off.
+    identity : mapping
+        What the drive reported about itself.
+    steps : tuple of str
+        What was tried and measured, in order.
+    """
+
+    passed: bool
+    reason: str | None = None
+    message: str = ""
+    travel: float = 0.0
+    largest_torque: float = 0.0
+    breakaway: tuple[float | None, float | None] = (None, None)
+    signs: Mapping[str, int | None] = field(
+        default_factory=lambda: {"torque_and_encoder": None, "sensor": None}
+    )
+    unchecked: tuple[str, ...] = ()
+    inertia: float | None = None
+    stated_breakaway: float | None = None
+    stated_inertia: float | None = None
+    sensor_zero: float | None = None
+    duration: float = 0.0
+    motor_off: bool | None = None
+    identity: Mapping[str, Any] = field(default_factory=dict)
+    steps: tuple[str, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """What `jointid first-motion --json` prints, of JSON's types."""
+        return {
+            "passed": self.passed,
+            "reason": self.reason,
+            "travel": self.travel,
+            "largest_torque": self.largest_torque,
+            "breakaway": list(self.breakaway),
+            "signs": dict(self.signs),
+            "unchecked": list(self.unchecked),
+        }
+
+    def report(self) -> str:
+        """Return the steps, the verdict, and what is left to check, in lines."""
+        return "\n".join((*self.steps, self.verdict()))
+
+    def verdict(self) -> str:
+        """Return whether it is passed, why not, and what is left to check, in lines."""
+        if self.passed:
+            lines = [f"passed, in {self.duration:.1f} s of bench time"]
+        else:
+            lines = [f"REFUSED ({self.reason}): {self.message}"]
+        if self.motor_off is False:
+            lines.append("THE MOTOR WAS NOT SEEN OFF")
+        if self.unchecked:
+            lines.append("not checked:")
+            lines += [f"  {code}: {UNCHECKED.get(code, code)}" for code in self.unchecked]
+        return "\n".join(lines)

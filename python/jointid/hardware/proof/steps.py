@@ -1,0 +1,334 @@
+"""The steps of a first motion, in order: each has its own stop."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from jointid.base.errors import InputError
+from jointid.hardware.bench.bench import Bench
+from jointid.hardware.proof.axis import Axis
+from jointid.hardware.proof.breakaway import Breakaway, find_breakaway
+from jointid.hardware.proof.control import small_move
+from jointid.hardware.proof.expected import Expected, expected_of, scale_fault
+from jointid.hardware.proof.pushes import (
+    STRENGTH,
+    Motion,
+    Push,
+    SensorResponse,
+    motion_of,
+    push,
+    sensor_response,
+)
+from jointid.hardware.proof.refusal import RefusedBenchError
+from jointid.hardware.session.drive import Drive
+from jointid.hardware.session.interruptions import Interruptions
+from jointid.hardware.session.start_checks import problems_at_rest
+
+# Times the stated breakaway. With 5, a torque constant wrong by 3 is still found where friction is stated within
+# 1.5; without a sensor to watch, nothing sees a joint that moves behind an encoder that hangs.
+_CAP, _CAP_UNWATCHED = 5.0, 2.0
+_FEWEST, _MOST = 5, 25  # pairs of pushes
+_CLEAR = 6.0  # standard errors of a sign
+_REACH, _FARTHEST = math.radians(0.02), math.radians(0.12)  # of the first push and of the last
+_WIDE = math.radians(0.2)  # pushes that went so far are not made longer
+_QUICK = 0.3  # of the velocity allowed: nor those that were so fast
+_PUSHED = 0.6  # of the time allowed, after which no more pushes begin
+_FEW_PUSHES = 4  # pairs that only tell a wrong torque constant from a wrong gear ratio
+_DRIFT = 5.0  # counts: a joint that stands moves less
+_FARTHER = 2.0  # measured over stated inertia, where nothing else is known
+
+
+class Steps:
+    """The steps, and what they have found until one of them refuses.
+
+    Parameters
+    ----------
+    bench : Bench
+    drive : Drive
+    callback : callable, optional
+        Called with each line as it is known.
+
+    Attributes
+    ----------
+    axis : Axis or None
+        None until the drive is connected.
+    lines : list of str
+        What was tried and measured.
+    found : dict
+        Fields of the result.
+    signs : dict
+    unchecked : list of str
+    """
+
+    def __init__(
+        self, bench: Bench, drive: Drive, callback: Callable[[str], object] | None
+    ) -> None:
+        self._bench, self._drive, self._callback = bench, drive, callback
+        self._options = bench.first_motion
+        self._expected: Expected = expected_of(bench.joint)
+        if not self._options.compare_friction:
+            self._expected = replace(self._expected, breakaway=None)
+        self._deviation = math.nan  # of the torque sensor's readings at rest
+        self.axis: Axis | None = None
+        self.lines: list[str] = []
+        self.found: dict[str, Any] = {
+            "stated_breakaway": self._expected.breakaway,
+            "stated_inertia": self._expected.inertia,
+        }
+        self.signs: dict[str, int | None] = {"torque_and_encoder": None, "sensor": None}
+        self.unchecked = ["positive_direction", "homing", "backlash", "watchdog", "emergency_stop"]
+
+    def _say(self, line: str) -> None:
+        self.lines.append(line)
+        if self._callback is not None:
+            self._callback(line)
+
+    def run(self, interruptions: Interruptions) -> None:
+        """Take all steps.
+
+        Raises
+        ------
+        RefusedBenchError
+            The bench is wrong, or beyond a bound.
+        DriveFaultError
+        """
+        cap = self._cap()
+        axis = self._ready(interruptions)
+        self._stands(axis, "motor off")
+        axis.enable()
+        self._stands(axis, "motor on, no torque")
+        found = [self._breakaway(axis, direction, cap) for direction in (1.0, -1.0)]
+        self._judge_signs(found)
+        breakaway = (found[0].torque, found[1].torque)
+        self._judge_scales(axis, breakaway)
+        motion = self._judge_sensor(axis, breakaway)
+        self._under_control(axis, breakaway, motion, max(each.wind_up for each in found))
+
+    def _cap(self) -> float:
+        """The torque at which the search for motion ends [N·m]."""
+        given, limit = self._options.largest_torque, self._bench.limits.torque
+        if given is None:
+            stated = self._expected.breakaway
+            watched = self._expected.sensor and self._options.watch_sensor
+            factor = _CAP if watched else _CAP_UNWATCHED
+            given = math.inf if stated is None else factor * stated
+        cap = min(given, limit)
+        if not math.isfinite(cap):
+            raise RefusedBenchError(
+                "not_ready",
+                "there is no torque to end at: give the joint file a torque or current limit, or its friction",
+            )
+        return cap
+
+    def _ready(self, interruptions: Interruptions) -> Axis:
+        """Connect; the axis, motor off."""
+        bench, drive = self._bench, self._drive
+        period = bench.options.period
+        drive.connect(period)
+        problems = list(drive.problems(bench.limits.torque))
+        if problems:
+            raise RefusedBenchError("not_ready", "; ".join(problems))
+        resolution = bench.options.resolution or getattr(drive, "resolution", None)
+        if resolution is None:
+            raise InputError("missing; this drive has none", argument="resolution")
+        axis = Axis(
+            drive,
+            bench.limits,
+            self._options,
+            period=period,
+            resolution=resolution,
+            interruptions=interruptions,
+        )
+        self.axis = axis
+        reasons = list(problems_at_rest(axis.sample, bench.limits))
+        low, high = bench.limits.position
+        if not low + self._options.travel <= axis.sample.position <= high - self._options.travel:
+            reasons.append(
+                f"the joint stands at {axis.sample.position:.4f} rad, too near to the end of its window, "
+                f"{low:.4f} to {high:.4f} rad, to be moved by {self._options.travel:.4f} rad"
+            )
+        if reasons:
+            raise RefusedBenchError("not_ready", "; ".join(reasons))
+        return axis
+
+    def _stands(self, axis: Axis, when: str) -> None:
+        """See that the joint stands."""
+        start, end = axis.sample.position, axis.now + self._options.still_time
+        readings = []
+        while axis.now < end:
+            sample = axis.read()
+            if axis.on:
+                axis.command(0.0)
+            readings.append(sample.reading)
+            moved = abs(sample.position - start) / axis.resolution
+            if moved > _DRIFT:
+                raise RefusedBenchError(
+                    "moves_at_zero_torque" if axis.on else "moving",
+                    f"{when}, the joint moved {moved:.0f} counts within {self._options.still_time:g} s; "
+                    + (
+                        "gravity that only the brake has held, a current that is not zero, or another program"
+                        if axis.on
+                        else "hold it still, and support it against gravity"
+                    ),
+                )
+        if self._expected.sensor:
+            self.found["sensor_zero"] = float(np.mean(readings))
+            if self._options.watch_sensor:
+                self._deviation = float(np.std(readings))
+        self._say(f"stands, {when}: {axis.sample.position:+.5f} rad")
+
+    def _breakaway(self, axis: Axis, direction: float, cap: float) -> Breakaway:
+        side = "positive" if direction > 0.0 else "negative"
+        try:
+            found = find_breakaway(axis, direction, cap, self._options, self._deviation)
+        except RefusedBenchError as refusal:
+            self._say(f"{side} torque: {refusal.reason}")
+            raise
+        torques = list(self.found.get("breakaway", (None, None)))
+        torques[direction < 0.0] = found.torque
+        self.found["breakaway"] = tuple(torques)
+        way = "along" if found.along else "AGAINST"
+        self._say(
+            f"{side} torque: moves at {found.torque:.3f} N·m, {way} the torque"
+            + (f", after yielding by {found.wind_up:.5f} rad" if found.wind_up > 2e-4 else "")
+        )
+        return found
+
+    def _judge_signs(self, found: list[Breakaway]) -> None:
+        along = [each.along for each in found]
+        if all(along):
+            self.signs["torque_and_encoder"] = 1
+            return
+        if any(along):
+            raise RefusedBenchError(
+                "moves_one_way",
+                "the joint moves the same way under a positive and under a negative torque: something else "
+                "moves it, gravity or a spring, or another program commands the drive",
+            )
+        self.signs["torque_and_encoder"] = -1
+        raise RefusedBenchError(
+            "torque_and_encoder_disagree",
+            "a positive torque makes the encoder count down, and a negative one up: either the torque or the "
+            "encoder is inverted. See which way the link goes under a positive torque: if it is the one that you "
+            "call positive, the encoder is inverted, else the torque",
+        )
+
+    def _judge_scales(self, axis: Axis, breakaway: tuple[float, float]) -> None:
+        expected, friction = self._expected, 0.5 * (breakaway[0] + breakaway[1])
+        stated = expected.breakaway
+        if stated is None:
+            return
+        if scale_fault(expected, friction, math.nan) is None:
+            self._say(
+                f"friction at a stand {friction:.3f} N·m; the joint file states {stated:.3f} N·m"
+            )
+            return
+        inertia = math.nan
+        if expected.inertia is not None:
+            pushes = self._pushes(
+                axis, breakaway, _FEW_PUSHES, _REACH / max(1.0, friction / stated)
+            )
+            inertia = motion_of(pushes, axis.latency, axis.resolution).inertia
+            self.found["inertia"] = inertia if math.isfinite(inertia) else None
+        code = scale_fault(expected, friction, inertia)
+        assert code is not None
+        raise RefusedBenchError(
+            code,
+            f"the joint moves at {friction:.4g} N·m by the joint file's constants, {friction / stated:.3g} times "
+            f"the {stated:.4g} N·m that it states"
+            + ("" if math.isnan(inertia) else f", with an inertia of {inertia:.3g} kg·m²")
+            + "; where the stated friction is only a guess, set compare_friction = false in "
+            "[session.first_motion]",
+        )
+
+    def _pushes(
+        self, axis: Axis, breakaway: tuple[float, float], pairs: int, reach: float
+    ) -> list[Push]:
+        return [
+            push(axis, direction, STRENGTH * breakaway[direction < 0.0], reach)
+            for _ in range(pairs)
+            for direction in (1.0, -1.0)
+        ]
+
+    def _judge_sensor(self, axis: Axis, breakaway: tuple[float, float]) -> Motion:
+        """Push until inertia and sensor are clear; returns what they say of the joint."""
+        expected, reach = self._expected, _REACH
+        pushes: list[Push] = []
+        motion, response = Motion(math.nan, 0.0, 0.0), SensorResponse(0.0, math.inf)
+        for pair in range(_MOST):
+            pushes += self._pushes(axis, breakaway, 1, reach)
+            widest = max(each.width for each in pushes[-2:])
+            fastest = max(each.fastest for each in pushes[-2:])
+            if widest < _WIDE and fastest < _QUICK * self._options.velocity:
+                reach = min(reach + _REACH, _FARTHEST)
+            if pair + 1 < _FEWEST:
+                continue
+            motion = motion_of(pushes, axis.latency, axis.resolution)
+            if not expected.sensor:
+                break
+            response = sensor_response(pushes, motion, axis.latency, axis.resolution)
+            if abs(response.significance) > _CLEAR or axis.now > _PUSHED * self._options.longest:
+                break
+        if math.isfinite(motion.inertia):
+            self.found["inertia"] = motion.inertia
+            stated = expected.inertia
+            beside = "" if stated is None else f"; the joint file states {stated:.3g} kg·m²"
+            self._say(f"inertia {motion.inertia:.3g} kg·m²{beside}")
+        self._judge_inertia(motion.inertia)
+        if expected.sensor:
+            self._judge_response(response)
+        return motion
+
+    def _judge_inertia(self, inertia: float) -> None:
+        """Without a stated friction the inertia alone tells of the torque constant, and nothing of the gear ratio."""
+        expected = self._expected
+        if expected.breakaway is not None:
+            return
+        self.unchecked.append("gear_ratio")
+        stated = expected.inertia
+        if stated is None or not math.isfinite(inertia):
+            self.unchecked.append("torque_constant")
+            return
+        ratio = inertia / stated
+        if 1.0 / _FARTHER <= ratio <= _FARTHER:
+            return
+        # A wrong gear ratio leaves the rotor's inertia as it is, and can only add to it: of the link's.
+        raise RefusedBenchError(
+            "torque_constant" if ratio < 1.0 else "torque_constant_or_gear_ratio",
+            f"the joint's inertia is {inertia:.3g} kg·m² by the joint file's constants, {ratio:.3g} times the "
+            f"{stated:.3g} kg·m² that it states: one of the constants is wrong, or the stated inertia",
+        )
+
+    def _judge_response(self, response: SensorResponse) -> None:
+        z = response.significance * self._expected.sensor_sign
+        if abs(z) <= _CLEAR:
+            self.unchecked.append("sensor_sign")
+            self._say(f"torque sensor: its sign does not show ({abs(z):.1f} standard errors)")
+            return
+        self.signs["sensor"] = 1 if z > 0.0 else -1
+        if z < 0.0:
+            raise RefusedBenchError(
+                "sensor_sign",
+                f"the torque sensor's reading falls where the link is accelerated in the positive direction "
+                f"({abs(z):.0f} standard errors): it is inverted, sensor_gain has the wrong sign, "
+                "or torque and encoder are both inverted",
+            )
+        self._say(f"torque sensor: right sign ({z:.0f} standard errors)")
+
+    def _under_control(
+        self, axis: Axis, breakaway: tuple[float, float], motion: Motion, wind_up: float
+    ) -> None:
+        inertia = motion.inertia if math.isfinite(motion.inertia) else self._expected.inertia
+        if inertia is None:
+            self.unchecked.append("control")
+            return
+        for amplitude in self._options.moves:
+            worst = small_move(axis, amplitude, breakaway, inertia, wind_up)
+            self._say(
+                f"under control: {math.degrees(amplitude):.2f}° and back, largest error {math.degrees(worst):.3f}°"
+            )

@@ -1,0 +1,147 @@
+"""Limits that need to know the joint: where it would stop, whose energy moves it, what its motion needs."""
+
+from __future__ import annotations
+
+from collections import deque
+
+from jointid.hardware.session.drive import Drive
+from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.moving_joint import MovingJoint
+from jointid.hardware.session.options import SessionOptions
+from jointid.hardware.session.stop import LimitError
+
+# From the sample that shows the need until braking acts: the next cycle's command, and its way.
+_REACTION = 2.0  # periods
+_WATCHED = 0.02  # [s] over which work and energy are compared, and for which they must differ
+_NOTICED = 0.05  # [rad/s]: the energy of a slower motion is no evidence
+_DOUBT = 0.1  # of the link's weight
+_BEYOND = 0.05  # [s] that a torque may be beyond the envelope
+_SMALL = 0.05  # of the torque limit, which is added to the envelope
+
+
+class Foresight:
+    """Checks that need the joint's inertia, gravity or friction.
+
+    Parameters
+    ----------
+    limits : SessionLimits
+    period : float
+        [s]
+    joint : MovingJoint
+    latency : float
+        Of a command, in drive and bus [s].
+    """
+
+    def __init__(
+        self, limits: SessionLimits, period: float, joint: MovingJoint, latency: float
+    ) -> None:
+        self._limits, self._joint = limits, joint
+        self._reaction = _REACTION * period + latency
+        self._braking = joint.braking(limits.torque)
+        self._often = max(2, round(_WATCHED / period))
+        self._watched: deque[tuple[float, float]] = deque(maxlen=self._often + 1)
+        self._work = 0.0  # of the motor since the beginning [J]
+        self._place: float | None = None
+        self._against = self._beyond = 0
+        self._longest = max(1, round(_BEYOND / period))
+
+    def moving(self, position: float, velocity: float, accepted: float) -> None:
+        """Check where the joint would stop if it were braked now.
+
+        Parameters
+        ----------
+        position, velocity : float
+            [rad], [rad/s]
+        accepted : float
+            The torque that holds until braking acts [N·m].
+
+        Raises
+        ------
+        LimitError
+        """
+        if self._braking is None or velocity == 0.0:
+            return
+        _, deceleration = self._braking
+        direction = 1.0 if velocity > 0.0 else -1.0
+        pushed = max(0.0, direction * accepted) / self._joint.inertia
+        speed = abs(velocity) + pushed * self._reaction
+        distance = speed * self._reaction + speed * speed / (2.0 * deceleration)
+        stops = position + direction * distance
+        low, high = self._limits.position
+        if low <= stops <= high:
+            return
+        raise LimitError(
+            "position",
+            f"at {position:.4f} rad and {velocity:.3f} rad/s the joint would stop at {stops:.4f} rad if it were braked "
+            f"now, outside {low:.4f} to {high:.4f} rad",
+            measured=stops,
+            allowed=high if velocity > 0.0 else low,
+        )
+
+    def driven(self, position: float, velocity: float, accepted: float) -> None:
+        """Check that the motor does not brake by its command while the joint gains energy.
+
+        Parameters
+        ----------
+        position, velocity : float
+            [rad], [rad/s]
+        accepted : float
+            The torque that has held since the sample before [N·m].
+
+        Raises
+        ------
+        LimitError
+        """
+        if self._place is not None:
+            self._work += accepted * (position - self._place)
+        self._place = position
+        energy = self._joint.energy(position, velocity)
+        self._watched.append((self._work, energy))
+        work = self._work - self._watched[0][0]
+        gained = energy - self._watched[0][1]
+        doubt = (
+            0.5 * self._joint.inertia * _NOTICED**2
+            + _DOUBT * self._joint.weight * abs(velocity) * _WATCHED
+        )
+        self._against = self._against + 1 if work < -doubt and gained > doubt else 0
+        if self._against >= self._often:
+            raise LimitError(
+                "torque_sign",
+                f"in the last {1e3 * _WATCHED:.0f} ms the joint has gained {gained:.3g} J, though the commanded torque "
+                f"took {-work:.3g} J from it: torque and position have opposite signs, or another force moves it",
+                measured=gained,
+                allowed=work,
+            )
+
+    def commanded(
+        self, torque: float, position: float, velocity: float, acceleration: float
+    ) -> None:
+        """Check a command [N·m] against what the wanted motion needs at most.
+
+        Raises
+        ------
+        LimitError
+        """
+        factor = self._limits.torque_envelope
+        needed = self._joint.needed(position, velocity, acceleration)
+        if factor is None or needed is None:
+            return
+        most = factor * needed + _SMALL * self._limits.torque
+        self._beyond = self._beyond + 1 if abs(torque) > most else 0
+        if self._beyond > self._longest:
+            raise LimitError(
+                "torque_envelope",
+                f"{torque:.4g} N·m is commanded where the joint's values need {needed:.4g} N·m; for "
+                f"{self._beyond} cycles it has been more than {most:.4g} N·m",
+                measured=torque,
+                allowed=most,
+            )
+
+
+def foresight_of(
+    joint: MovingJoint | None, drive: Drive, limits: SessionLimits, options: SessionOptions
+) -> Foresight | None:
+    """Return the checks for a joint whose inertia is known; None for another."""
+    if joint is None:
+        return None
+    return Foresight(limits, options.period, joint, drive.command_latency)

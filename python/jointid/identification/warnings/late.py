@@ -1,0 +1,38 @@
+"""Samples of a session that were late or lost, and commands that were not confirmed."""
+
+from collections.abc import Iterator
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.wording import percent
+from jointid.identification.warnings.check import Check, FindingType
+from jointid.identification.warnings.evidence import Evidence
+
+LATE = FindingType(
+    code="late_samples",
+    severity="info",
+    meaning="samples of a session were late or lost, or a command was not confirmed; these intervals are left out",
+    advice="find out what delays bus or computer",
+)
+
+
+def _find(evidence: Evidence) -> Iterator[Finding]:
+    for recording in evidence.recordings:
+        left_out = len(recording.doubtful)
+        if recording.late is None or not left_out:
+            continue
+        intervals = len(recording) - 1
+        missing = int(recording.late[1:].astype(int).sum())
+        yield LATE.finding(
+            f"{left_out} of {intervals} sample intervals ({percent(left_out / intervals)}) are left out, because in "
+            f"them samples were late or lost ({missing} cycles) or a command was not confirmed",
+            Action("inspect", text="what delays bus or computer"),
+            evidence={
+                "left_out": Measured(left_out),
+                "intervals": Measured(intervals),
+                "missing_cycles": Measured(missing),
+            },
+        )
+
+
+CHECK = Check(_find, (LATE,))

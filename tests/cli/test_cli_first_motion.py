@@ -1,0 +1,151 @@
+"""`jointid check`, `jointid first-motion`, and what `jointid run` asks for before a real joint moves."""
+
+import json
+import shutil
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import jointid.commissioning  # before `wired` replaces what it imports  # noqa: F401
+from jointid.cli import main
+from jointid.hardware.bench import opened_drive
+from jointid.hardware.bench.bench import Bench
+from jointid.hardware.proof import check, procedure
+
+EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
+KEYS = {
+    *("passed", "reason", "travel", "largest_torque"),
+    *("breakaway", "signs", "unchecked"),
+}
+
+
+@pytest.fixture
+def joint(tmp_path: Path) -> Path:
+    """A copy of the example, whose bus is none of this machine's."""
+    path = tmp_path / "joint.toml"
+    text = EXAMPLE.read_text(encoding="utf-8")
+    text = text.replace('interface = "socketcan"', 'interface = "virtual"')
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def edited(joint: Path, before: str, after: str) -> None:
+    text = joint.read_text(encoding="utf-8")
+    assert before in text
+    joint.write_text(text.replace(before, after, 1), encoding="utf-8")
+
+
+@pytest.fixture
+def wired(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An emulated drive in the place of the real one."""
+    real = opened_drive.open_drive
+
+    def emulated(
+        bench: Bench, *, emulate: bool = False, seed: int = 0
+    ) -> AbstractContextManager[Any]:
+        del emulate
+        return real(bench, emulate=True, seed=seed)
+
+    for module in (opened_drive, check, procedure):
+        monkeypatch.setattr(module, "open_drive", emulated)
+
+
+def test_json_has_the_keys_that_programs_read(joint: Path, capsys: Any) -> None:
+    assert main(["first-motion", str(joint), "--emulate", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert set(found) == KEYS
+    assert found["passed"] is True
+    assert found["reason"] is None
+    assert len(found["breakaway"]) == 2
+    assert not joint.with_suffix(".certificate.toml").exists()
+
+
+def test_a_refusal_is_exit_code_three_and_says_why(joint: Path, capsys: Any) -> None:
+    edited(joint, "[session.emulated] ", "[session.emulated]\nencoder_sign = -1\n# ")
+    assert main(["first-motion", str(joint), "--emulate", "--json"]) == 3
+    shown = capsys.readouterr()
+    assert json.loads(shown.out)["reason"] == "torque_and_encoder_disagree"
+    assert "encoder" in shown.err
+    assert main(["first-motion", str(joint), "--emulate"]) == 3
+    shown = capsys.readouterr()
+    assert "REFUSED (torque_and_encoder_disagree)" in shown.out
+    assert "AGAINST the torque" in shown.out
+
+
+def test_a_cap_ends_it(joint: Path, capsys: Any) -> None:
+    arguments = ["first-motion", str(joint), "--emulate", "--largest-torque", "5", "--json"]
+    assert main(arguments) == 3
+    found = json.loads(capsys.readouterr().out)
+    assert found["reason"] == "no_motion_up_to_torque_cap"
+    assert 4.5 < found["largest_torque"] <= 5.0
+    arguments[4] = "-5"
+    assert main(arguments) == 2
+    assert "--largest-torque" in capsys.readouterr().err
+
+
+def test_nobody_agrees_to_a_motion_from_a_script(joint: Path, capsys: Any) -> None:
+    assert main(["first-motion", str(joint)]) == 3
+    assert "--yes" in capsys.readouterr().err
+
+
+def test_check_shows_what_is_connected(joint: Path, capsys: Any) -> None:
+    assert main(["check", str(joint), "--emulate"]) == 0
+    shown = capsys.readouterr().out
+    for part in ("serial", "PL[1]", "CL[1]", "HL[2]", "1016h:1", "position", "torque sensor"):
+        assert part in shown, part
+    assert main(["check", str(joint), "--emulate", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["passed"] is True
+    assert found["problems"] == found["differences"] == []
+
+
+def test_check_refuses_a_joint_that_moves(joint: Path, capsys: Any) -> None:
+    edited(joint, "coulomb = 25.0\nstatic = 20.0", "coulomb = 1.0\nstatic = 0.0")
+    edited(joint, "position = 0.0  ", "position = 0.9  ")
+    assert main(["check", str(joint), "--emulate"]) == 3
+    assert "PROBLEM: the joint moves" in capsys.readouterr().out
+
+
+def test_check_names_a_drive_that_may_do_more_than_the_joint(joint: Path, capsys: Any) -> None:
+    edited(joint, "torque = 160.0  ", "torque = 100.0  ")
+    assert main(["check", str(joint), "--emulate"]) == 0
+    edited(joint, "[session.limits] ", "[session.limits]\ntorque = 50.0\n# ")
+    assert main(["check", str(joint), "--emulate"]) == 3
+    assert "PL[1]" in capsys.readouterr().out.splitlines()[-1]
+
+
+def test_a_real_joint_is_not_run_without_a_certificate(
+    joint: Path, capsys: Any, wired: None
+) -> None:
+    del wired
+    assert main(["run", str(joint), "--yes", "--quiet"]) == 3
+    error = capsys.readouterr().err
+    assert "joint.certificate.toml" in error
+    assert "--force" in error
+    # A first motion of the real bench writes it, and it then holds.
+    assert main(["first-motion", str(joint), "--yes", "--quiet"]) == 0
+    path = joint.with_suffix(".certificate.toml")
+    assert path.exists()
+    capsys.readouterr()
+    assert main(["check", str(joint)]) == 0
+    assert "certificate: holds" in capsys.readouterr().out
+    # It does not hold for another joint file, and another drive.
+    other = joint.with_name("other.toml")
+    shutil.copy(joint, other)
+    shutil.copy(path, other.with_suffix(".certificate.toml"))
+    edited(other, "torque_constant = 0.198 ", "torque_constant = 0.2 ")
+    assert main(["run", str(other), "--yes", "--quiet"]) == 3
+    assert "torque_constant was 0.198 and is 0.2" in capsys.readouterr().err
+    serial = next(line for line in path.read_text().splitlines() if '"serial"' in line)
+    edited(path, serial, '"serial" = "another"')
+    assert main(["run", str(joint), "--yes", "--quiet"]) == 3
+    assert "serial was another" in capsys.readouterr().err
+
+
+def test_force_goes_on_without_one(joint: Path, capsys: Any) -> None:
+    assert main(["run", str(joint), "--yes", "--quiet", "--force"]) == 3
+    error = capsys.readouterr().err
+    assert "certificate" not in error
+    assert "boot-up" in error  # nobody is on that bus

@@ -1,0 +1,307 @@
+"""A first motion: wrong benches are refused for the right reason, before they go far; right ones pass."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import jointid as jid
+from jointid.hardware.bench.bench import Bench
+from jointid.hardware.bench.emulated_joints import true_joint
+from jointid.hardware.elmo.drive import ElmoDrive
+from jointid.hardware.elmo.emulated_bench import ElmoEmulation, elmo_devices
+from jointid.hardware.elmo.emulated_drive import EmulatedElmo
+from jointid.hardware.emulated.bus import EmulatedBus
+from jointid.hardware.emulated.faults import BusFault
+from jointid.hardware.proof.expected import expected_of
+from jointid.hardware.proof.result import UNCHECKED, FirstMotion
+from jointid.simulation.plant import Bristle
+from jointid.simulation.stepped import stepped_joint
+
+EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
+FARTHEST = math.radians(0.5)
+# What the joint has in truth, and what its file states: at most 1.5 times beside it.
+WEAK = ({"coulomb": 3.0, "static": 0.0, "viscous": 1.0}, {"coulomb": 3.0, "static": 0.0})
+STRONG = ({"coulomb": 25.0, "static": 0.0}, {"coulomb": 25.0, "static": 0.0})
+THESIS = ({"coulomb": 25.0, "static": 20.0}, {"coulomb": 10.0, "static": 20.0})
+FRICTIONS = {"weak": WEAK, "strong": STRONG, "thesis": THESIS}
+
+
+class Spy:
+    """What the emulated joint truly feels and does."""
+
+    def __init__(self, drive: EmulatedElmo) -> None:
+        self.torque = self.way = 0.0
+        self._drive, self._start, self._advance = drive, drive.joint.position, drive.advance
+        drive.advance = self._seen  # type: ignore[method-assign]
+
+    def _seen(self) -> None:
+        drive, settings = self._drive, self._drive.settings
+        if drive.motor_on:
+            torque = drive.current * settings.torque_constant * settings.gear_ratio
+            self.torque = max(self.torque, abs(torque))
+        self._advance()
+        self.way = max(self.way, abs(drive.joint.position - self._start))
+
+
+def bench_with(
+    friction: tuple[dict[str, float], dict[str, float]] = THESIS,
+    position: float = 0.0,
+    **wrong: Any,
+) -> Bench:
+    """The example's bench, wrong in some way."""
+    bench = Bench.load(EXAMPLE)
+    truth, stated = friction
+    assert bench.emulation is not None
+    emulation = replace(
+        bench.emulation,
+        truth={**bench.emulation.truth, **truth},
+        drive=ElmoEmulation(**wrong),
+        position=position,
+    )
+    return replace(bench, joint=bench.joint.with_parameters(stated), emulation=emulation)
+
+
+def moved(
+    bench: Bench,
+    seed: int = 0,
+    change: Callable[[EmulatedElmo], object] | None = None,
+    faults: tuple[BusFault, ...] = (),
+) -> tuple[FirstMotion, Spy]:
+    devices = elmo_devices(bench, seed)
+    if change is not None:
+        change(devices[0])
+    spy = Spy(devices[0])
+    with EmulatedBus(*devices, faults=faults) as bus:
+        result = jid.hardware.first_motion(bench, drive=ElmoDrive(bus, bench.joint, bench.drive))
+    assert not devices[0].motor_on
+    return result, spy
+
+
+def breakaway(bench: Bench) -> float:
+    assert bench.emulation is not None
+    return bench.emulation.truth["coulomb"] + bench.emulation.truth["static"]
+
+
+@pytest.mark.parametrize("friction", FRICTIONS)
+def test_a_right_bench_passes(friction: str) -> None:
+    bench = bench_with(FRICTIONS[friction])
+    result, spy = moved(bench, seed=1)
+    assert result.passed, result.report()
+    assert result.reason is None
+    assert result.duration < 60.0
+    assert spy.way < FARTHEST
+    assert result.travel == pytest.approx(spy.way, abs=2e-5)
+    assert spy.torque < 1.3 * breakaway(bench)
+    for torque in result.breakaway:
+        assert torque == pytest.approx(breakaway(bench), rel=0.06)
+    assert result.inertia == pytest.approx(2.77, rel=0.3)
+    assert result.signs == {"torque_and_encoder": 1, "sensor": 1}
+    assert result.unchecked == (
+        *("positive_direction", "homing", "backlash", "watchdog", "emergency_stop"),
+    )
+    assert "passed" in result.report()
+
+
+BOTH = "torque_constant_or_gear_ratio"
+WRONG: list[tuple[dict[str, float], tuple[str, ...]]] = [
+    ({"torque_sign": -1}, ("torque_and_encoder_disagree",)),
+    ({"encoder_sign": -1}, ("torque_and_encoder_disagree",)),
+    ({"torque_scale": 0.0}, ("no_motion_up_to_torque_cap",)),
+    ({"torque_scale": 3.0}, ("torque_constant", BOTH)),
+    ({"torque_scale": 1.0 / 3.0}, ("torque_constant", BOTH)),
+    ({"gear_ratio": 1010.0}, ("gear_ratio", BOTH)),
+    ({"sensor_sign": -1}, ("sensor_sign",)),
+]
+
+
+@pytest.mark.parametrize("friction", FRICTIONS)
+@pytest.mark.parametrize("number", range(len(WRONG)))
+def test_a_wrong_bench_is_refused(friction: str, number: int) -> None:
+    wrong, reasons = WRONG[number]
+    bench = bench_with(FRICTIONS[friction], **wrong)
+    result, spy = moved(bench, seed=number)
+    assert not result.passed
+    assert result.reason in reasons, result.report()
+    assert result.motor_off
+    assert spy.way < FARTHEST
+    assert spy.torque < 1.3 * breakaway(bench), result.report()
+    assert result.reason in result.report()
+
+
+def test_signs_are_judged_before_scales() -> None:
+    result, _ = moved(bench_with((WEAK[0], THESIS[1]), torque_sign=-1))
+    assert result.reason == "torque_and_encoder_disagree"
+
+
+def test_both_inverted_show_in_the_sensor_and_look_right_without() -> None:
+    result, _ = moved(bench_with(torque_sign=-1, encoder_sign=-1))
+    assert result.reason == "sensor_sign"
+    assert "torque and encoder are both inverted" in result.message
+    result, _ = moved(without_sensor(bench_with(torque_sign=-1, encoder_sign=-1)))
+    assert result.passed
+    assert "positive_direction" in result.unchecked
+
+
+def test_friction_that_is_only_a_guess_is_not_held_against_the_bench() -> None:
+    bench = bench_with((WEAK[0], THESIS[1]))
+    assert moved(bench)[0].reason in ("gear_ratio", BOTH)
+    guessed = replace(bench, first_motion=replace(bench.first_motion, compare_friction=False))
+    result, spy = moved(guessed)
+    assert result.passed, result.report()
+    assert "gear_ratio" in result.unchecked
+    assert spy.torque < 1.3 * 3.0
+
+
+def test_without_friction_the_inertia_tells_of_the_torque_constant() -> None:
+    bench = bench_with(STRONG, torque_scale=3.0)
+    bench = replace(bench, first_motion=replace(bench.first_motion, compare_friction=False))
+    assert moved(bench)[0].reason == "torque_constant"
+
+
+@pytest.mark.parametrize("friction", ["weak", "thesis"])
+def test_an_encoder_that_hangs_shows_in_the_sensor(friction: str) -> None:
+    bench = bench_with(FRICTIONS[friction])
+    result, spy = moved(bench, change=lambda drive: setattr(drive, "stuck_encoder", 0))
+    assert result.reason == "sensor_moves_alone"
+    assert spy.way < FARTHEST
+    assert spy.torque < 1.3 * breakaway(bench)
+
+
+def without_sensor(bench: Bench) -> Bench:
+    """The bench of a joint that has no torque sensor."""
+    kept = {name: p for name, p in bench.joint.parameters.items() if "sensor" not in name}
+    model = bench.joint.model.replace(ripple=())
+    assert bench.emulation is not None
+    truth = {name: v for name, v in bench.emulation.truth.items() if "sensor" not in name}
+    return replace(
+        bench,
+        joint=bench.joint.replace(sensor=False, model=model, parameters=kept),
+        drive=replace(bench.drive, torque=None),
+        emulation=replace(bench.emulation, truth=truth),
+    )
+
+
+def test_without_a_sensor_the_cap_is_low() -> None:
+    result, _ = moved(without_sensor(bench_with(STRONG, torque_scale=0.0)))
+    assert result.reason == "no_motion_up_to_torque_cap"
+    assert 1.9 * 25.0 < result.largest_torque <= 2.0 * 25.0
+
+
+def test_a_stated_cap_ends_it() -> None:
+    bench = bench_with()
+    bench = replace(bench, first_motion=replace(bench.first_motion, largest_torque=20.0))
+    result, spy = moved(bench)
+    assert result.reason == "no_motion_up_to_torque_cap"
+    assert 19.0 < spy.torque <= 20.0
+    assert "20 N·m" in result.message
+
+
+def test_gravity_is_the_difference_of_the_directions() -> None:
+    bench = bench_with(({"coulomb": 8.0, "static": 0.0}, {"coulomb": 8.0, "static": 0.0}), 0.4)
+    result, spy = moved(bench)
+    assert result.passed, result.report()
+    up, down = result.breakaway
+    assert up is not None
+    assert down is not None
+    weight = 3.0 * 0.25 * 9.817 * math.sin(0.4)
+    assert 0.5 * (up - down) == pytest.approx(weight, rel=0.05)
+    assert result.inertia == pytest.approx(2.77, rel=0.3)
+    assert spy.way < FARTHEST
+
+
+def test_a_joint_that_swings_is_refused_with_the_motor_off() -> None:
+    result, spy = moved(bench_with(WEAK, 1.0))
+    assert result.reason == "moving"
+    assert spy.torque == 0.0
+
+
+def test_a_brake_that_opens_under_gravity_is_noticed() -> None:
+    """The joint's brake holds it while the motor is off; its friction does not."""
+
+    def braked(drive: EmulatedElmo) -> None:
+        free = drive.advance
+
+        def held() -> None:
+            if drive.motor_on:
+                free()
+            else:
+                drive._time = drive.bus.now()
+
+        drive.advance = held  # type: ignore[method-assign]
+
+    result, spy = moved(bench_with(WEAK, 1.0), change=braked)
+    assert result.reason == "moves_at_zero_torque"
+    assert spy.way < 1e-3
+
+
+@pytest.mark.parametrize("friction", ["weak", "thesis"])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_gear_that_winds_up_has_not_moved_yet(friction: str, sign: int) -> None:
+    bench = bench_with(FRICTIONS[friction], torque_sign=sign)
+
+    def wound(drive: EmulatedElmo) -> None:
+        assert bench.emulation is not None
+        drive.joint = stepped_joint(
+            true_joint(bench),
+            sensors=bench.emulation.sensors,
+            period=bench.options.period,
+            bristle=Bristle(stiffness=1e5, damping=300.0),
+        )
+
+    result, spy = moved(bench, change=wound)
+    assert result.passed is (sign > 0), result.report()
+    for torque in result.breakaway:
+        assert torque == pytest.approx(breakaway(bench), rel=0.06)
+    assert spy.way < FARTHEST
+
+
+@pytest.mark.parametrize("factor", [0.05, 5.0])
+def test_light_and_heavy_joints_pass(factor: float) -> None:
+    bench = bench_with()
+    rotor = bench.joint.rotor_inertia
+    assert rotor is not None
+    bench = replace(bench, joint=bench.joint.replace(rotor_inertia=factor * rotor))
+    result, spy = moved(bench)
+    assert result.passed, result.report()
+    assert spy.way < FARTHEST
+    assert spy.torque < 1.3 * breakaway(bench)
+
+
+def test_a_few_lost_answers_are_stood_and_a_dead_bus_is_not() -> None:
+    lost = BusFault(kind="drop", start=3.0, stop=3.003, identifier=0x4FF)
+    assert moved(bench_with(WEAK), faults=(lost,))[0].passed
+    gone = BusFault(kind="drop", start=3.0, stop=99.0, identifier=0x4FF)
+    result, _ = moved(bench_with(WEAK), faults=(gone,))
+    assert result.reason == "stale_position"
+
+
+def test_each_code_of_what_is_unchecked_is_explained() -> None:
+    result = FirstMotion(passed=True, unchecked=tuple(UNCHECKED))
+    assert all(f"{code}: " in result.report() for code in UNCHECKED)
+
+
+def test_breakaway_is_stated_by_the_models_own_terms() -> None:
+    joint = bench_with().joint
+    assert expected_of(joint).breakaway == pytest.approx(30.0)
+    free = joint.replace(model=joint.model.replace(asymmetric=True), parameters={})
+    assert expected_of(free).breakaway is None
+    sides = {
+        "coulomb_positive": 10.0,
+        "coulomb_negative": 14.0,
+        "static_positive": 2.0,
+        "static_negative": 4.0,
+    }
+    assert expected_of(free.replace(parameters=sides)).breakaway == pytest.approx(15.0)
+    simple = free.replace(model=jid.Model.parse("coulomb_viscous"), parameters={"coulomb": 7.0})
+    assert expected_of(simple).breakaway == pytest.approx(7.0)
+
+
+def test_options_are_checked() -> None:
+    for wrong in ({"counts": 1}, {"growth_time": 0.0}, {"moves": (1.0,)}, {"watch_sensor": 1}):
+        values: dict[str, Any] = wrong
+        with pytest.raises(jid.InputError, match=next(iter(wrong))):
+            jid.hardware.FirstMotionOptions(**values)
