@@ -17,39 +17,33 @@ from jointid.hardware.proof.result import UNCHECKED
 
 PAGE = read("docs/first_motion.md")
 SHOWN = [block.partition("\n") for block in blocks(read("docs/hardware.md"), "console")]
-INVERTED = 3  # exit code of a bench that is refused
+REFUSED = 3  # exit code
 
 
-def test_the_path_shows_each_step() -> None:
-    commands = [shlex.split(line)[1:3] for line, _, _ in SHOWN]
-    assert [command for command, *_ in (words[1:] for words in commands)] != []
-    names = [words[1] for words in commands]
-    assert names == ["first-motion", "check", "first-motion", "first-motion", "run", "run"]
-
-
-@pytest.mark.parametrize("number", range(len(SHOWN)))
-def test_a_command_prints_what_is_shown(
-    number: int,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+def test_the_path_runs_and_prints_what_is_shown(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    line, _, expected = SHOWN[number]
-    prompt, program, *arguments = shlex.split(line)
-    assert (prompt, program) == ("$", "jointid")
     shutil.copy(ROOT / "examples" / "hardware" / "joint.toml", tmp_path / "joint.toml")
     text = (tmp_path / "joint.toml").read_text(encoding="utf-8")
     wrong = text.replace("[session.emulated]", "[session.emulated]\nencoder_sign = -1", 1)
     (tmp_path / "inverted.toml").write_text(wrong, encoding="utf-8")
     enter(tmp_path, monkeypatch)
-    code = main(arguments)
-    assert code == (INVERTED if "inverted.toml" in arguments else 0)
-    printed = capsys.readouterr().out
-    shown = expected.rstrip("\n") + ("\n" if "REFUSED" not in expected else " ...\n")
-    same = doctest.OutputChecker().check_output(
-        shown, printed, doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
-    )
-    assert same, printed
+    commands = []
+    for line, _, expected in SHOWN:
+        prompt, program, *arguments = shlex.split(line)
+        assert (prompt, program) == ("$", "jointid")
+        commands.append(arguments[0])
+        assert main(arguments) == (REFUSED if "inverted.toml" in arguments else 0)
+        printed = capsys.readouterr().out
+        # What a page leaves out at the end of a text is left out here.
+        same = doctest.OutputChecker().check_output(
+            f"{expected.rstrip()} ...\n",
+            f"{printed} .\n",
+            doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE,
+        )
+        assert same, f"{line}\n{printed}"
+    first = ["first-motion", "check", "first-motion", "first-motion"]
+    assert commands == [*first, "run", "run", "identify", "run"]
 
 
 @pytest.mark.parametrize("code", REASONS)

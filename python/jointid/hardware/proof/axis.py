@@ -14,7 +14,7 @@ from jointid.hardware.session.drive import Drive, DriveFaultError, DriveSample
 from jointid.hardware.session.interruptions import Interruptions
 from jointid.hardware.session.limits import SessionLimits
 
-_LOST = 3  # samples in a row that may not come; their torque is held, never raised
+_LOST = 3  # samples in a row that do not come end it; until then there is no torque
 _SETTLED = 0.1  # [s] without a count: the joint stands
 _STOPPING = 3.0  # [s] that it may take to
 _FOLLOWED = 20  # cycles over which the drive's current is compared with the command
@@ -57,6 +57,8 @@ class Axis:
         Farthest from the start until now [rad].
     largest_torque : float
         Largest magnitude that was accepted by the drive [N·m].
+    lost : int
+        Samples that did not come in time.
     sample : DriveSample
         The last one.
     """
@@ -77,7 +79,7 @@ class Axis:
         self.travel = self.largest_torque = 0.0
         self.on = False
         self._torque = 0.0
-        self._lost = 0
+        self._lost = self.lost = 0
         self._unfollowed = 0
         self._begin = self._switched = drive.clock.now()
         self.rows: list[tuple[float, float, float, float]] = []
@@ -101,7 +103,7 @@ class Axis:
         self._next = self._switched
 
     def read(self) -> DriveSample:
-        """Return the state of the next cycle; a sample that does not come is awaited under the same torque.
+        """Return the state of the next cycle; a sample that does not come is awaited at no torque.
 
         Raises
         ------
@@ -126,11 +128,11 @@ class Axis:
             try:
                 sample = self._drive.read(0.75 * self.period)
             except DriveFaultError as error:
-                self._lost += 1
+                self._lost, self.lost = self._lost + 1, self.lost + 1
                 if error.kind != "stale_position" or self._lost >= _LOST:
                     raise
-                if self.on:
-                    self._drive.command(self._torque)
+                if self.on:  # nobody sees the joint: no torque, and our heartbeat with it
+                    self._drive.command(0.0)
                 continue
             self._lost = 0
             self._hold(sample)

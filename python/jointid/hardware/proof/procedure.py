@@ -15,6 +15,7 @@ from jointid.hardware.proof.result import FirstMotion
 from jointid.hardware.proof.steps import Steps
 from jointid.hardware.session.drive import Drive, DriveEnd, DriveFaultError
 from jointid.hardware.session.interruptions import Interruptions
+from jointid.hardware.session.realtime import RealTime
 
 
 def first_motion(
@@ -65,7 +66,10 @@ def first_motion(
     if drive is not None:
         return _moved(bench, drive, callback)
     with open_drive(bench, emulate=emulate, seed=seed) as opened:
-        return _moved(bench, opened, callback)
+        if emulate:
+            return _moved(bench, opened, callback)
+        with RealTime(bench.real_time):
+            return _moved(bench, opened, callback)
 
 
 def _moved(bench: Bench, drive: Drive, callback: Callable[[str], object] | None) -> FirstMotion:

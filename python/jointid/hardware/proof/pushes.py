@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from jointid.hardware.proof.axis import Axis, Trace
+
+Array = npt.NDArray[np.float64]
 
 STRENGTH = 1.15  # of the breakaway in its direction
 _LONGEST = 0.4  # [s] of a push
@@ -17,19 +20,27 @@ _UNKNOWN = 8  # rows at least, for four unknowns
 _FEWEST = 50  # samples in motion, to say anything
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Push:
     """One push, seen in its own direction, from its first cycle until the joint stands.
+
+    What is computed of it is kept: between two pushes the drive waits for our next command.
 
     Attributes
     ----------
     trace : Trace
     direction : float
         1 or -1.
+    latency : float
+        From sending a command until it acts [s].
+    resolution : float
+        Output angle of an encoder count [rad].
     """
 
     trace: Trace
     direction: float
+    latency: float
+    resolution: float
 
     @property
     def width(self) -> float:
@@ -41,6 +52,46 @@ class Push:
         """Highest speed between two samples [rad/s]."""
         steps = np.abs(np.diff(self.trace.position)) / np.diff(self.trace.time)
         return float(steps.max(initial=0.0))
+
+    @cached_property
+    def times(self) -> Array:
+        """When the torque stepped, then when each sample was taken [s]."""
+        return np.concatenate(((self.trace.time[0] + self.latency,), self.trace.time[1:]))
+
+    @cached_property
+    def way(self) -> Array:
+        """Gone in the direction of the push [rad]."""
+        gone: Array = self.trace.position - self.trace.position[0]
+        return self.direction * gone
+
+    @cached_property
+    def moving(self) -> int:
+        """The last sample in which the joint moved."""
+        moved = np.flatnonzero(np.abs(np.diff(self.way)) > 0.5 * self.resolution)
+        return int(moved[-1]) + 1 if len(moved) else 0
+
+    @cached_property
+    def balance(self) -> tuple[Array, Array]:
+        """Matrix and right side of the balance integrated twice, while the joint moved."""
+        inner, times, way = slice(1, self.moving + 1), self.times, self.way
+        # The torque of a row acts from its own time plus the latency: a few steps, most rows have none.
+        steps = np.diff(self.direction * self.trace.torque, prepend=0.0)
+        some = np.flatnonzero(steps)
+        late = times[inner, None] - (self.trace.time[some] + self.latency)
+        twice = 0.5 * np.clip(late, 0.0, None) ** 2 @ steps[some]
+        area = np.concatenate(((0.0,), np.cumsum(0.5 * (way[1:] + way[:-1]) * np.diff(times))))
+        held = 0.5 * (times[inner] - times[0]) ** 2
+        return np.stack((way[inner], held, area[inner], self.direction * held), axis=1), twice
+
+    def acceleration(self, motion: Motion) -> Array:
+        """Of the fitted motion, 0 at rest [rad/s²], in the joint's positive direction."""
+        acting = np.concatenate(((0.0,), self.direction * self.trace.torque[:-1]))
+        speed = np.gradient(self.way, self.trace.time) if len(self.way) > 2 else 0.0 * self.way
+        against = motion.friction + self.direction * motion.load
+        found = (acting - against - motion.viscous * speed) / motion.inertia
+        found[0] = 0.0
+        found[self.moving + 1 :] = 0.0
+        return self.direction * found
 
 
 def push(axis: Axis, direction: float, torque: float, reach: float) -> Push:
@@ -56,7 +107,7 @@ def push(axis: Axis, direction: float, torque: float, reach: float) -> Push:
     while abs(axis.read().position - place) < reach and axis.now < end:
         axis.command(direction * torque)
     axis.rest()
-    return Push(axis.trace(begin), direction)
+    return Push(axis.trace(begin), direction, axis.latency, axis.resolution)
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,32 +130,14 @@ class Motion:
     load: float = 0.0
 
 
-def motion_of(pushes: list[Push], latency: float, resolution: float) -> Motion:
+def motion_of(pushes: list[Push]) -> Motion:
     """Fit inertia and sliding friction to some pushes, by the torque balance integrated twice.
 
     inertia · x = ∬ torque - (friction ± load) · ∬ 1 - viscous · ∫ x, from the first cycle of each push, in which
     the torque steps from 0, until the last count.
-
-    Parameters
-    ----------
-    pushes : list of Push
-    latency : float
-        From sending a command until it acts [s].
-    resolution : float
-        [rad]
     """
-    rows: list[npt.NDArray[np.float64]] = []
-    wanted: list[npt.NDArray[np.float64]] = []
-    for each in pushes:
-        times, x, twice, moving = _integrated(each, latency, resolution)
-        if moving < 3:
-            continue
-        inner = slice(1, moving + 1)
-        elapsed = times[inner] - times[0]
-        area = np.concatenate(((0.0,), np.cumsum(0.5 * (x[1:] + x[:-1]) * np.diff(times))))
-        held = 0.5 * elapsed**2
-        rows.append(np.stack((x[inner], held, area[inner], each.direction * held), axis=1))
-        wanted.append(twice[inner])
+    moved = [each.balance for each in pushes if each.moving > 2]
+    rows, wanted = [matrix for matrix, _ in moved], [side for _, side in moved]
     if not rows:
         return Motion(math.nan, math.nan, math.nan)
     matrix, target = np.concatenate(rows), np.concatenate(wanted)
@@ -114,25 +147,6 @@ def motion_of(pushes: list[Push], latency: float, resolution: float) -> Motion:
     found, *_ = np.linalg.lstsq(matrix / np.where(scale > 0.0, scale, 1.0), target, rcond=1e-9)
     inertia, friction, viscous, load = (float(value) for value in found / scale)
     return Motion(inertia if inertia > 0.0 else math.nan, friction, viscous, load)
-
-
-def _integrated(
-    each: Push, latency: float, resolution: float
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64], int]:
-    """Times since the torque stepped, way, torque integrated twice, and the last sample that moved."""
-    trace = each.trace
-    begin = trace.time[0] + latency
-    times = np.concatenate(((begin,), trace.time[1:]))
-    x = each.direction * (trace.position - trace.position[0])
-    # The torque of a row acts from its own time plus the latency; between samples it is a step.
-    torque = each.direction * trace.torque
-    steps = np.diff(torque, prepend=0.0)
-    acts = trace.time + latency
-    late = np.clip(times[:, None] - acts[None, :], 0.0, None)
-    twice = 0.5 * (late**2) @ steps
-    moved = np.flatnonzero(np.abs(np.diff(x)) > 0.5 * resolution)
-    last = int(moved[-1]) + 1 if len(moved) else 0
-    return times, x, twice, min(last, len(x) - 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,41 +170,30 @@ class SensorResponse:
         return self.slope / self.error if self.error > 0.0 and math.isfinite(self.error) else 0.0
 
 
-def sensor_response(
-    pushes: list[Push], motion: Motion, latency: float, resolution: float
-) -> SensorResponse:
+def sensor_response(pushes: list[Push], motion: Motion) -> SensorResponse:
     """Regress the sensor's readings on the acceleration, beside whatever they are at each position.
 
     The acceleration is that of the fitted motion: the encoder's second difference would be mostly counts.
     What a reading is at a position (ripple of the gear, weight of the link, zero) is a polynomial of it.
     """
-    positions, readings, accelerations = [], [], []
-    for each in pushes:
-        times, x, _, moving = _integrated(each, latency, resolution)
-        trace = each.trace
-        sliding = np.zeros(len(times), dtype=bool)
-        sliding[1 : moving + 1] = True
-        acting = np.concatenate(((0.0,), each.direction * trace.torque[:-1]))
-        speed = np.gradient(x, trace.time) if len(x) > 2 else np.zeros(len(x))
-        against = motion.friction + each.direction * motion.load
-        acceleration = (acting - against - motion.viscous * speed) / motion.inertia
-        accelerations.append(each.direction * np.where(sliding, acceleration, 0.0))
-        positions.append(trace.position)
-        readings.append(trace.reading)
-    position, reading, acceleration = (
-        np.concatenate(parts) for parts in (positions, readings, accelerations)
-    )
-    if np.count_nonzero(acceleration) < _FEWEST or not math.isfinite(motion.inertia):
+    if not math.isfinite(motion.inertia):
         return SensorResponse(0.0, math.inf)
-    middle, width = position.mean(), max(np.ptp(position), resolution)
+    position = np.concatenate([each.trace.position for each in pushes])
+    reading = np.concatenate([each.trace.reading for each in pushes])
+    acceleration = np.concatenate([each.acceleration(motion) for each in pushes])
+    if np.count_nonzero(acceleration) < _FEWEST:
+        return SensorResponse(0.0, math.inf)
+    middle, width = position.mean(), max(np.ptp(position), pushes[0].resolution)
     shape = np.polynomial.chebyshev.chebvander(2.0 * (position - middle) / width, _DEGREE)
-    matrix = np.column_stack((acceleration, shape))
-    found, *_ = np.linalg.lstsq(matrix, reading, rcond=1e-10)
-    left = reading - matrix @ found
-    free = max(len(reading) - matrix.shape[1], 1)
-    across, *_ = np.linalg.lstsq(shape, acceleration, rcond=1e-10)
-    own = acceleration - shape @ across
+    # By normal equations: seven well-scaled columns, and the drive waits for our next command.
+    gram = shape.T @ shape
+    own = acceleration - shape @ np.linalg.lstsq(gram, shape.T @ acceleration, rcond=1e-10)[0]
+    left = reading - reading.mean()
+    left = left - shape @ np.linalg.lstsq(gram, shape.T @ left, rcond=1e-10)[0]
     power = float(own @ own)
     if power <= 0.0:
         return SensorResponse(0.0, math.inf)
-    return SensorResponse(float(found[0]), math.sqrt(float(left @ left) / free / power))
+    slope = float(own @ left) / power
+    left = left - slope * own
+    free = max(len(reading) - _DEGREE - 2, 1)
+    return SensorResponse(slope, math.sqrt(float(left @ left) / free / power))

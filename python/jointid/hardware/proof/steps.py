@@ -233,7 +233,7 @@ class Steps:
             pushes = self._pushes(
                 axis, breakaway, _FEW_PUSHES, _REACH / max(1.0, friction / stated)
             )
-            inertia = motion_of(pushes, axis.latency, axis.resolution).inertia
+            inertia = motion_of(pushes).inertia
             self.found["inertia"] = inertia if math.isfinite(inertia) else None
         code = scale_fault(expected, friction, inertia)
         assert code is not None
@@ -249,11 +249,14 @@ class Steps:
     def _pushes(
         self, axis: Axis, breakaway: tuple[float, float], pairs: int, reach: float
     ) -> list[Push]:
-        return [
-            push(axis, direction, STRENGTH * breakaway[direction < 0.0], reach)
-            for _ in range(pairs)
-            for direction in (1.0, -1.0)
-        ]
+        pushes = []
+        for _ in range(pairs):
+            for direction in (1.0, -1.0):
+                lost = axis.lost
+                found = push(axis, direction, STRENGTH * breakaway[direction < 0.0], reach)
+                if axis.lost == lost:  # else nobody knows how long the torque was on
+                    pushes.append(found)
+        return pushes
 
     def _judge_sensor(self, axis: Axis, breakaway: tuple[float, float]) -> Motion:
         """Push until inertia and sensor are clear; returns what they say of the joint."""
@@ -262,16 +265,16 @@ class Steps:
         motion, response = Motion(math.nan, 0.0, 0.0), SensorResponse(0.0, math.inf)
         for pair in range(_MOST):
             pushes += self._pushes(axis, breakaway, 1, reach)
-            widest = max(each.width for each in pushes[-2:])
-            fastest = max(each.fastest for each in pushes[-2:])
+            widest = max((each.width for each in pushes[-2:]), default=0.0)
+            fastest = max((each.fastest for each in pushes[-2:]), default=0.0)
             if widest < _WIDE and fastest < _QUICK * self._options.velocity:
                 reach = min(reach + _REACH, _FARTHEST)
-            if pair + 1 < _FEWEST:
+            if pair + 1 < _FEWEST or not pushes:
                 continue
-            motion = motion_of(pushes, axis.latency, axis.resolution)
+            motion = motion_of(pushes)
             if not expected.sensor:
                 break
-            response = sensor_response(pushes, motion, axis.latency, axis.resolution)
+            response = sensor_response(pushes, motion)
             if abs(response.significance) > _CLEAR or axis.now > _PUSHED * self._options.longest:
                 break
         if math.isfinite(motion.inertia):
