@@ -199,6 +199,7 @@ def aborts(node: Node) -> Iterator[Finding]:
             {0x06070010, 0x06070012},
         ),
         ("out of range", lambda: node.write(0x1029, 1, b"\x07"), {0x06090030}),
+        ("no such node", lambda: node.write(0x1016, 1, b"\x64\0\x01\x01"), {0x06090030}),
         ("history set", lambda: node.write(0x1003, 0, b"\x01"), {0x06090030}),
         ("no error kept", lambda: node.read(0x1003, 1), {0x08000024, 0x06090011}),
     ):

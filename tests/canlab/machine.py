@@ -16,6 +16,7 @@ REQUIRED = "JOINTID_REQUIRE_VCAN"
 _MEMORY = "512M"
 _INIT = Path(__file__).with_name("init.sh")
 _CLOCK = Path(__file__).with_name("guest_clock.c")
+_SYSTEM = ":/usr/sbin:/sbin"  # where an ordinary user's PATH may not lead
 _COMPILERS = ("cc", "gcc", "clang")
 _MODULES = Path("/usr/lib/uml/modules")
 _NEEDED = ("net/can/can.ko", "net/can/can-raw.ko", "drivers/net/can/vcan.ko")
@@ -27,7 +28,7 @@ def missing() -> str:
         return f"there is no C compiler: none of {', '.join(_COMPILERS)}"
     install = "apt-get install user-mode-linux kmod iproute2"
     for program in ("linux.uml", "insmod", "ip"):
-        if shutil.which(program, path=f"{os.environ.get('PATH', '')}:/usr/sbin:/sbin") is None:
+        if shutil.which(program, path=os.environ.get("PATH", "") + _SYSTEM) is None:
             return f"{program} is not installed: {install}"
     kernels = [each / "kernel" for each in _MODULES.glob("*")]
     if not any(all((kernel / name).is_file() for name in _NEEDED) for kernel in kernels):

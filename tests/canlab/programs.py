@@ -92,7 +92,7 @@ def until(done: Callable[[], object], otherwise: str, timeout: float = PATIENCE)
     while not done():
         if time.monotonic() > end:
             raise TimeoutError(otherwise)
-        time.sleep(0.005)
+        time.sleep(0.05)
 
 
 class Emulator(Program):

@@ -85,6 +85,8 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "largest_torque": "--largest-torque",
     },
     "emulate": {
+        "json": "--json",
+        "rest": "--rest",
         "interface": "--interface",
         "channel": "--channel",
         "duration": "--duration",
@@ -119,7 +121,7 @@ FILES: Mapping[str, str] = {
 FLAGS = frozenset(
     {
         *("--drop-copies", "--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run"),
-        *("--selftest", "--causes", "--unknown-friction"),
+        *("--selftest", "--causes", "--unknown-friction", "--json"),
     }
 )
 """Options that may stand without a value."""

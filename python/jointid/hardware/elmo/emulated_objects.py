@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING
 
 from jointid.hardware.elmo.emulated_interpreter import VERSION
 from jointid.hardware.emulated.object_dictionary import (
-    INCOMPATIBLE,
     NOT_STORED,
-    OUT_OF_RANGE,
     AccessError,
     Entry,
     ObjectDictionary,
@@ -143,7 +141,7 @@ class ElmoObjects(ObjectDictionary):
     def _watch(self) -> None:
         settings = self._drive.settings
         self.constant(0x1016, 0, 1, _WATCHED)
-        self.variable(0x1016, 1, 4, check=self._check_watched)
+        self.variable(0x1016, 1, 4, check=within(0, 0xFFFFFF))  # node and time
         self.variable(0x1017, 0, 2)
         self.constant(0x1029, 0, 1, 1)
         self.variable(0x1029, 1, 1, settings.error_behaviour, check=one_of(0, 1, 2))
@@ -196,12 +194,6 @@ class ElmoObjects(ObjectDictionary):
         self.add(0x1023, 3, Entry(size=0, read=lambda: drive.interpreter.text))
         self.add(0x2012, 0, Entry(size=8, write_bytes=drive.interpret, received=True))
         self.add(0x2013, 0, Entry(size=8, read=lambda: self.result, sent=True))
-
-    def _check_watched(self, value: int) -> None:
-        if value >> 24:
-            raise AccessError(OUT_OF_RANGE)
-        if (value >> 16 & 0xFF) == self._drive.settings.node and value & 0xFFFF:
-            raise AccessError(INCOMPATIBLE)
 
 
 def _signed(value: int, signature: int) -> None:

@@ -137,7 +137,7 @@ class EmulatedBus(can.BusABC):
         return self._time
 
     def _at(self, when: float, event: Event) -> None:
-        self._agenda.add(max(when, self._time), event)
+        self._agenda.add(when, event)
 
     def _lateness(self) -> float:
         return self._random.uniform(0.0, self._jitter) if self._jitter else 0.0
