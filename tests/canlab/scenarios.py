@@ -183,7 +183,8 @@ def flood(stage: Stage) -> None:
 def flood_checked(outcome: Outcome) -> None:
     session = outcome.session()
     if session["ended"] != "done":  # the kernel drops what a program does not read in time
-        outcome.stopped("late_samples", "command_echo", "host_heartbeat_lost", seen_off=None)
+        limits = "late_samples", "late_share", "command_echo", "host_heartbeat_lost"
+        outcome.stopped(*limits, seen_off=None)
     outcome.off_in_time()
 
 

@@ -112,7 +112,8 @@ def test_the_command_writes_runs_and_saves_the_bench(
         (["--emulate", "--save", "x.csv"], 2, "a joint file ends in .toml"),
         (["--emulate", "--output", "no/such/folder"], 2, "no/such"),
         (["--emulate", "--dry-run"], 0, ""),
-        (["--cycles", "1"], 3, "--yes"),
+        (["--cycles", "1"], 3, "--force"),
+        (["--cycles", "1", "--force"], 3, "--yes"),
     ],
 )
 def test_the_command_refuses_before_it_moves(
