@@ -1,6 +1,7 @@
 """A first motion: wrong benches are refused for the right reason, before they go far; right ones pass."""
 
 import math
+import signal
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -118,7 +119,7 @@ WRONG: list[tuple[dict[str, float], tuple[str, ...]]] = [
 ]
 
 
-@pytest.mark.parametrize("friction", FRICTIONS)
+@pytest.mark.parametrize("friction", ["weak", "strong"])
 @pytest.mark.parametrize("number", range(len(WRONG)))
 def test_a_wrong_bench_is_refused(friction: str, number: int) -> None:
     wrong, reasons = WRONG[number]
@@ -277,6 +278,69 @@ def test_a_few_lost_answers_are_stood_and_a_dead_bus_is_not() -> None:
     gone = BusFault(kind="drop", start=3.0, stop=99.0, identifier=0x4FF)
     result, _ = moved(bench_with(WEAK), faults=(gone,))
     assert result.reason == "stale_position"
+
+
+def test_ctrl_c_ends_it_between_two_cycles() -> None:
+    bench = bench_with(WEAK)
+    lines: list[str] = []
+
+    def interrupt(line: str) -> None:
+        lines.append(line)
+        if "no torque" in line:
+            signal.raise_signal(signal.SIGINT)
+
+    result = jid.hardware.first_motion(bench, emulate=True, callback=interrupt)
+    assert (result.passed, result.reason) == (False, "user")
+    assert result.motor_off
+    assert len(lines) == 3
+    assert "positive torque: ended by user" in lines[-1]
+
+
+def test_a_bug_is_raised_after_the_motor_is_off() -> None:
+    bench = bench_with(WEAK)
+    devices = elmo_devices(bench)
+
+    def fail(line: str) -> None:
+        if "positive" in line:
+            raise TypeError("a bug")
+
+    with EmulatedBus(*devices) as bus:
+        drive = ElmoDrive(bus, bench.joint, bench.drive)
+        with pytest.raises(TypeError, match="a bug"):
+            jid.hardware.first_motion(bench, drive=drive, callback=fail)
+    assert [on for _, on in devices[0].switchings] == [True, False]
+    assert not devices[0].motor_on
+
+
+def test_a_drive_in_use_is_left_alone() -> None:
+    bench = bench_with(WEAK)
+
+    def use(drive: EmulatedElmo) -> None:
+        drive.motor_on, drive.state = True, "operational"
+
+    devices = elmo_devices(bench)
+    use(devices[0])
+    with EmulatedBus(*devices) as bus:
+        drive = ElmoDrive(bus, bench.joint, bench.drive)
+        result = jid.hardware.first_motion(bench, drive=drive)
+    assert result.reason == "drive_fault"
+    assert "another program" in result.message
+    assert devices[0].motor_on
+    assert devices[0].torque_commands == []
+
+
+def test_counts_that_the_drive_has_otherwise_are_a_difference() -> None:
+    bench = bench_with()
+    wrong = replace(bench, drive=replace(bench.drive, counts_per_turn=4000))
+    for call in (jid.hardware.check_bench, jid.hardware.first_motion):
+        devices = elmo_devices(bench)
+        with EmulatedBus(*devices) as bus:
+            found: Any = call(wrong, drive=ElmoDrive(bus, wrong.joint, wrong.drive))
+        assert not found.passed
+        assert devices[0].switchings == []
+        text = found.text() if isinstance(found, jid.hardware.BenchCheck) else found.message
+        assert "CA[18]" in text
+        assert "expected: 4000 count" in text
 
 
 def test_each_code_of_what_is_unchecked_is_explained() -> None:
