@@ -329,6 +329,20 @@ def test_a_drive_in_use_is_left_alone() -> None:
     assert devices[0].torque_commands == []
 
 
+def test_counts_that_the_drive_has_otherwise_are_a_difference() -> None:
+    bench = bench_with()
+    wrong = replace(bench, drive=replace(bench.drive, counts_per_turn=4000))
+    for call in (jid.hardware.check_bench, jid.hardware.first_motion):
+        devices = elmo_devices(bench)
+        with EmulatedBus(*devices) as bus:
+            found: Any = call(wrong, drive=ElmoDrive(bus, wrong.joint, wrong.drive))
+        assert not found.passed
+        assert devices[0].switchings == []
+        text = found.text() if isinstance(found, jid.hardware.BenchCheck) else found.message
+        assert "CA[18]" in text
+        assert "expected: 4000 count" in text
+
+
 def test_each_code_of_what_is_unchecked_is_explained() -> None:
     result = FirstMotion(passed=True, unchecked=tuple(UNCHECKED))
     assert all(f"{code}: " in result.report() for code in UNCHECKED)

@@ -176,7 +176,8 @@ def test_fixed_and_freed_parameters(well_excited: jid.Recording, separable: jid.
     fixed = jid.identify(well_excited, joint, parameters={"viscous": 20.0}, search="separable")
     assert fixed.parameters["viscous"].value == 20.0
     assert fixed.parameters["viscous"].stderr is None
-    assert fixed.penalty >= separable.penalty
+    # The instruments of the gain are those that are free: the two penalties are not quite one.
+    assert fixed.penalty >= separable.penalty * (1.0 - 1e-5)
     freed = jid.identify(
         well_excited,
         joint,

@@ -48,8 +48,10 @@ def test_friction_that_drifts_does_not_inflate_the_gain(clean: jid.Recording) ->
     share = clean.time / clean.time[-1]
     # Viscous friction falls by 30 % during the run.
     drifting = with_torque(clean, -0.3 * TRUTH["viscous"] * share * clean.velocity)
-    assert gain_error(found(drifting, residual="sensor")) > 0.5
-    assert abs(gain_error(found(drifting))) < 0.1
+    for side in ("sensor", "instruments"):
+        estimate = found(drifting, residual=side)
+        assert [each.code for each in estimate.warnings] == ["drift"]
+        assert abs(gain_error(estimate)) < 0.01
 
 
 def test_a_clean_recording_keeps_its_accuracy(clean: jid.Recording) -> None:

@@ -55,7 +55,7 @@ def test_structure_that_moves_nothing_is_worth_knowing_only(
 ) -> None:
     silent = estimates["silence"]
     assert _wide(silent) == set()
-    assert silent.residuals.autocorrelation > 0.5
+    assert silent.residuals.autocorrelation > 0.4
     assert [found.code for found in silent.findings if found.severity != "info"] == []
 
 

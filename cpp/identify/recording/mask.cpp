@@ -19,6 +19,8 @@ constexpr double kJolt =
     0.05;  // of the largest torque: such a jump changes the acceleration within a sample
 constexpr Eigen::Index kRarest = 5;  // at most one interval in five is left out for that
 constexpr Eigen::Index kReach = 2;   // intervals left out on either side of what is not smooth
+constexpr double kFine = 1e-4;       // of the peak speed: so fine a velocity is zero only at rest
+constexpr double kStopped = 0.5;     // of the change of speed a sample: slower between two of them
 constexpr double kResolved =
     0.005;  // of the peak speed: a motion slower than this per quantum seems to stick
 
@@ -59,6 +61,37 @@ double sticking_time(const MotionScale& scale) {
   return scale.quantum / (kResolved * scale.peak);
 }
 
+/// Whether the joint seems to have come to rest beside a sample for less than an interval: it
+/// slowed down and sped up again evenly, and was slower there than its acceleration explains.
+bool stopped_briefly(const RecordingView& r, Eigen::Index k) {
+  const auto v = [&](Eigen::Index i) { return r.velocity[k + i]; };
+  const double sign = v(-1) > 0.0 ? 1.0 : -1.0;
+  if (!(sign * v(-2) > sign * v(-1) && sign * v(-1) > sign * v(0))) return false;
+  const double before = sign * (v(-1) - v(0));
+  if (sign * v(0) >= 0.0 && sign * v(1) >= sign * v(0)) {  // on in the same direction
+    const double after = sign * (v(2) - v(1));
+    const bool faster = sign * v(2) > sign * v(1) && sign * v(3) > sign * v(2);
+    return faster && sign * v(0) < kStopped * std::max(before, after);
+  }
+  if (sign * v(0) > 0.0 && sign * v(1) <= 0.0) {  // back
+    const double after = sign * (v(1) - v(2));
+    const bool faster = sign * v(2) < sign * v(1) && sign * v(3) < sign * v(2);
+    return faster && sign * (v(0) - v(1)) < kStopped * std::min(before, after);
+  }
+  return false;
+}
+
+/// Marks the slowest samples of stops that last less than an interval or two, which no run shows.
+void mark_brief_stops(const RecordingView& r, const MotionScale& scale,
+                      std::vector<std::uint8_t>& standing) {
+  if (scale.finest >= kFine * scale.peak) return;  // steps of an encoder look like stops
+  const double slow = kResolved * scale.peak;
+  for (Eigen::Index k = 2; k + 3 < r.samples(); ++k) {
+    if (std::fabs(r.velocity[k]) > slow) continue;
+    if (r.velocity[k] == 0.0 || stopped_briefly(r, k)) standing[static_cast<std::size_t>(k)] = 1;
+  }
+}
+
 void mark_sticking(const RecordingView& r, const MotionScale& scale,
                    const std::vector<std::uint8_t>& after_gap,
                    std::vector<std::uint8_t>& standing) {
@@ -83,6 +116,7 @@ void mark_sticking(const RecordingView& r, const MotionScale& scale,
         r.samples(), standing, [&](Eigen::Index k) { return r.velocity[k] == 0.0; },
         [](Eigen::Index first, Eigen::Index last) { return last > first; });
   }
+  mark_brief_stops(r, scale, standing);
 }
 
 /// Twice the duration over the number of direction changes: an estimate of the motion's

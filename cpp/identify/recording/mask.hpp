@@ -29,7 +29,8 @@ MotionScale motion_scale(const RecordingView& recording);
 ///
 /// Left out are, narrowly: gaps; runs in which the joint truly sticks (position unchanged, or
 /// velocity exactly zero, for longer than the resolution explains) with two intervals either side,
-/// where friction is set-valued and the model gives no value; and standing still (creeping below
+/// where friction is set-valued and the model gives no value; stops that are shorter than a sample
+/// interval, which only a fine velocity shows, in the same way; and standing still (creeping below
 /// 0.3 % of the peak speed for 0.1 s or longer; at slow motion 1 % of its period). A reversal alone
 /// is kept: dropping all slow samples biases viscous friction. But where a held command jumps by 5
 /// % of the largest torque at a reversal, as when friction is compensated by the sign of a

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.estimate.causes import Causes
+from jointid.estimate.causes import Cause, Causes
 from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence
@@ -37,6 +38,7 @@ from jointid.identification.warnings.poor_fit import POORLY_EXPLAINED
 from jointid.problem.constant_torque import undivided
 from jointid.problem.inner_products import columns_with, size
 from jointid.problem.problem import Problem
+from jointid.problem.window_table import WindowTable
 
 Array = NDArray[np.float64]
 
@@ -59,6 +61,7 @@ def infer(
     settings: dict[str, Any],
     seconds: float,
     refinements: Refinements,
+    known: tuple[Cause, ...] = (),
 ) -> Estimate:
     """Return the estimate at a minimum.
 
@@ -70,6 +73,8 @@ def infer(
         What was done to the data before the search.
     beside : mapping of str to ndarray or None
         Change of each parameter by causes that the intervals do not contain.
+    known : tuple of Cause
+        Causes that were taken away from the data before.
     """
     threads = problem.threads
     # First, before arrays of one value per window are allocated, and these are freed early: a recording
@@ -96,7 +101,9 @@ def infer(
         free_jacobian, residual, centre, threads=threads, segments=segments
     )
     spread = with_undivided(spread, kept, free, names, groups)
-    parts = systematic_errors(problem, penalty, best, kept, free_jacobian, columns, shifts)
+    instant = refinements.sensor_instant
+    unknown = 1.0 if instant is None else instant.unknown
+    parts = systematic_errors(problem, penalty, best, kept, free_jacobian, columns, shifts, unknown)
     lags = {each.signal: _unknown(each) for each in refinements.delays.values()}
     if any(lags.values()):
         parts["lag"] = np.zeros(len(best))
@@ -132,11 +139,17 @@ def infer(
             torque_level=torque_level,
             delays=refinements.delays,
         )
-        if statistics.r_squared < 0.0 and not _explains(causes, statistics.r_squared):
+        explained = statistics.r_squared >= 0.0 or (
+            not any(freedom.at_bound) and _explained_torque(penalty, table, best) > POORLY_EXPLAINED
+        )
+        if not explained and not _explains(causes, statistics.r_squared):
             causes = None  # values that are no estimate
         elif not causes.found and testable(run) and not correlated(table.residual, run):
             # Louder at low speed, but no cause and nothing that lasts: noise, of the velocity or of a reversal.
             causes, noise = None, True
+    if known:
+        more = causes or Causes(found=())
+        causes = replace(more, found=(*known, *more.found))
     findings = diagnose(
         Evidence(
             problem=problem,
@@ -193,6 +206,18 @@ def _explains(causes: Causes, r_squared: float) -> bool:
     """Whether the first cause turns a model that says nothing into one that says something."""
     left = (1.0 - causes.found[0].share if causes.found else 1.0) * (1.0 - r_squared)
     return left < _SOMETHING
+
+
+def _explained_torque(penalty: _core.Penalty, table: WindowTable, best: Array) -> float:
+    """Share of the torque's variance that the model explains; of a reading that hardly varies it may be less."""
+    names = list(penalty.names)
+    gain = float(best[names.index("sensor_gain")]) if "sensor_gain" in names else 1.0
+    torque = np.asarray(penalty.target) / table.duration
+    spread = float(
+        np.sum(table.duration * (torque - np.average(torque, weights=table.duration)) ** 2)
+    )
+    left = gain**2 * float(np.sum(table.residual**2 / table.duration))
+    return 1.0 - left / spread if spread > 0.0 else 0.0
 
 
 def _unknown(delay: Delay) -> float:

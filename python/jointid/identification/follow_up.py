@@ -32,6 +32,9 @@ class EstimateSource:
     Attributes
     ----------
     problem : Problem
+        As it was fitted.
+    measured : Problem
+        Before a drift was taken away.
     domain : SearchDomain
     windows : int, float, str, WindowOptions or None
         As given in the call.
@@ -41,6 +44,7 @@ class EstimateSource:
     """
 
     problem: Problem
+    measured: Problem
     domain: SearchDomain
     windows: Windows
     search: Search
@@ -59,8 +63,8 @@ class EstimateSource:
 
     def causes(self, estimate: Estimate, signals: Mapping[str, ArrayLike]) -> Causes:
         """Attribute the misfit to what the model lacks."""
-        penalty = penalty_as_fitted(self.problem, self.windows, self.domain)
-        return attributed(self.problem, penalty, estimate, signals)
+        penalty = penalty_as_fitted(self.measured, self.windows, self.domain)
+        return attributed(self.measured, penalty, estimate, signals)
 
     def __reduce__(self) -> tuple[Callable[[], None], tuple[()]]:
         """Leave the recordings out of a pickled estimate."""

@@ -15,9 +15,11 @@ from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.argument_checks import whole_number
 from jointid.base.errors import InputError
+from jointid.estimate.causes import Cause
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.selection import Selection
 from jointid.identification.conclusion import infer
+from jointid.identification.drift import without_drift
 from jointid.identification.follow_up import EstimateSource
 from jointid.identification.gain import penalty_as_fitted, with_instruments
 from jointid.identification.inference.given import of_given_facts
@@ -26,6 +28,10 @@ from jointid.identification.refinements.refinements import (
     Refinements,
     without_creep,
     without_delays,
+)
+from jointid.identification.refinements.sensor_instant import (
+    SensorInstant,
+    without_early_reading,
 )
 from jointid.identification.refinements.slow_motion import checked_speed
 from jointid.identification.search.domain import SearchDomain, domain_for
@@ -45,6 +51,8 @@ from jointid.recording.motion import raise_if_hardly_moving
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
+
+_STEADIER = 0.7  # of the residuals' size: what a second fit without a drift has to leave
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,9 +93,34 @@ class Prepared:
         started : float
             Reading of `time.perf_counter` at the start of the identification.
         """
+        estimate = self._inferred(search, outcome, started)
+        steady = without_drift(self.problem, self.penalty, estimate)
+        fitted = self
+        if steady is not None:
+            problem, drift = steady
+            penalty = penalty_as_fitted(problem, self.windows, self.domain)
+            other = replace(self, problem=problem, penalty=penalty)
+            found = run_search(search, other.penalty, other.domain)
+            again = other._inferred(search, found, started, (drift,))
+            if again.residuals.rms < _STEADIER * estimate.residuals.rms:
+                estimate, fitted = again, other
+        source = EstimateSource(
+            problem=fitted.problem,
+            measured=self.problem,
+            domain=self.domain,
+            windows=self.windows,
+            search=search,
+            again=functools.partial(self._again, search),
+        )
+        return replace(estimate, follow_up=source, selection=self.selection)
+
+    def _inferred(
+        self, search: Search, outcome: Outcome, started: float, known: tuple[Cause, ...] = ()
+    ) -> Estimate:
+        """Return the estimate at one minimum; `known` are causes that were taken away before it."""
         domain = self.domain
         best = balanced(domain.names, domain.lower, domain.upper, outcome.best)
-        estimate = infer(
+        return infer(
             problem=self.problem,
             penalty=self.penalty,
             domain=domain,
@@ -100,18 +133,12 @@ class Prepared:
             convergence=outcome.convergence,
             status=outcome.status,
             message=outcome.message,
-            settings=self._settings(search),
+            settings=self._settings(search)
+            | {f"{each.name}_removed": each.detail for each in known},
             seconds=time.perf_counter() - started,
             refinements=self.refinements,
+            known=known,
         )
-        source = EstimateSource(
-            problem=self.problem,
-            domain=self.domain,
-            windows=self.windows,
-            search=search,
-            again=functools.partial(self._again, search),
-        )
-        return replace(estimate, follow_up=source, selection=self.selection)
 
     def _again(self, search: Search, recordings: tuple[Recording, ...]) -> Estimate:
         """Return the estimate from other recordings with the same terms, windows and domain."""
@@ -140,6 +167,7 @@ class Prepared:
             "mask_standstill": problem.mask_standstill,
             "shift": dict(problem.shift),
             "min_speed": problem.min_speed,
+            **_of_instant(self.refinements.sensor_instant),
             "seed": search.seed,
             "ga": None if search.method == "separable" else search.genetic.asdict(),
             "bounds_from_data": list(self.domain.from_data),
@@ -164,6 +192,13 @@ class Prepared:
             found = other.refit(lower, upper, best, threads=problem.threads)
             shifts.append(found - best)
         return shifts[0], shifts[1]
+
+
+def _of_instant(instant: SensorInstant | None) -> dict[str, Any]:
+    """Return the share of the torque's half steps that was added to the reading, as a setting."""
+    return (
+        {"sensor_before_step": instant.applied} if instant is not None and instant.applied else {}
+    )
 
 
 def _of_gain(choice: TermChoice, penalty: _core.Penalty) -> dict[str, Any]:
@@ -239,6 +274,7 @@ def prepare(
             problem, selection = select_model(problem, request, parameters, windows)
         problem, delays = without_delays(problem, shift)
         problem, penalty, slow_motion = without_creep(problem, windows, speed)
+        problem, penalty, instant = without_early_reading(problem, penalty, windows)
         problem, penalty = with_instruments(
             problem, penalty, parameters, windows, residual is not None
         )
@@ -253,7 +289,7 @@ def prepare(
         domain=domain,
         windows=windows,
         given=runs,
-        refinements=Refinements(delays=delays, slow_motion=slow_motion),
+        refinements=Refinements(delays=delays, slow_motion=slow_motion, sensor_instant=instant),
         selection=selection,
     )
 

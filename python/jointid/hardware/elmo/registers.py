@@ -28,6 +28,7 @@ _LIMITS = (
     ("XM", 2, "end of the counter's range", "count"),
     ("BV", 0, "highest supply", "V"),
 )
+_COUNTS = ("CA", 18)
 _SUPPLY, _TEMPERATURE = ("AN", 6), ("TI", 1)
 
 
@@ -73,6 +74,11 @@ def limits(link: ElmoLink) -> tuple[Reported, ...]:
         ),
     ]
     return tuple(found)
+
+
+def counts_per_turn(link: ElmoLink) -> float | None:
+    """Return the counts of a motor turn that the drive is set to; None without an answer."""
+    return link.number(_COUNTS[0], _ANSWER, _COUNTS[1])
 
 
 def supply(link: ElmoLink) -> float | None:

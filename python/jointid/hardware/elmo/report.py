@@ -43,7 +43,7 @@ def elmo_report(
     return DriveReport(
         drive=f"Elmo SimplIQ, node {options.node}, commanded by node {options.master_node}",
         identity=tuple(identity),
-        settings=(*modes, *settings),
+        settings=(*modes, _counts(link, options), *settings),
         watchdog=watchdog_objects(link, options),
         serial=str(serial),
         motor_on=None if status is None else status.motor_on,
@@ -61,6 +61,18 @@ def _mode(unit_mode: int) -> Reported:
     modes = {number: f"{number} ({name})" for number, name in UNIT_MODES.items()}
     return Reported(
         name="UM", meaning="mode", value=modes.get(unit_mode, str(unit_mode)), expected=modes[1]
+    )
+
+
+def _counts(link: ElmoLink, options: ElmoOptions) -> Reported:
+    """The encoder's counts a turn, as the drive has them; wrong ones in the joint file are a wrong gear ratio."""
+    value = registers.counts_per_turn(link)
+    return Reported(
+        name="CA[18]",
+        meaning="encoder counts of a motor turn",
+        value=value,
+        unit="count",
+        expected=None if value is None else float(options.counts_per_turn),
     )
 
 

@@ -26,6 +26,7 @@ from jointid.hardware.proof.pushes import (
 )
 from jointid.hardware.proof.refusal import RefusedBenchError
 from jointid.hardware.session.drive import Drive
+from jointid.hardware.session.drive_report import DriveReport
 from jointid.hardware.session.interruptions import Interruptions
 from jointid.hardware.session.start_checks import problems_at_rest
 
@@ -131,6 +132,10 @@ class Steps:
         period = bench.options.period
         drive.connect(period)
         problems = list(drive.problems(bench.limits.torque))
+        ask = getattr(drive, "report", None)
+        report = ask() if callable(ask) else None
+        if isinstance(report, DriveReport):
+            problems += [str(each) for each in report.differences]
         if problems:
             raise RefusedBenchError("not_ready", "; ".join(problems))
         resolution = bench.options.resolution or getattr(drive, "resolution", None)

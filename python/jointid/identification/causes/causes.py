@@ -33,6 +33,7 @@ _KNOWN = 3e-4  # [s]; standard error of a delay that says whether one matters
 # Shares of a value: a smaller change matters to nobody, however many errors it is. A cause that is measured by
 # itself is more than a guess from the misfit.
 _LEAST, _LEAST_OF_MEASURED = 0.003, 0.002
+_FAINT = 1e-3  # of the friction: what sampling leaves of a log without noise
 
 
 def find_causes(
@@ -64,10 +65,11 @@ def find_causes(
     tried = listed_candidates(fit)
     found: list[Cause] = []
     harmless: list[Cause] = []
+    errors = np.inf if fit.is_faint(_FAINT) else _ERRORS
     for each in attribute(fit, tried):
         if each.candidate.name == "wrong_scale" and abs(_off_scale(fit, each)) < _LEAST_SCALE:
             continue
-        cause = _cause(fit, each, parameters, torque_level, delays)
+        cause = _cause(fit, each, parameters, torque_level, delays, errors=errors)
         (found if cause.harmful else harmless).append(cause)
     wanted = dict.fromkeys([*(each.name for each in tried), "delay", "disturbance"])
     return Causes(found=tuple(found), harmless=tuple(harmless), tried=tuple(wanted))
@@ -203,6 +205,7 @@ def _cause(
     torque_level: float,
     delays: Mapping[str, Delay],
     least: float = _LEAST,
+    errors: float = _ERRORS,
 ) -> Cause:
     shifts = {
         fit.names[index]: float(shift) for index, shift in zip(fit.free, each.shifts, strict=True)
@@ -214,7 +217,7 @@ def _cause(
         if (scale := _scale(parameters[name], parameters, torque_level)) > 0.0
     }
     harm = {
-        name: _harm(parameters[name], shifts[name], share, 1.0 - each.share, least)
+        name: _harm(parameters[name], shifts[name], share, 1.0 - each.share, least, errors)
         for name, share in shares.items()
     }
     detail, size, numbers = _described(fit, each, delays)
@@ -234,7 +237,9 @@ def _cause(
     )
 
 
-def _harm(p: ParameterEstimate, shift: float, share: float, left: float, least: float) -> float:
+def _harm(
+    p: ParameterEstimate, shift: float, share: float, left: float, least: float, errors: float
+) -> float:
     """The shift over the least one that does harm.
 
     Parameters
@@ -245,16 +250,18 @@ def _harm(p: ParameterEstimate, shift: float, share: float, left: float, least: 
         Share of the misfit that is left with the cause in the model: the error falls with it.
     least : float
         Share below which a number of errors says nothing.
+    errors : float
+        Standard errors from which a small shift does harm, too.
     """
     # With what is systematic: a shift that the interval states already is nothing new.
     error = (p.interval[1] - p.interval[0]) / (2.0 * _NORMAL) if p.interval is not None else 0.0
-    errors = abs(shift) / error if error > 0.0 else 0.0
+    moved = abs(shift) / error if error > 0.0 else 0.0
     after = error * np.sqrt(max(left, 0.0))
     scale = abs(shift / share) if share else 0.0
     if after > _UNKNOWN * scale and abs(shift) < _CLEARLY * after:
         return 0.0
     harm = abs(share) / _MOVED
-    return max(harm, errors / _ERRORS) if abs(share) > least else harm
+    return max(harm, moved / errors) if abs(share) > least else harm
 
 
 def _scale(

@@ -127,6 +127,17 @@ class Fitted:
         """Value of a parameter; 0 without it."""
         return float(self.best[self.names.index(name)]) if name in self.names else 0.0
 
+    def is_faint(self, least: float) -> bool:
+        """Whether the misfit is less than a part of the friction: sampling alone leaves as much."""
+        left = self.residual + self.jacobian @ (
+            self.solve(self.jacobian, self.residual) - self.start
+        )
+        friction = np.zeros(len(left))
+        for index, term in enumerate(self.penalty.terms):
+            if term.friction and not term.needs_load:
+                friction += self.best[index] * self.columns[:, index]
+        return float(np.sum(left**2)) < least**2 * float(np.sum(friction**2))
+
     def solve(self, columns: Array, residual: Array) -> Array:
         """Return the least-squares steps along columns that take the residual away; the first are parameters."""
         size = np.sqrt(np.einsum("ij,ij->j", columns, columns))

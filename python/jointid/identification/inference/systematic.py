@@ -1,4 +1,4 @@
-"""Systematic errors: of the choice of windows, and of the instant at which a sensor is sampled."""
+"""Systematic errors: of the choice of windows, of the instant at which a sensor is sampled, and between samples."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ def systematic_errors(
     jacobian: Array,
     columns: Array,
     shifts: tuple[Array | None, Array | None],
+    instant: float = 1.0,
 ) -> dict[str, Array]:
     """Return the sizes of errors that do not decrease with the recording's length, by the name of their cause.
 
@@ -34,6 +35,8 @@ def systematic_errors(
         The penalty's columns at `best`.
     shifts : tuple of ndarray or None
         Change of each parameter when the windows are halved and doubled.
+    instant : float
+        How well the instant of the sensor's sample is known: the part of half a step that may be lacking.
 
     Returns
     -------
@@ -46,7 +49,10 @@ def systematic_errors(
         parts["windows"] = np.sqrt(np.mean(np.square(moved), axis=0))
     of_sampling = _of_sampling(problem, penalty, best, jacobian, columns)
     if of_sampling is not None:
-        parts["sampling"] = of_sampling
+        parts["sampling"] = instant * of_sampling
+    of_curvature = _of_curvature(problem, penalty, best, jacobian)
+    if of_curvature is not None:
+        parts["sampling"] = np.hypot(parts.get("sampling", 0.0), of_curvature)
     return {name: _everywhere(sizes, free, len(best)) for name, sizes in parts.items()}
 
 
@@ -97,6 +103,50 @@ def _of_sampling(
     lacking = 0.5 * share / both * stepped
     if penalty.residual != _core.Residual.sensor:
         lacking = lacking * gain
+    count = jacobian.shape[1]
+    both_sides = Triangle(np.column_stack([jacobian, lacking]), problem.threads)
+    return np.abs(both_sides.solve(list(range(count)), count, rcond=1e-10)[0])
+
+
+def _of_curvature(
+    problem: Problem, penalty: _core.Penalty, best: Array, jacobian: Array
+) -> Array | None:
+    """Return the effect of friction that is not straight between samples: the trapezoid rule takes it as straight."""
+    names = list(penalty.names)
+    curved = [
+        (
+            float(best[index]),
+            term.key,
+            np.array([best[names.index(shape)] for shape in term.shapes]),
+        )
+        for index, term in enumerate(penalty.terms)
+        if term.friction and term.shapes and set(term.shapes) <= set(names)
+    ]
+    if not curved or jacobian.shape[1] == 0 or penalty.cumulative:
+        return None
+    bounds, run = np.asarray(penalty.windows), np.asarray(penalty.recording_of)
+    parts = []
+    for number, recording in enumerate(problem.recordings):
+        velocity = recording.velocity
+        usable = np.asarray(
+            _core.usable_intervals(problem.in_core[number], problem.mask_standstill)
+        )
+        one_way = (usable > 0) & (velocity[1:] * velocity[:-1] > 0.0)
+        middle = 0.5 * (velocity[1:] + velocity[:-1])
+        bent = np.zeros(len(middle))
+        for value, key, shapes in curved:
+            at = np.asarray(_core.friction_basis(key, velocity, shapes))
+            between = np.asarray(_core.friction_basis(key, middle, shapes))
+            # Simpson's rule less the trapezoid's.
+            bent += value * (2.0 * between - at[1:] - at[:-1]) / 3.0
+        total = np.concatenate(
+            [[0.0], np.cumsum(np.where(one_way, bent * np.diff(recording.time), 0.0))]
+        )
+        mine = slice(*np.searchsorted(run, (number, number + 1)))
+        parts.append(total[bounds[mine, 1]] - total[bounds[mine, 0]])
+    lacking = np.concatenate(parts)
+    if penalty.residual == _core.Residual.sensor:
+        lacking = lacking / float(best[names.index("sensor_gain")])
     count = jacobian.shape[1]
     both_sides = Triangle(np.column_stack([jacobian, lacking]), problem.threads)
     return np.abs(both_sides.solve(list(range(count)), count, rcond=1e-10)[0])

@@ -11,6 +11,7 @@ from jointid.base.errors import InputError
 from jointid.estimate.delays import Delay
 from jointid.estimate.slow_motion import SlowMotion
 from jointid.identification.refinements.delays import refined_delays
+from jointid.identification.refinements.sensor_instant import SensorInstant
 from jointid.identification.refinements.slow_motion import contradicting
 from jointid.problem.problem import Problem
 from jointid.problem.windows import Windows
@@ -25,10 +26,13 @@ class Refinements:
     ----------
     delays : mapping of str to Delay
     slow_motion : SlowMotion or None
+    sensor_instant : SensorInstant or None
+        When the sensor is sampled; None where there is no sensor, or no held torque.
     """
 
     delays: Mapping[str, Delay]
     slow_motion: SlowMotion | None
+    sensor_instant: SensorInstant | None = None
 
 
 def without_delays(

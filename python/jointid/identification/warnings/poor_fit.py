@@ -12,7 +12,7 @@ POOR_FIT = FindingType(
     code="poor_fit",
     meaning="the model explains less than 95 % of the variance of the measured signal, the rest is not noise, and no "
     "cause with a name explains it; or it explains less than 5 %, whatever the rest is; blocking where the signal's "
-    "mean explains more",
+    "mean explains more, unless a cause is named",
     advice="check units, signs and gear ratio",
     picture="windows",
 )
@@ -27,7 +27,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         Action("inspect", text="the residuals over time and over velocity"),
     )
     measured = {"r_squared": Measured(explained)}
-    if explained < 0.0:
+    if explained < 0.0 and not named(evidence):
         yield POOR_FIT.finding(
             f"the model explains less of what was measured than its mean does (R² = {explained:.2f}): the values "
             "cannot be used",

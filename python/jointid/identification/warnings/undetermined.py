@@ -33,6 +33,7 @@ _GAIN = ("sensor_gain", "sensor_offset")
 _LARGE_SHIFT = 3.0
 _NOTICEABLE_SHIFT = 0.01
 _INSEPARABLE = 0.98
+_NEARLY = 0.5  # of the limit: so uncertain is what moves with a parameter beyond it
 _LOAD_FRICTION = 0.05
 _PAIRS = 5
 _LOW_SPEED = ("static", "stribeck", "stribeck_velocity", "stribeck_exponent")
@@ -102,7 +103,31 @@ def _reasons(evidence: Evidence) -> tuple[dict[str, list[_Reason]], dict[str, La
         # Of two figures for the same quantity the one that asks for more.
         if known is None or lack.wanted > known.wanted:
             lacks[lack.quantity] = lack
+    for p in _as_uncertain(evidence, reasons):
+        if p.name not in reasons:
+            reasons[p.name] = [_uncertain(p, scale_of(p, evidence))]
     return reasons, lacks
+
+
+def _as_uncertain(evidence: Evidence, names: Collection[str]) -> list[ParameterEstimate]:
+    """Parameters nearly as badly determined as one of `names` that moves with them.
+
+    Of two that the recording hardly separates, both are wrong together; one may stay just below the limit.
+    """
+    tied = {
+        name
+        for pair, correlation in evidence.correlations.items()
+        if abs(correlation) > _INSEPARABLE and set(pair) & set(names)
+        for name in pair
+    }
+    tied |= set(with_partners(evidence, names))
+    found = []
+    for name, p in evidence.parameters.items():
+        if name in tied and name not in names and p.stderr is not None:
+            limit = _LARGE_GAIN_ERROR if name in _GAIN else _LARGE_ERROR
+            if _half_width(p) > _NEARLY * limit * scale_of(p, evidence):
+                found.append(p)
+    return found
 
 
 def _lack(p: ParameterEstimate, evidence: Evidence, excitation: Excitation) -> Lack | None:
@@ -202,14 +227,7 @@ def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]
     scale = scale_of(p, evidence)
     reasons = []
     if _half_width(p) > (_LARGE_GAIN_ERROR if p.name in _GAIN else _LARGE_ERROR) * scale:
-        relative = scale == abs(p.value) and scale > 0.0
-        error = Measured(p.stderr / scale) if relative else Measured(p.stderr, p.unit)
-        text = (
-            f"{p.name} has a standard error of {percent(p.stderr / scale) if relative else _with_unit(p)}"
-            if p.stderr < 10.0 * scale
-            else f"{p.name} is not excited"
-        )
-        reasons.append(_Reason(text, {f"{p.name}.stderr": error}))
+        reasons.append(_uncertain(p, scale))
     chance = evidence.chance[p.name]  # a shift is part of p.stderr, and would hide itself
     shift = max(abs(p.shift_halved or 0.0), abs(p.shift_doubled or 0.0))
     if scale > 0.0 and shift > _LARGE_SHIFT * chance and shift > _NOTICEABLE_SHIFT * scale:
@@ -223,6 +241,19 @@ def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]
         }
         reasons.append(_Reason(text, measured))
     return reasons
+
+
+def _uncertain(p: ParameterEstimate, scale: float) -> _Reason:
+    """The standard error, as a share where the value itself is what it is held against."""
+    error = p.stderr or 0.0
+    relative = scale == abs(p.value) and scale > 0.0
+    text = (
+        f"{p.name} has a standard error of {percent(error / scale) if relative else _with_unit(p)}"
+        if error < 10.0 * scale
+        else f"{p.name} is not excited"
+    )
+    measured = Measured(error / scale) if relative else Measured(error, p.unit)
+    return _Reason(text, {f"{p.name}.stderr": measured})
 
 
 def _half_width(p: ParameterEstimate) -> float:

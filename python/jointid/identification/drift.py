@@ -1,0 +1,101 @@
+"""Friction that drifts during a recording: taken away from the torque where it is certain, before a second fit.
+
+A coefficient that changes with time leaves a misfit that other parameters take up, the sensor's gain before all.
+With the drift taken away they are what they are, and the coefficient is its value in the middle of the recording.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.estimate.causes import Cause
+from jointid.estimate.estimate import Estimate
+from jointid.identification.causes.causes import attributed
+from jointid.problem.problem import Problem
+from jointid.recording.recording import Recording
+
+Array = NDArray[np.float64]
+
+_SHARE = 0.8  # of the misfit
+_LARGE = 0.05  # change over the recording
+_LINEAR = 1e-6  # of the torque: a signal of the drive is a multiple of it
+_DRIVE = ("torque", "motor_torque", "current")
+
+
+def without_drift(
+    problem: Problem, penalty: _core.Penalty, estimate: Estimate
+) -> tuple[Problem, Cause] | None:
+    """Return the problem without the drift of a friction coefficient, and that drift; None where none is certain.
+
+    Parameters
+    ----------
+    problem : Problem
+    penalty : Penalty
+        As it was fitted.
+    estimate : Estimate
+        Its fit.
+
+    Notes
+    -----
+    Certain is a drift that explains most of the misfit by itself, is not small, and has no cause beside it that
+    explains nearly as much.
+    """
+    if "drift" not in {finding.code for finding in estimate.findings}:
+        return None
+    first = attributed(problem, penalty, estimate, {}).found[:1]
+    cause = first[0] if first else None
+    if cause is None or cause.name != "drift" or cause.share < _SHARE or cause.alike:
+        return None
+    term = next((each for each in penalty.terms if each.name == cause.detail), None)
+    change = cause.numbers["change"].value
+    if term is None or not term.friction or term.needs_load or abs(change) < _LARGE:
+        return None
+    span = max(run.duration for run in problem.recordings)
+    rate = change * estimate.parameters[cause.detail].value / span
+    shapes = np.array([estimate.parameters[shape].value for shape in term.shapes])
+    steady = []
+    for number, recording in enumerate(problem.recordings):
+        basis = np.asarray(_core.friction_basis(term.key, recording.velocity, shapes))
+        if problem.hold(number) == "zoh":  # until the next sample
+            basis = 0.5 * (basis + np.append(basis[1:], basis[-1]))
+        drift = rate * (recording.time - recording.time[0] - 0.5 * span) * basis
+        changed = _with_less(recording, problem.output_torque(number), drift)
+        if changed is None:
+            return None
+        steady.append(changed)
+    moved = {cause.detail: cause.shifts[cause.detail]}
+    relative = {name: share for name, share in cause.relative.items() if name in moved}
+    removed = replace(
+        cause,
+        size=f"{cause.size}; taken away, the value is that of the middle",
+        shifts=moved,
+        relative=relative,
+        shares={name: share for name, share in cause.shares.items() if name in moved},
+    )
+    return replace(problem, recordings=tuple(steady)), removed
+
+
+def _with_less(recording: Recording, torque: Array, drift: Array) -> Recording | None:
+    """The recording with less torque; None where its drive's signals are no multiples of the torque."""
+    signals = {name: getattr(recording, name) for name in recording.signals}
+    size = float(np.einsum("i,i->", torque, torque))
+    for name in _DRIVE:
+        if name in signals:
+            factor = float(np.einsum("i,i->", signals[name], torque)) / size
+            missed = np.abs(signals[name] - factor * torque).max()
+            if missed > _LINEAR * np.abs(signals[name]).max():
+                return None
+            signals[name] = signals[name] - factor * drift
+    return Recording(
+        **signals,
+        kind=recording.kind,
+        torque_hold=recording.torque_hold,
+        velocity_derived=recording.velocity_derived,
+        name=recording.name,
+        metadata=recording.metadata,
+        truth=recording.truth,
+    )

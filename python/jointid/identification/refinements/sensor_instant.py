@@ -1,0 +1,187 @@
+"""When a torque sensor is sampled: before a held command steps, in its middle, or after it.
+
+A held torque steps at the samples, and with it the acceleration of drive and link together. The link's share of that
+is a step in the sensor's reading. A controller reads before it commands, so its samples lack half of the step that a
+reading in the middle would show; integrated over windows that biases the gain, and what it leaves resembles late
+signals, harmonics and friction at low speed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.problem.problem import Problem
+from jointid.problem.windows import Windows
+from jointid.recording.recording import Recording
+
+Array = NDArray[np.float64]
+
+_SURE = 3.0  # standard errors
+_KNOWN = 0.3  # standard error of a share that is worth taking away
+_LEAST = 0.25  # standard error: the friction, too, changes within a sample
+_FEWEST = 50  # windows
+_RESTING = 1e-3  # share of the samples
+_MOVING = 0.02  # of the peak speed
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensorInstant:
+    """When the sensor is sampled, against the steps of a held torque.
+
+    Attributes
+    ----------
+    share : float
+        1: before the step; 0: in its middle, or where the reading is smooth; -1: after it.
+    stderr : float
+    applied : float
+        What was taken away.
+    """
+
+    share: float
+    stderr: float
+    applied: float
+
+    @property
+    def unknown(self) -> float:
+        """Standard error of what is left, as a part of half a step; 1 where nothing is known."""
+        if self.stderr > _KNOWN:
+            return 1.0
+        return min(1.0, float(np.hypot(self.share - self.applied, max(self.stderr, _LEAST))))
+
+
+def without_early_reading(
+    problem: Problem, penalty: _core.Penalty, windows: Windows
+) -> tuple[Problem, _core.Penalty, SensorInstant | None]:
+    """Return problem and penalty with the reading in the middle of the torque's steps, where that is certain.
+
+    Parameters
+    ----------
+    problem : Problem
+    penalty : Penalty
+        Over `windows`.
+    windows : int, float, str, WindowOptions or None
+
+    Notes
+    -----
+    The link's equation has no friction: its reading is inertia, gravity and an offset, and the torque's steps are
+    regressed beside them. What a full half step is follows from the inertia that the reading shows and from that
+    which the torque shows, so it needs no known inertia.
+    """
+    held = [problem.hold(number) == "zoh" for number in range(len(problem.recordings))]
+    late = {"sensor", "torque"} & set(problem.shift)
+    if not problem.choice.sensor or not any(held) or late or penalty.window_count < _FEWEST:
+        return problem, penalty, None
+    if any(map(_rests_on_a_limit, problem.recordings)):
+        return problem, penalty, None
+    found = _measured(problem, penalty, held)
+    if found is None:
+        return problem, penalty, None
+    instant, step = found
+    if not instant.applied:
+        return problem, penalty, instant
+    moved = tuple(
+        _with_step(problem, number, instant.applied * step) if held[number] else run
+        for number, run in enumerate(problem.recordings)
+    )
+    problem = replace(problem, recordings=moved)
+    return problem, problem.penalty(windows), instant
+
+
+def _measured(
+    problem: Problem, penalty: _core.Penalty, held: list[bool]
+) -> tuple[SensorInstant, float] | None:
+    """The instant, and what half a step of 1 N·m changes the reading by."""
+    motion, torque, reading = _integrals(problem, penalty, held)
+    rows = np.asarray(_core.triangle(np.column_stack([motion, torque, reading])))
+    count = motion.shape[1]
+    size = np.linalg.norm(rows, axis=0)
+    if size[0] == 0.0 or size[_STEPS] == 0.0:
+        return None
+    scaled = rows / np.where(size > 0.0, size, 1.0)
+    link = [*range(_STEPS + 1)]
+    drive = [index for index in range(count) if index != _STEPS]
+    of_torque = np.linalg.lstsq(scaled[:, drive], rows[:, count], rcond=1e-10)[0]
+    both = float(of_torque[0] / size[0])
+    of_reading = np.linalg.lstsq(scaled[:, link], rows[:, count + 1], rcond=1e-10)[0]
+    half = 0.5 * float(of_reading[0] / size[0]) / both if both > 0.0 else 0.0
+    if half == 0.0:
+        return None
+    missed = rows[:, count + 1] - scaled[:, link] @ of_reading
+    variance = float(missed @ missed) / max(1, len(torque) - len(link))
+    spread = np.linalg.pinv(scaled[:, link].T @ scaled[:, link])
+    # A reading that lacks half a step over its window rises by less.
+    share = -float(of_reading[_STEPS] / size[_STEPS]) / half
+    stderr = float(np.sqrt(variance * spread[_STEPS, _STEPS])) / size[_STEPS] / abs(half)
+    least = _SURE * max(stderr, _LEAST)
+    certain = stderr < _KNOWN and _SURE * stderr < abs(share) < 1.0 + least
+    # A controller reads just before it commands: that, unless it is refuted.
+    whole = abs(share) + least > 1.0
+    applied = (float(np.sign(share)) if whole else share) if certain else 0.0
+    return SensorInstant(share=share, stderr=stderr, applied=applied), half
+
+
+_STEPS = 4  # column of the torque's steps
+
+
+def _integrals(
+    problem: Problem, penalty: _core.Penalty, held: list[bool]
+) -> tuple[Array, Array, Array]:
+    """Window integrals: of the link's motion, the torque's steps and friction; of the torque; of the reading.
+
+    Of whole windows, in which angle and speed are those of their middle: all but the reading and the steps is
+    smooth enough.
+    """
+    bounds, run = np.asarray(penalty.windows), np.asarray(penalty.recording_of)
+    steps = np.asarray(penalty.torque_steps(problem.in_core, problem.mask_standstill))
+    shapes = np.full(len(penalty.names) - penalty.coefficients, 1.0)
+    reading = np.asarray(penalty.columns(shapes))[:, list(penalty.names).index("sensor_gain")]
+    duration = np.asarray(penalty.usable_duration)
+    faster, angle, speed, step, lasting = np.zeros((5, len(run)))
+    for number, recording in enumerate(problem.recordings):
+        mine = slice(*np.searchsorted(run, (number, number + 1)))
+        first, last = bounds[mine, 0], bounds[mine, 1]
+        faster[mine] = recording.velocity[last] - recording.velocity[first]
+        angle[mine] = 0.5 * (recording.position[last] + recording.position[first])
+        speed[mine] = recording.position[last] - recording.position[first]
+        lasting[mine] = recording.time[last] - recording.time[first]
+        if held[number]:
+            step[mine] = recording.sample_period * steps[mine]
+    speed /= lasting
+    dry = np.sign(speed) * duration
+    slow = dry * np.exp(-np.abs(speed) / (0.1 * problem.peak_speed))
+    gravity = [duration * np.cos(angle), duration * np.sin(angle)]
+    motion = np.column_stack([faster, *gravity, duration, step, dry, duration * speed, slow])
+    whole = np.abs(lasting - duration) < 1e-9 * lasting + 1e-12
+    return motion[whole], np.asarray(penalty.target)[whole], reading[whole]
+
+
+def _rests_on_a_limit(recording: Recording) -> bool:
+    """Whether the reading may be clipped: what it lacks there is no half step."""
+    reading, speed = np.asarray(recording.sensor), np.abs(recording.velocity)
+    moving = reading[speed > _MOVING * speed.max()]  # at rest a clean reading stays, too
+    return any(np.mean(moving == limit) > _RESTING for limit in (reading.min(), reading.max()))
+
+
+def _with_step(problem: Problem, number: int, step: float) -> Recording:
+    """A recording with so much of each step of the torque added to its reading."""
+    recording, torque = problem.recordings[number], problem.output_torque(number)
+    usable = np.asarray(_core.usable_intervals(problem.in_core[number], problem.mask_standstill))
+    # Where friction is set-valued, it answers the step.
+    used = np.append(usable, 0) | np.append(0, usable)
+    change = np.diff(torque, prepend=torque[0]) * (used > 0)
+    change[[gap.index + 1 for gap in recording.gaps]] = 0.0
+    signals = {name: getattr(recording, name) for name in recording.signals}
+    signals["sensor"] = signals["sensor"] + step * change
+    return Recording(
+        **signals,
+        kind=recording.kind,
+        torque_hold=recording.torque_hold,
+        velocity_derived=recording.velocity_derived,
+        name=recording.name,
+        metadata=recording.metadata,
+        truth=recording.truth,
+    )

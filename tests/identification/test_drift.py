@@ -1,0 +1,55 @@
+"""Friction that drifts: named, and taken away before the other values are estimated."""
+
+import pickle
+
+import numpy as np
+import pytest
+from plants import Bench, Law, Log, Plant, simulate, thesis
+
+import jointid as jid
+
+DRIFTS = np.array([-0.3, -0.2, 0.0])
+
+
+@pytest.fixture(scope="module")
+def found() -> list[jid.Estimate]:
+    """Estimates of a joint whose viscous friction drifts by so much, in twelve seconds."""
+    count = len(DRIFTS)
+    bench = Bench(
+        motion=thesis(np.full(count, np.radians(60.0)), np.full(count, 3.0)),
+        plant=Plant(inertia=1.8, link_inertia=0.2, gravity=5.0, viscous_drift=DRIFTS),
+        law=Law(inertia=1.8, stiffness=60.0, on_reference=1.0, coulomb=20.0, feedback=2.0),
+        log=Log(),
+    )
+    joint = jid.Joint(inertia=1.8, sensor=True, model=jid.Model("stribeck"))
+    runs = simulate(bench, duration=9.0, seed=1)
+    return [jid.identify(run, joint, search="separable") for run in runs]
+
+
+def test_a_drift_does_not_move_what_is_steady(found: list[jid.Estimate]) -> None:
+    truth = Plant()
+    for estimate, drift in zip(found[:2], DRIFTS, strict=False):
+        (finding,) = estimate.warnings
+        assert finding.code == "drift"
+        assert finding.parameters == ("viscous",)
+        assert finding.evidence["change"].value == pytest.approx(
+            drift / (1.0 + 0.5 * drift), rel=0.05
+        )
+        assert estimate.settings["drift_removed"] == "viscous"
+        values = {name: each.value for name, each in estimate.parameters.items()}
+        assert values["sensor_gain"] == pytest.approx(2.4, rel=0.005)
+        assert values["coulomb"] == pytest.approx(truth.coulomb, rel=0.003)
+        assert values["viscous"] == pytest.approx(truth.viscous * (1.0 + 0.5 * drift), rel=0.005)
+
+
+def test_steady_friction_is_left_as_it_is(found: list[jid.Estimate]) -> None:
+    assert not found[2].warnings
+    assert "drift_removed" not in found[2].settings
+
+
+def test_what_is_asked_later_knows_of_the_drift(found: list[jid.Estimate]) -> None:
+    estimate = found[0]
+    assert [each.name for each in estimate.causes().found] == ["drift"]
+    gain = estimate.bootstrap(n=50).parameters["sensor_gain"]
+    assert gain.interval[0] == pytest.approx(2.4, rel=0.01)
+    assert pickle.loads(pickle.dumps(estimate)).findings == estimate.findings
