@@ -49,6 +49,8 @@ ALLOWED: list[tuple[str, str, str]] = [
     ("coulomb", "python/jointid/cli/", "a controller with friction estimates; the demo's values"),
     ("viscous", "python/jointid/cli/", "the demo's values"),
     ("coulomb", "python/jointid/hardware/bench/", "a controller with friction estimates"),
+    ("coulomb", "python/jointid/commissioning/", "a controller with friction estimates"),
+    ("*", "python/jointid/hardware/session/moving_joint.py", "what a moving joint brakes by"),
     # Tables that show derived quantities: breakaway torque and Stribeck velocity.
     ("*", "python/jointid/estimate/", "derived quantities of the Stribeck curve"),
 ]
