@@ -39,6 +39,8 @@ def main(phase: str) -> None:
         bench.session().run()
     except SessionStoppedError as error:
         wording = {"stop": error.stop.to_dict(), "rows": len(error.recording or ())}
+        ended = {} if error.recording is None else error.recording.metadata
+        wording["braked"] = ended.get("braked")
     wording["last"] = [data.hex() for _, data in bench.bus.assignments()[-2:]]
     wording["after"] = bench.bus.now()
     wording["switchings"] = bench.elmo.switchings

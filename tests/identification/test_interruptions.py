@@ -52,7 +52,9 @@ def test_signal_stops_the_session(phase: str, number: signal.Signals) -> None:
     else:
         (_, on), (when, off) = found["switchings"]
         assert (on, off) == (True, False)
-        assert when - stop["moment"] <= 3 * PERIOD
+        braked = found["braked"]["time"] if found["braked"] else 0.0
+        assert braked <= 0.05
+        assert when - stop["moment"] <= braked + 3 * PERIOD
     if phase == "run":
         assert stop["time"] <= 0.1 + 5 * PERIOD
         assert found["rows"] >= 50

@@ -140,9 +140,13 @@ def infer(
             delays=refinements.delays,
         )
         explained = statistics.r_squared >= 0.0 or (
-            not any(freedom.at_bound) and _explained_torque(penalty, table, best) > POORLY_EXPLAINED
+            not any(freedom.at_bound)
+            and (
+                _explained_torque(penalty, table, best) > POORLY_EXPLAINED
+                or _explains(causes, statistics.r_squared)
+            )
         )
-        if not explained and not _explains(causes, statistics.r_squared):
+        if not explained:
             causes = None  # values that are no estimate
         elif not causes.found and testable(run) and not correlated(table.residual, run):
             # Louder at low speed, but no cause and nothing that lasts: noise, of the velocity or of a reversal.
