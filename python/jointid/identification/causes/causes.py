@@ -28,7 +28,7 @@ _NORMAL = 1.959964  # standard errors of half a 95 % interval
 _MOVED, _ERRORS = 0.05, 2.0  # share of a value, and standard errors, from which a cause does harm
 _NOTICED = 0.8  # of that: a first-order shift may be so much too small
 _UNKNOWN, _CLEARLY = 0.5, 2.0  # a value with a larger error is hardly known: it must move by more
-_LEAST_SCALE = 0.01  # of a given inertia: it is seldom known better
+_LEAST_SCALE = 0.02  # of a given inertia: it is seldom known better
 _KNOWN = 3e-4  # [s]; standard error of a delay that says whether one matters
 # Shares of a value: a smaller change matters to nobody, however many errors it is. A cause that is measured by
 # itself is more than a guess from the misfit.
