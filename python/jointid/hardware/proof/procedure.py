@@ -105,7 +105,7 @@ def _moved(
             except KeyboardInterrupt:
                 reason, message = "user", "interrupted from the keyboard"
             identity = drive.identity()
-            if identity and not has_serial(identity):
+            if steps.axis is not None and not has_serial(identity):
                 steps.unchecked.append(NO_SERIAL)
     finally:
         drive.close()
