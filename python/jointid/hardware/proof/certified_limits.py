@@ -87,9 +87,7 @@ def notes(
             f"{abs(now - was):.4g} rad, unless the joint was homed anew"
         )
     if identity is not None and not has_serial(identity):
-        found.append(
-            "the drive reports no serial number (1018h:4 of an Elmo drive): another one of its type passes for it"
-        )
+        found.append("the drive reports no serial number: another one of its type passes for it")
     return found
 
 
