@@ -88,8 +88,17 @@ def test_a_cap_ends_it(joint: Path, capsys: Any) -> None:
 
 
 def test_nobody_agrees_to_a_motion_from_a_script(joint: Path, capsys: Any) -> None:
-    assert main(["first-motion", str(joint)]) == 3
-    assert "--yes" in capsys.readouterr().err
+    for words in (["first-motion"], ["run", "--force"]):
+        assert main([*words, str(joint)]) == 3
+        assert "--yes" in capsys.readouterr().err
+        other = joint.with_name("other.toml")
+        shutil.copy(joint, other)
+        edited(other, 'interface = "virtual"', 'interface = "socketcan"')
+        edited(other, 'channel = "can0"', 'channel = "nocan9"')
+        assert main([*words, str(other)]) == 2
+        error = capsys.readouterr().err
+        assert "nocan9" in error
+        assert "--yes" not in error  # nobody is asked about a bus that is not there
 
 
 def test_check_shows_what_is_connected(joint: Path, capsys: Any) -> None:

@@ -114,7 +114,6 @@ def test_the_command_writes_runs_and_saves_the_bench(
         (["--emulate", "--output", "no/such/folder"], 2, "no/such"),
         (["--emulate", "--dry-run"], 0, ""),
         (["--cycles", "1"], 3, "--force"),
-        (["--cycles", "1", "--force"], 3, "--yes"),
     ],
 )
 def test_the_command_refuses_before_it_moves(
@@ -252,3 +251,16 @@ def test_json_tells_how_a_run_ended(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert "PL[1]" in found["message"]
     assert shown.err.endswith("; the motor has not been on\n")
     assert not folder.exists()
+
+
+def test_ctrl_c_between_two_motions_says_where_the_recording_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(ring_module, "identify", interrupted)
+    runs = tmp_path / "runs"
+    assert main(["run", str(EXAMPLE), "--emulate", "--output", str(runs), "--quiet"]) == 130
+    said = capsys.readouterr().err
+    assert f"the motor was seen off; recorded: {runs / 'initial.csv'}" in said

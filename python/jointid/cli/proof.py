@@ -102,6 +102,7 @@ def check(arguments: argparse.Namespace) -> int:
 def first_motion(arguments: argparse.Namespace) -> int:
     """Move a joint for the first time; a real one that passes is certified."""
     from jointid.hardware.bench.bench import Bench
+    from jointid.hardware.bench.opened_drive import open_drive
     from jointid.hardware.proof.certificate import Certificate, certificate_path
     from jointid.hardware.proof.procedure import first_motion as move
 
@@ -112,6 +113,9 @@ def first_motion(arguments: argparse.Namespace) -> int:
     if arguments.unknown_friction:
         options = replace(options, compare_friction=False)
     bench = replace(bench, first_motion=options)
+    if not (arguments.emulate or arguments.yes):
+        with open_drive(bench):  # a bus that is not there is said before anybody is asked
+            pass
     if not (arguments.emulate or arguments.yes or _agreed(bench)):
         print("jointid first-motion: not started", file=sys.stderr)
         return REFUSED

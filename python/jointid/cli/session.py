@@ -195,6 +195,9 @@ def run(arguments: argparse.Namespace) -> int:
                 ).run(dry_run=True)
             _say_passed(arguments, bench)
             return 0
+        if not (arguments.emulate or arguments.yes):
+            with open_drive(bench):  # a bus that is not there is said before anybody is asked
+                pass
         if not (arguments.emulate or arguments.yes or _agreed(bench)):
             refused("run", "not_agreed", "not started", as_json=as_json)
             return STOPPED
@@ -223,8 +226,10 @@ def run(arguments: argparse.Namespace) -> int:
         return STOPPED
     except (Exception, KeyboardInterrupt) as error:
         moved, off = motor_off_before(error)
-        if moved:
+        if moved and isinstance(error, KeyboardInterrupt):
             print(motor_and_recording(off, output), file=sys.stderr)
+        elif moved:  # shown below the traceback
+            error.add_note(motor_and_recording(off, output))
         raise
     if arguments.save is not None and result.blocked is None:
         if not arguments.save.exists():  # comments and the table [session] are kept
