@@ -38,7 +38,10 @@ def reasons_not_to_start(
     """
     reasons = []
     if not math.isfinite(allowed_torque):
-        reasons.append("the session has no torque limit; give one in [limits] or [session.limits]")
+        reasons.append(
+            "the session has no torque limit; give torque [N·m] or current [A] in [limits], or torque [N·m] in "
+            "[session.limits] of the joint file"
+        )
     if not peak > 0.0:
         reasons.append(f"the drive's peak current PL[1] is {peak:g} A; more than 0 is expected")
     allowed = allowed_torque / abs(per_ampere)
