@@ -25,7 +25,7 @@ _NEARLY_ALL = 1.98
 
 _WHY_CUT = (
     "likely: a torque limit, or a PL[1] of the drive, that is too small for this motion; a torque_constant or "
-    "gear_ratio that is not the joint's; a brake that is closed, or a blocked joint"
+    "gear_ratio that is not the joint's; a brake that is closed, a blocked joint, or an encoder that hangs"
 )
 _WHY_FAST = (
     "; likely: late or lost cycles, behind which the command jumps; [session.limits] torque_rate too small for the "
