@@ -59,7 +59,8 @@ def reasons_not_to_start(
         meaning = failure_meaning(int(link.ask(Command(letters="MF")).value))
         reasons.append(
             f"the drive has shut its motor down before ({meaning or 'MF is 0'}); when that is "
-            "fixed, start with acknowledge = true"
+            "fixed, start once with acknowledge = true under [session.drive] of the joint file, and remove "
+            "it afterwards"
         )
     if status.unit_mode != 1:
         reasons.append(f"the drive is in unit mode {status.unit_mode}, not in torque mode (UM=1)")
