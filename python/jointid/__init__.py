@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.interruption import exit_on_interruption
 
-exit_on_interruption()  # before what takes long to import
-
 try:
+    exit_on_interruption()  # before what takes long to import
     from jointid import _core
 except ModuleNotFoundError as error:
     if error.name != "jointid._core":

@@ -112,9 +112,12 @@ def test_an_emulated_session_leaves_the_joint_file_alone(
         ("simulate true.toml --gain saturation=-1", "no saturation; known are bandwidth, "),
         ("identify good.csv --joint sensor.toml", "or delete [sensor] from sensor.toml\n"),
         ("identify good.csv --joint text_ratio.toml", 'gear_ratio is "101": a number is expected'),
-        ("report text.json", "text.json: an estimate is expected, as `identify --save estimate.json`"),
+        (
+            "report text.json",
+            "text.json: an estimate is expected, the .json file that identify saves",
+        ),
         ("report broken.json", "broken.json: not JSON: line 1, column 2\n"),
-        ("report text_ratio.toml", "text_ratio.toml: an estimate is expected, as `identify --save"),
+        ("report text_ratio.toml", "text_ratio.toml: an estimate is expected, the .json file"),
         (
             "demo --output /proc/demo",
             "--output /proc/demo: nothing can be written in the folder /proc; give another name",

@@ -7,7 +7,6 @@ make another error of it. Nothing is at work yet that would have to be finished.
 import os
 import signal
 import sys
-from types import FrameType
 
 INTERRUPTED = 130
 _NAME = "jointid"
@@ -31,7 +30,9 @@ def raise_on_interruption() -> None:
 
 def _is_command_line() -> bool:
     """Whether this process is `jointid` or `python -m jointid`."""
-    if "--multiprocessing-fork" in sys.orig_argv:  # a process of its own, with the arguments of the first
+    if (
+        "--multiprocessing-fork" in sys.orig_argv
+    ):  # a process of its own, with the arguments of the first
         return False
     started = sys.argv[0] if sys.argv else ""
     if started == "-m":  # Python is still looking for the module, in the package that imports this
@@ -40,7 +41,7 @@ def _is_command_line() -> bool:
     return name == _NAME
 
 
-def _exit(number: int, frame: FrameType | None) -> None:
+def _exit(*_: object) -> None:
     """Leave at once; no exception that an import could swallow."""
     os.write(2, b"jointid: interrupted\n")
     os._exit(INTERRUPTED)

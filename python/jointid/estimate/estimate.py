@@ -348,9 +348,11 @@ class Estimate:
 
         path = require_path("path", path)
         text = read_text(path)
-        if not text.lstrip().startswith("{"):  # another file: where its JSON ends would not help
+        if not text.lstrip().startswith(
+            ("{", "[")
+        ):  # another file: where its JSON ends would not help
             raise InputError(
-                "an estimate is expected, as `identify --save estimate.json` writes it",
+                "an estimate is expected, the .json file that identify saves",
                 place=str(path),
             )
         try:
