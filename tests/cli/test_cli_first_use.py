@@ -42,6 +42,15 @@ def test_a_terminal_without_a_root_sign_gets_the_report(encoding: str) -> None:
     assert b"= 1/?stribeck" in result.stdout
 
 
+def test_identify_says_what_it_wrote(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    line = ["identify", WELL, "--model", "stribeck", "--quiet", "--report", "page.html", "--save"]
+    for name, kind in (("new.toml", "joint file"), ("new.json", "estimate")):
+        assert main([*line, name]) == 0
+        assert capsys.readouterr().out.endswith(f"\n\nreport: page.html\n{kind}: {name}\n")
+    assert main([*line, "new.json", "--json"]) == 0
+    assert capsys.readouterr().out.endswith("}\n")
+
+
 @pytest.fixture
 def blocked(folder: Path) -> str:
     """A recording whose torque never changes."""
