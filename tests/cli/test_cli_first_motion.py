@@ -254,3 +254,22 @@ def test_a_certificate_without_a_table_is_one_sentence(
     assert main(["run", str(joint), "--dry-run"]) == 3
     expected = "date is 'soon': a date such as \"2026-01-31T12:00:00+00:00\""
     assert expected in capsys.readouterr().err
+
+
+def test_the_watchdog_is_tried_and_certified(joint: Path, capsys: Any, wired: None) -> None:
+    del wired
+    assert main(["first-motion", str(joint), "--yes", "--watchdog", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert set(found) == KEYS
+    assert "watchdog" not in found["unchecked"]
+    text = joint.with_suffix(".certificate.toml").read_text(encoding="utf-8")
+    assert '"watchdog" = 0.05' in text
+    # Its failure is gone from the drive; a moved zero is said, and wider limits are refused.
+    edited(joint, "position_offset = 0.0", "position_offset = 0.3")
+    assert main(["check", str(joint)]) == 0
+    shown = capsys.readouterr().out
+    assert "certificate: holds" in shown
+    assert "note: position_offset was 0 and is 0.3 rad" in shown
+    edited(joint, "[session.limits] ", "[session.limits]\ntorque = 400.0\n# ")
+    assert main(["run", str(joint), "--yes", "--quiet"]) == 3
+    assert "torque limit was" in capsys.readouterr().err

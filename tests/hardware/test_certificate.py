@@ -96,6 +96,59 @@ def test_another_drive_voids_it(bench: Bench) -> None:
     assert certificate(bench).objections(bench, harmless, NOW) == []
 
 
+@pytest.mark.parametrize(
+    ("name", "wider", "narrower"),
+    [
+        ("torque", 400.0, 80.0),
+        ("velocity", 9.0, 0.5),
+        ("position", (-1.5, 1.6), (-0.1, 0.1)),
+    ],
+)
+def test_wider_limits_void_it_and_narrower_ones_do_not(
+    bench: Bench, name: str, wider: Any, narrower: Any
+) -> None:
+    limits = replace(bench.limits, position=(-1.5, 1.5), velocity=5.0, torque=160.0)
+    bench = replace(bench, limits=limits)
+    one = certificate(bench)
+    changed = replace(bench, limits=replace(limits, **{name: wider}))
+    (objection,) = one.objections(changed, IDENTITY, NOW)
+    assert name in objection
+    assert "wider" in objection
+    changed = replace(bench, limits=replace(limits, **{name: narrower}))
+    assert one.objections(changed, IDENTITY, NOW) == []
+    unlimited = certificate(replace(bench, limits=replace(limits, torque=float("inf"))))
+    assert unlimited.objections(bench, IDENTITY, NOW) == []
+
+
+def test_a_larger_current_voids_it(bench: Bench) -> None:
+    one = certificate(bench)
+    limits = bench.joint.limits
+    assert limits.current is not None
+    for factor, number in ((2.5, 1), (0.5, 0)):
+        current = replace(limits, current=factor * limits.current)
+        changed = replace(bench, joint=bench.joint.replace(limits=current))
+        assert len(one.objections(changed, IDENTITY, NOW)) == number
+
+
+def test_limits_are_kept_in_the_file(bench: Bench, tmp_path: Path) -> None:
+    path = tmp_path / "joint.certificate.toml"
+    certificate(bench).save(path)
+    changed = replace(bench, limits=replace(bench.limits, torque=2.0 * bench.limits.torque))
+    assert len(Certificate.load(path).objections(changed, IDENTITY, NOW)) == 1
+
+
+def test_a_moved_zero_and_a_drive_without_number_are_noted(bench: Bench) -> None:
+    one = certificate(bench)
+    assert one.notes(bench, IDENTITY) == []
+    homed = replace(bench, drive=replace(bench.drive, position_offset=0.5))
+    assert one.objections(homed, IDENTITY, NOW) == []
+    (note,) = one.notes(homed, IDENTITY)
+    assert "position_offset was 0 and is 0.5 rad" in note
+    for identity in ({**IDENTITY, "serial": "0"}, {"node": 127}):
+        (note,) = one.notes(bench, identity)
+        assert "serial number" in note
+
+
 def test_it_holds_for_thirty_days(bench: Bench) -> None:
     one = certificate(bench)
     assert one.objections(bench, IDENTITY, NOW + timedelta(days=29.9)) == []

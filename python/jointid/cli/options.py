@@ -83,6 +83,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "seed": "--seed",
         "compare_friction": "--unknown-friction",
         "largest_torque": "--largest-torque",
+        "watchdog": "--watchdog",
     },
     "emulate": {
         "json": "--json",

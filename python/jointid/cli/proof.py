@@ -63,6 +63,11 @@ def add_first_motion(commands: Any) -> None:
         action="store_true",
         help="the joint file's friction is only a guess: no scale is held against it",
     )
+    first.add_argument(
+        "--watchdog",
+        action="store_true",
+        help="at the end also stop the heartbeat, at no torque: the drive must switch its motor off by itself",
+    )
     first.add_argument("--quiet", action="store_true", help="no line for each step")
 
 
@@ -96,6 +101,8 @@ def check(arguments: argparse.Namespace) -> int:
         if certified is not None:
             remedy = "; run `jointid first-motion` before `jointid run`"
             print(f"certificate: {'; '.join(certified) + remedy if certified else 'holds'}")
+            for note in _notes(arguments.joint, bench, found.identity):
+                print(f"note: {note}")
     return 0 if found.passed else REFUSED
 
 
@@ -104,7 +111,9 @@ def first_motion(arguments: argparse.Namespace) -> int:
     from jointid.hardware.bench.bench import Bench
     from jointid.hardware.bench.opened_drive import open_drive
     from jointid.hardware.proof.certificate import Certificate, certificate_path
+    from jointid.hardware.proof.certified_limits import NO_SERIAL
     from jointid.hardware.proof.procedure import first_motion as move
+    from jointid.hardware.proof.result import UNCHECKED
 
     bench = Bench.load(arguments.joint)
     options = bench.first_motion
@@ -125,6 +134,7 @@ def first_motion(arguments: argparse.Namespace) -> int:
         emulate=arguments.emulate,
         seed=arguments.seed,
         callback=_show if show else None,
+        watchdog=arguments.watchdog,
     )
     if arguments.json:
         print(json.dumps(result.to_dict(), indent=1, ensure_ascii=False))
@@ -138,13 +148,15 @@ def first_motion(arguments: argparse.Namespace) -> int:
         path = certificate_path(arguments.joint)
         Certificate.of(bench, result).save(path)
         print(f"certificate: {path}", file=sys.stderr)
+        if NO_SERIAL in result.unchecked:
+            print(f"jointid first-motion: warning: {UNCHECKED[NO_SERIAL]}", file=sys.stderr)
     return 0
 
 
 def missing_certificate(joint_file: Path, bench: Bench) -> str:
     """Return why a real joint must not be moved by `run`; empty when its certificate holds.
 
-    The drive is asked who it is: its motor stays off.
+    What the certificate cannot tell is printed as a note. The drive is asked who it is: its motor stays off.
 
     Parameters
     ----------
@@ -160,18 +172,22 @@ def missing_certificate(joint_file: Path, bench: Bench) -> str:
     from jointid.hardware.session.drive import DriveFaultError
 
     objections = _objections(joint_file, bench, None)
+    notes: list[str] = []
     if not objections:
         try:
             with open_drive(bench) as drive:
                 try:
                     drive.connect(bench.options.period)
                     objections = _objections(joint_file, bench, drive.identity())
+                    notes = _notes(joint_file, bench, drive.identity())
                 finally:
                     drive.disable()
                     drive.close()
         except (DriveFaultError, OSError) as error:
             return f"the drive does not say who it is: {error}"
     if not objections:
+        for note in notes:
+            print(f"jointid run: note: {note}", file=sys.stderr)
         return ""
     return (
         "this bench is not certified: "
@@ -191,6 +207,16 @@ def _objections(joint_file: Path, bench: Bench, identity: Any) -> list[str]:
         return Certificate.load(path).objections(bench, identity)
     except InputError as error:
         return [str(error)]
+
+
+def _notes(joint_file: Path, bench: Bench, identity: Any) -> list[str]:
+    """What the certificate of a joint file cannot tell; nothing without one."""
+    from jointid.hardware.proof.certificate import Certificate, certificate_path
+
+    try:
+        return Certificate.load(certificate_path(joint_file)).notes(bench, identity)
+    except InputError:
+        return []  # said as an objection
 
 
 def _show(line: str) -> None:

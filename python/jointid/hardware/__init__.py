@@ -37,6 +37,7 @@ from jointid.hardware.session.session import (
     SessionRefusedError,
     SessionStoppedError,
 )
+from jointid.hardware.session.silence import DriveSilence
 from jointid.hardware.session.stop import Stop
 
 __all__ = [
@@ -52,6 +53,7 @@ __all__ = [
     "DriveFaultError",
     "DriveReport",
     "DriveSample",
+    "DriveSilence",
     "DriveType",
     "EmulatedBus",
     "Emulation",

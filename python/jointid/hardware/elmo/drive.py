@@ -19,6 +19,7 @@ from jointid.hardware.elmo.link import ElmoLink, Tap
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.elmo.recorded_options import elmo_options_document
 from jointid.hardware.elmo.report import elmo_report
+from jointid.hardware.elmo.silence import fall_silent
 from jointid.hardware.elmo.start_problems import IN_USE, reasons_not_to_start
 from jointid.hardware.elmo.switching import CYCLES, OFF, MotorSwitch
 from jointid.hardware.elmo.timing import command_latency
@@ -26,6 +27,7 @@ from jointid.hardware.elmo.torque_source import AnalogInput, SyncedConverter
 from jointid.hardware.session.clock import Clock
 from jointid.hardware.session.drive import DriveEnd, DriveFaultError, DriveSample
 from jointid.hardware.session.drive_report import DriveReport, Reported
+from jointid.hardware.session.silence import DriveSilence
 from jointid.joint.joint import Joint
 
 _BOOT = 2.0  # [s] to wait for its message
@@ -276,6 +278,10 @@ class ElmoDrive:
         if not self._found_off:
             return DriveEnd()  # another program moves its motor
         return self._switch.off(self._period)
+
+    def fall_silent(self) -> DriveSilence:
+        """Stop our heartbeat, the motor on, and see what the drive's watchdog does; its failure is left in it."""
+        return fall_silent(self._link, self.options, self._switch)
 
     def close(self) -> None:
         """Leave the drive pre-operational, its watchdogs disarmed when its motor is off.

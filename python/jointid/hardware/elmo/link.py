@@ -23,7 +23,8 @@ from jointid.hardware.session.clock import Clock, MonotonicClock
 from jointid.hardware.session.drive import DriveFaultError
 
 _ANSWER = 0.2  # [s] to wait for one
-_HOST_HEARTBEAT = 0x8130  # emergency: ours has stayed away
+HOST_HEARTBEAT = 0x8130
+"""Code of the emergency: ours has stayed away."""
 _MOST_WAITING = 10_000  # frames; a bus that brings more at once is not read to its end
 Tap = Callable[[float, int, bytes, bool], None]  # time, identifier, payload, whether sent
 Meanwhile = Callable[[], float]  # something to be done while waiting; returns when next [s]
@@ -360,7 +361,7 @@ class ElmoLink:
     def _take_emergency(self, payload: bytes) -> None:
         emergency = Emergency.of(payload)
         if emergency is not None and emergency.code:
-            ours = emergency.code == _HOST_HEARTBEAT
+            ours = emergency.code == HOST_HEARTBEAT
             self._note(
                 "host_heartbeat_lost" if ours else "drive_fault",
                 f"the drive reports {emergency.meaning} (emergency 0x{emergency.code:04X})",

@@ -18,6 +18,7 @@ from jointid.base.files import write_whole
 from jointid.base.schema import Number, Plain, Record, TableOf, Text, read_text
 from jointid.hardware.bench.bench import Bench
 from jointid.hardware.bench.drive_types import drive_type
+from jointid.hardware.proof.certified_limits import limits_facts, notes, widened
 from jointid.hardware.proof.result import FirstMotion
 
 SCHEMA = 1
@@ -49,9 +50,10 @@ class Certificate:
     drive : mapping
         Identity of the drive, its serial number with it.
     found : mapping
-        Signs, breakaway in both directions, travel, largest torque, inertia, and what was not checked.
+        Signs, breakaway in both directions, travel, largest torque, inertia, and what was not checked; after how
+        long the drive's watchdog switched the motor off [s], if that was tried.
     limits : mapping
-        Of the session, then.
+        Of the session, then, with the joint's largest current and the encoder's offset.
     versions : mapping
         Of jointid and Python.
     """
@@ -82,9 +84,9 @@ class Certificate:
         """
         if not result.passed:
             raise InputError("only one that was passed is certified", argument="first motion")
-        low, high = bench.limits.position
         found = {
             **result.to_dict(),
+            "watchdog": result.watchdog,
             "inertia": result.inertia,
             "sensor_zero": result.sensor_zero,
             "duration": result.duration,
@@ -95,13 +97,7 @@ class Certificate:
             wiring=_plain(drive_type(bench.drive_type).wiring(bench.drive)),
             drive=_plain(identity_facts(result.identity)),
             found=_plain({name: value for name, value in found.items() if name != "passed"}),
-            limits=_plain(
-                {
-                    "position": [low, high],
-                    "velocity": bench.limits.velocity,
-                    "torque": bench.limits.torque,
-                }
-            ),
+            limits=_plain(limits_facts(bench)),
             versions={"jointid": _core.__version__, "python": platform.python_version()},
         )
 
@@ -167,10 +163,22 @@ class Certificate:
         found += _changes("joint", "the joint file's", self.joint, joint_facts(bench))
         wiring = _plain(drive_type(bench.drive_type).wiring(bench.drive))
         found += _changes("wiring", "the joint file's", self.wiring, wiring)
+        found += widened(self.limits, bench)
         if identity is not None:
             facts = _plain(identity_facts(identity))
             found += _changes("drive", "the drive's", self.drive, facts)
         return found
+
+    def notes(self, bench: Bench, identity: Mapping[str, Any] | None = None) -> list[str]:
+        """Return what it cannot tell of a bench, although it holds: a changed offset, a drive without serial number.
+
+        Parameters
+        ----------
+        bench : Bench
+        identity : mapping, optional
+            What the drive that is connected reports. Default: not looked at.
+        """
+        return notes(self.limits, bench, identity)
 
 
 def certificate_path(joint_file: str | Path) -> Path:

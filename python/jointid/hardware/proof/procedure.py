@@ -10,9 +10,11 @@ from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.hardware.bench.bench import Bench
 from jointid.hardware.bench.opened_drive import open_drive
+from jointid.hardware.proof.certified_limits import NO_SERIAL, has_serial
 from jointid.hardware.proof.refusal import RefusedBenchError
 from jointid.hardware.proof.result import FirstMotion
 from jointid.hardware.proof.steps import Steps
+from jointid.hardware.proof.watchdog import prove_watchdog, silence_of
 from jointid.hardware.session.drive import Drive, DriveEnd, DriveFaultError
 from jointid.hardware.session.interruptions import Interruptions
 from jointid.hardware.session.realtime import RealTime
@@ -25,6 +27,7 @@ def first_motion(
     seed: int = 0,
     drive: Drive | None = None,
     callback: Callable[[str], object] | None = None,
+    watchdog: bool = False,
 ) -> FirstMotion:
     """Move a joint for the first time: signs, breakaway and scales, before anything can go far.
 
@@ -43,6 +46,9 @@ def first_motion(
         One that is open already; it is left closed. Default: the bench's.
     callback : callable, optional
         Called with each line as it is known.
+    watchdog : bool
+        When all else is right, stop the heartbeat with the motor on at no torque, and see that the drive
+        switches it off by itself. Default False.
 
     Returns
     -------
@@ -52,7 +58,7 @@ def first_motion(
     Raises
     ------
     InputError
-        This is no Bench, or its drive cannot be opened.
+        This is no Bench, or its drive cannot be opened, or its watchdog cannot be tried.
     Exception
         A bug in the drive; the motor is switched off first.
 
@@ -64,16 +70,19 @@ def first_motion(
     """
     require_kind("bench", bench, Bench)
     if drive is not None:
-        return _moved(bench, drive, callback)
+        return _moved(bench, drive, callback, watchdog)
     with open_drive(bench, emulate=emulate, seed=seed) as opened:
         if emulate:
-            return _moved(bench, opened, callback)
+            return _moved(bench, opened, callback, watchdog)
         with RealTime(bench.real_time):
-            return _moved(bench, opened, callback)
+            return _moved(bench, opened, callback, watchdog)
 
 
-def _moved(bench: Bench, drive: Drive, callback: Callable[[str], object] | None) -> FirstMotion:
+def _moved(
+    bench: Bench, drive: Drive, callback: Callable[[str], object] | None, watchdog: bool
+) -> FirstMotion:
     """The steps, and the motor off on every way out."""
+    fall_silent = silence_of(drive) if watchdog else None
     steps = Steps(bench, drive, callback)
     reason, message = None, ""
     identity: dict[str, Any] = {}
@@ -81,6 +90,8 @@ def _moved(bench: Bench, drive: Drive, callback: Callable[[str], object] | None)
         with Interruptions() as interruptions, _switched_off(drive) as ended:
             try:
                 steps.run(interruptions)
+                if fall_silent is not None:
+                    prove_watchdog(steps, fall_silent, callback)
             except RefusedBenchError as refusal:
                 reason, message = refusal.reason, str(refusal)
             except DriveFaultError as error:
@@ -94,6 +105,8 @@ def _moved(bench: Bench, drive: Drive, callback: Callable[[str], object] | None)
             except KeyboardInterrupt:
                 reason, message = "user", "interrupted from the keyboard"
             identity = drive.identity()
+            if steps.axis is not None and not has_serial(identity):
+                steps.unchecked.append(NO_SERIAL)
     finally:
         drive.close()
     (end,) = ended

@@ -14,7 +14,8 @@ UNCHECKED = {
     "gear_ratio": "the gear ratio and the encoder's counts: there is no encoder at the output, and no friction "
     "in the joint file to hold them against",
     "sensor_sign": "the sign of the torque sensor: it shows too little of the joint's acceleration",
-    "watchdog": "that the drive stops by itself when the host is gone: pull the plug once",
+    "watchdog": "that the drive stops by itself when the host is gone: --watchdog tries it, or pull the plug once",
+    "serial_number": "which drive it is: it reports no serial number, and another one of its type passes for it",
     "emergency_stop": "the emergency stop, the brake and the end stops",
     "control": "a motion under control: the inertia is not known",
 }
@@ -44,6 +45,9 @@ class FirstMotion:
         Codes of `UNCHECKED`.
     inertia, stated_breakaway, stated_inertia : float or None
         Measured; by the joint file [kg·m²], [N·m].
+    watchdog : float or None
+        From our last heartbeat until the drive had switched its motor off by itself [s]; None: not tried, or it
+        did not.
     sensor_zero : float or None
         Mean reading of the torque sensor at rest.
     duration : float
@@ -69,6 +73,7 @@ class FirstMotion:
     inertia: float | None = None
     stated_breakaway: float | None = None
     stated_inertia: float | None = None
+    watchdog: float | None = None
     sensor_zero: float | None = None
     duration: float = 0.0
     motor_off: bool | None = None

@@ -134,7 +134,8 @@ class Drive(Protocol):
     which `SessionOptions` must give otherwise; an attribute `joint`, a `Joint`; and a method `metadata`,
     which returns ``{"drive_type": name, "drive_options": …}``, of JSON's types. Both are kept in the
     recording, so that a replay of the frame log finds them. It may have a method `report`, which returns a
-    `DriveReport` once it is connected, its motor off.
+    `DriveReport` once it is connected, its motor off; and a method `fall_silent`, which returns a
+    `DriveSilence`, for `first_motion(watchdog=True)`.
     """
 
     @property
