@@ -10,7 +10,10 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from jointid.base.interruption import exit_on_interruption
+
 try:
+    exit_on_interruption()  # before what takes long to import
     from jointid import _core
 except ModuleNotFoundError as error:
     if error.name != "jointid._core":

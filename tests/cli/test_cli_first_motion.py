@@ -1,6 +1,7 @@
 """`jointid check`, `jointid first-motion`, and what `jointid run` asks for before a real joint moves."""
 
 import json
+import re
 import shutil
 from contextlib import AbstractContextManager
 from pathlib import Path
@@ -12,6 +13,7 @@ import jointid.commissioning  # before `wired` replaces what it imports  # noqa:
 from jointid.cli import main
 from jointid.hardware.bench import opened_drive
 from jointid.hardware.bench.bench import Bench
+from jointid.hardware.elmo.emulated_settings import ElmoSettings
 from jointid.hardware.proof import check, procedure
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
@@ -86,8 +88,17 @@ def test_a_cap_ends_it(joint: Path, capsys: Any) -> None:
 
 
 def test_nobody_agrees_to_a_motion_from_a_script(joint: Path, capsys: Any) -> None:
-    assert main(["first-motion", str(joint)]) == 3
-    assert "--yes" in capsys.readouterr().err
+    for words in (["first-motion"], ["run", "--force"]):
+        assert main([*words, str(joint)]) == 3
+        assert "--yes" in capsys.readouterr().err
+        other = joint.with_name("other.toml")
+        shutil.copy(joint, other)
+        edited(other, 'interface = "virtual"', 'interface = "socketcan"')
+        edited(other, 'channel = "can0"', 'channel = "nocan9"')
+        assert main([*words, str(other)]) == 2
+        error = capsys.readouterr().err
+        assert "nocan9" in error
+        assert "--yes" not in error  # nobody is asked about a bus that is not there
 
 
 def test_check_shows_what_is_connected(joint: Path, capsys: Any) -> None:
@@ -149,6 +160,100 @@ def test_force_goes_on_without_one(joint: Path, capsys: Any) -> None:
     error = capsys.readouterr().err
     assert "certificate" not in error
     assert "boot-up" in error  # nobody is on that bus
+
+
+def test_check_marks_what_the_file_does_not_state(joint: Path, capsys: Any) -> None:
+    edited(joint, "counts_per_turn = 8000 ", "# ")
+    edited(joint, "velocity = 4.0  ", "# ")
+    edited(joint, 'amplitude = "60deg"', "")
+    assert main(["check", str(joint), "--emulate"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    mark = "   DEFAULT: the file has no such key"
+    for line in (
+        f"  velocity: 10 rad/s{mark}",
+        f"  counts_per_turn: 8000{mark}",
+        f"  amplitude: 0.349066{mark}",
+        "  position: -1.4 to 1.4 rad",
+        "  torque: 159.984 N·m",
+        "  cycle: 3 s",
+    ):
+        assert line in lines, line
+    assert any("(-20.0° to 20.0°)" in line for line in lines)
+    assert main(["check", str(joint), "--emulate", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["in_force"]
+    assert found["limits"]["velocity"] == 10.0
+    assert {"limits.velocity", "drive.counts_per_turn"} < {*found["defaults"]}
+    assert "limits.torque" not in found["defaults"]
+
+
+def test_check_remarks_a_speed_limit_of_the_drive_that_protects_nothing(
+    joint: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert main(["check", str(joint), "--emulate", "--json"]) == 0
+    high, low = json.loads(capsys.readouterr().out)["remarks"]
+    assert "HL[2] is 1000000000 counts/s, 1944 times" in high
+    assert "LL[2] a little beyond -514389 counts/s" in low
+    settings = ElmoSettings.__init__
+
+    def narrow(self: ElmoSettings, **given: Any) -> None:
+        settings(self, **{**given, "speed_limit": 600_000.0})
+
+    monkeypatch.setattr(ElmoSettings, "__init__", narrow)
+    assert main(["check", str(joint), "--emulate", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["remarks"] == []
+
+
+def test_a_dry_run_asks_for_the_certificate_too(
+    joint: Path, capsys: Any, wired: None, tmp_path: Path
+) -> None:
+    del wired
+    output = tmp_path / "runs"
+    words = ["run", str(joint), "--dry-run", "--output", str(output)]
+    assert main(words) == 3
+    shown = capsys.readouterr()
+    assert "there is no joint.certificate.toml" in shown.err
+    assert "passed" not in shown.out
+    assert main(["first-motion", str(joint), "--yes", "--quiet"]) == 0
+    capsys.readouterr()
+    assert main(words) == 0
+    shown = capsys.readouterr()
+    assert "  repeated_positions: 10   DEFAULT: the file has no such key" in shown.out
+    assert shown.out.endswith("all pre-flight checks passed\n")
+    edited(joint, "gear_ratio = 101", "gear_ratio = 100")
+    assert main([*words, "--json"]) == 3
+    found = json.loads(capsys.readouterr().out)
+    assert (found["status"], found["reason"]) == ("refused", "certificate")
+    assert "gear_ratio was 101" in found["message"]
+    assert main([*words, "--json", "--force"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["status"] == "passed"
+    assert found["in_force"]["motion"]["highest"] == pytest.approx(1.047, abs=0.001)
+    assert not output.exists()
+
+
+def test_a_certificate_without_a_table_is_one_sentence(
+    joint: Path, capsys: Any, wired: None
+) -> None:
+    del wired
+    assert main(["first-motion", str(joint), "--yes", "--quiet"]) == 0
+    path = joint.with_suffix(".certificate.toml")
+    whole = path.read_text(encoding="utf-8")
+    for table, after in (("wiring", "drive"), ("drive", "found")):
+        head, _, rest = whole.partition(f"[{table}]\n")
+        path.write_text(
+            f"{head}[{table}]\n\n[{after}]{rest.partition(f'[{after}]')[2]}", encoding="utf-8"
+        )
+        capsys.readouterr()
+        assert main(["check", str(joint)]) == 0
+        said = capsys.readouterr().out.splitlines()[-1]
+        assert said == (
+            f"certificate: the certificate lacks what [{table}] states; run `jointid first-motion` before "
+            "`jointid run`"
+        )
+    path.write_text(re.sub(r'date = ".*"', 'date = "soon"', whole), encoding="utf-8")
+    assert main(["run", str(joint), "--dry-run"]) == 3
+    expected = "date is 'soon': a date such as \"2026-01-31T12:00:00+00:00\""
+    assert expected in capsys.readouterr().err
 
 
 def test_the_watchdog_is_tried_and_certified(joint: Path, capsys: Any, wired: None) -> None:

@@ -42,6 +42,15 @@ def test_a_terminal_without_a_root_sign_gets_the_report(encoding: str) -> None:
     assert b"= 1/?stribeck" in result.stdout
 
 
+def test_identify_says_what_it_wrote(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    line = ["identify", WELL, "--model", "stribeck", "--quiet", "--report", "page.html", "--save"]
+    for name, kind in (("new.toml", "joint file"), ("new.json", "estimate")):
+        assert main([*line, name]) == 0
+        assert capsys.readouterr().out.endswith(f"\n\nreport: page.html\n{kind}: {name}\n")
+    assert main([*line, "new.json", "--json"]) == 0
+    assert capsys.readouterr().out.endswith("}\n")
+
+
 @pytest.fixture
 def blocked(folder: Path) -> str:
     """A recording whose torque never changes."""
@@ -112,7 +121,16 @@ def test_an_emulated_session_leaves_the_joint_file_alone(
         ("simulate true.toml --gain saturation=-1", "no saturation; known are bandwidth, "),
         ("identify good.csv --joint sensor.toml", "or delete [sensor] from sensor.toml\n"),
         ("identify good.csv --joint text_ratio.toml", 'gear_ratio is "101": a number is expected'),
-        ("report text.json", "text.json: not JSON: line 1, column 1\n"),
+        (
+            "report text.json",
+            "text.json: an estimate is expected, the .json file that identify saves",
+        ),
+        ("report broken.json", "broken.json: not JSON: line 1, column 2\n"),
+        ("report text_ratio.toml", "text_ratio.toml: an estimate is expected, the .json file"),
+        (
+            "demo --output /proc/demo",
+            "--output /proc/demo: nothing can be written in the folder /proc; give another name",
+        ),
         ("demo --output no/demo", "--output no/demo: the folder no does not exist"),
         ("demo --output good.csv", "--output good.csv: this is a file; a folder is expected"),
     ],
@@ -122,6 +140,7 @@ def test_the_sentence_says_what_to_do(
 ) -> None:
     (folder / "text_ratio.toml").write_text('schema = 2\n[drive]\ngear_ratio = "101"\n', "utf-8")
     (folder / "text.json").write_text("oops", encoding="utf-8")
+    (folder / "broken.json").write_text("{", encoding="utf-8")
     code, text = answer(line.split(), capsys)
     assert code == 2
     assert says in text

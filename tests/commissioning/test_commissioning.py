@@ -10,6 +10,7 @@ import jointid as jid
 from jointid.cli.command_line import main
 from jointid.commissioning import Commissioning, commission
 from jointid.commissioning import ring as ring_module
+from jointid.estimate.findings import Finding
 from jointid.hardware.bench.bench import Bench
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "hardware" / "joint.toml"
@@ -113,7 +114,6 @@ def test_the_command_writes_runs_and_saves_the_bench(
         (["--emulate", "--output", "no/such/folder"], 2, "no/such"),
         (["--emulate", "--dry-run"], 0, ""),
         (["--cycles", "1"], 3, "--force"),
-        (["--cycles", "1", "--force"], 3, "--yes"),
     ],
 )
 def test_the_command_refuses_before_it_moves(
@@ -133,7 +133,9 @@ def test_a_stop_is_exit_code_three(tmp_path: Path, capsys: pytest.CaptureFixture
     assert main(["run", str(path), "--emulate", "--output", str(output), "--quiet"]) == 3
     wording = capsys.readouterr().err
     assert "tracking_error" in wording
-    assert wording.count("\n") == 1
+    first, second = wording.splitlines()
+    assert first.startswith("jointid run: stopped by tracking_error")
+    assert second == f"the motor was seen off; recorded: {output / 'initial.csv'}"
     assert (output / "initial.csv").exists()
 
 
@@ -167,6 +169,7 @@ class Identified:
     """As much of an estimate as a commissioning needs to move the joint."""
 
     joint: jid.Joint
+    findings: tuple[Finding, ...] = ()
 
 
 def test_no_cycles_only_record(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -189,3 +192,75 @@ def test_no_cycles_only_record(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert jid.identify(recording, Bench.load(bench).joint, search="separable").parameters
     assert main([*words, "--save", str(tmp_path / "found.toml")]) == 2
     assert "nothing is identified" in capsys.readouterr().err
+
+
+def test_the_joint_is_not_moved_with_values_that_cannot_be_used(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bench, runs, saved = tmp_path / "joint.toml", tmp_path / "runs", tmp_path / "found.toml"
+    text = EXAMPLE.read_text(encoding="utf-8")
+    wrong = text.replace("[session.emulated] ", "[session.emulated]\nsensor_sign = -1\n# ")
+    assert wrong != text
+    bench.write_text(wrong, encoding="utf-8")
+    words = ["run", str(bench), "--emulate", "--cycles", "1", "--output", str(runs), "--quiet"]
+    assert main([*words, "--save", str(saved)]) == 3
+    shown = capsys.readouterr()
+    assert "fell by a factor" not in shown.out
+    assert "reversed_sign is blocking" in shown.out
+    (gain,) = (line for line in shown.out.splitlines() if line.startswith("sensor_gain "))
+    assert "0.1 (bound)" in gain
+    assert f"{saved} was not written" in shown.err
+    assert not saved.exists()
+    assert [each.name for each in runs.glob("*.csv")] == ["initial.csv"]
+    found = commission(Bench.load(bench), cycles=2, emulate=True)
+    assert [run.name for run in found.runs] == ["initial"]
+    assert found.blocked is not None
+    assert found.to_dict()["blocked"] == found.blocked.code == "reversed_sign"
+
+
+def test_a_recording_that_nobody_keeps_is_not_made(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(EXAMPLE), "--emulate", "--cycles", "0"]) == 2
+    assert "--cycles 0: 0 cycles only record" in capsys.readouterr().err
+
+
+def test_json_tells_how_a_run_ended(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = EXAMPLE.read_text(encoding="utf-8").replace("duration = 12.0", "duration = 3.0")
+    bench, runs = tmp_path / "joint.toml", tmp_path / "runs"
+    bench.write_text(text, encoding="utf-8")
+    words = ["run", str(bench), "--emulate", "--json", "--quiet", "--cycles", "0"]
+    assert main([*words, "--output", str(runs)]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["status"], found["motor_off"]) == ("done", True)
+    assert found["recording"] == [str(runs / "initial.csv")]
+    assert found["timing"]["initial"]["cycles"] > 1500
+    assert found["warnings"] == []
+    bench.write_text(text.replace("tracking_error = 0.1 ", "tracking_error = 0.001 "), "utf-8")
+    assert main([*words, "--output", str(tmp_path / "stopped")]) == 3
+    found = json.loads(capsys.readouterr().out)
+    assert (found["status"], found["reason"]) == ("stopped", "tracking_error")
+    assert found["motor_off"] is True
+    assert found["recording"] == [str(tmp_path / "stopped" / "initial.csv")]
+    bench.write_text(text.replace("[session.limits]", "[session.limits]\ntorque = 50.0"), "utf-8")
+    folder = tmp_path / "refused"
+    assert main([*words, "--output", str(folder)]) == 3
+    shown = capsys.readouterr()
+    found = json.loads(shown.out)
+    assert (found["status"], found["reason"]) == ("refused", "preflight")
+    assert found["motor_off"] is None
+    assert found["recording"] == []
+    assert "PL[1]" in found["message"]
+    assert shown.err.endswith("; the motor has not been on\n")
+    assert not folder.exists()
+
+
+def test_ctrl_c_between_two_motions_says_where_the_recording_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(ring_module, "identify", interrupted)
+    runs = tmp_path / "runs"
+    assert main(["run", str(EXAMPLE), "--emulate", "--output", str(runs), "--quiet"]) == 130
+    said = capsys.readouterr().err
+    assert f"the motor was seen off; recorded: {runs / 'initial.csv'}" in said

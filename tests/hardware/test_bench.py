@@ -113,6 +113,11 @@ def driven(path: Path) -> ElmoDrive:
             'form = "sigmoid"\ndistance = 1.0 ',
             r"\[session.trajectory\]: rise: missing; the form 'sigmoid' needs it",
         ),
+        (
+            'amplitude = "60deg"',
+            'amplitude = "60 dge"',
+            r"\[session.trajectory\]: amplitude is '60 dge': an angle is expected, in rad or as",
+        ),
         ("cycle = 3.0", "cycle = 0.0", r"\[session.trajectory\]: .*cycle is 0.0"),
         ('law = "adaptive_robust"', 'law = "magic"', r"\[session.controller\]: law is 'magic'"),
         (

@@ -23,8 +23,8 @@ LIMITS = SessionLimits(
 )
 
 
-def guard(**changes: Any) -> Guard:
-    return Guard(replace(LIMITS, **changes), PERIOD, COUNT)
+def guard(breakaway: float | None = None, **changes: Any) -> Guard:
+    return Guard(replace(LIMITS, **changes), PERIOD, COUNT, breakaway=breakaway)
 
 
 def sample(position: float = 0.0, **more: Any) -> DriveSample:
@@ -105,12 +105,15 @@ def test_rate_counts_from_one_command_to_the_next() -> None:
     assert error.limit == "torque_rate"
     assert error.measured == pytest.approx(-5050.0)
     assert error.allowed == 5000.0
+    assert "late or lost cycles" in str(error)
 
 
 def test_saturations_count_in_all() -> None:
     guard().commanded(0.0, 20)
     error = stopped(lambda: guard().commanded(0.0, 21))
     assert (error.limit, error.measured, error.allowed) == ("saturated_samples", 21, 20)
+    for cause in ("too small for this motion", "torque_constant", "gear_ratio", "brake"):
+        assert cause in str(error)
 
 
 def test_missed_deadlines_count_in_a_row() -> None:
@@ -161,6 +164,31 @@ def test_position_that_repeats_though_the_torque_has_changed_much() -> None:
         error = stopped(lambda w=watched: w.measured(sample(0.5), 0.0, 0.0))
         assert error.limit == "repeated_positions"
         assert "changed by 100 N·m" in str(error)
+        assert "states no friction" in str(error)
+
+
+@pytest.mark.parametrize(
+    ("breakaway", "most"),
+    [
+        (20.0, 100.0),  # the torque limit is more than four times it
+        (30.0, 120.0),  # twice, for the swing, and twice for what is not known of it
+        (60.0, 198.0),  # the joint has no torque left
+    ],
+)
+def test_torque_may_swing_by_twice_the_breakaway(breakaway: float, most: float) -> None:
+    for change, stops in ((most - 0.1, False), (most + 0.1, True)):
+        watched = guard(breakaway)
+        watched.accepted(100.0, 100.0)
+        watched.measured(sample(0.5), 0.0, 0.0)
+        watched.accepted(100.0 - change, 100.0 - change)
+        for _ in range(10):
+            watched.measured(sample(0.5), 0.0, 0.0)
+        if not stops:
+            watched.measured(sample(0.5), 0.0, 0.0)
+            continue
+        error = stopped(lambda w=watched: w.measured(sample(0.5), 0.0, 0.0))
+        assert error.limit == "repeated_positions"
+        assert "states no friction" not in str(error)
 
 
 def test_position_that_moves_by_a_count_is_none_that_hangs() -> None:

@@ -72,7 +72,10 @@ CASES: dict[str, tuple[Prepare, str]] = {
     "torque beyond": (open_loop, "asks for 170 N·m, more than 160 N·m"),
     "peak current": (strong, r"PL\[1\] is 9 A, the session allows 8 A"),
     "unit mode": (with_elmo(fixed_unit_mode=5), "is in unit mode 5, not in torque mode"),
-    "failure latched": (with_elmo(failure=0x4), r"down before \(feedback lost\)"),
+    "failure latched": (
+        with_elmo(failure=0x4),
+        r"down before \(feedback lost\).*acknowledge = true under \[session.drive\].*remove it",
+    ),
     "power stage": (with_elmo(problem=6), "reports over-temperature"),
     "sensor at its end": (railed, "sensor is at the end of its range"),
     "object missing": (unwilling, "refused object 1016h:1: the object does not exist"),

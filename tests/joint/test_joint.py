@@ -317,6 +317,49 @@ def test_what_is_new_joins_its_like(tmp_path: Path) -> None:
     assert path.read_text() == expected + "\n[sensor]\npresent = true\n"
 
 
+IN_DEGREES = """schema = 2
+kind = "revolute"
+[link]
+mass = 1.0
+centre_of_mass = 0.5
+angle = "-90deg"  # hangs down
+[limits]
+position = ["-80deg", 1.25]  # stops
+velocity = "180deg"
+"""
+
+
+def test_angles_of_a_file_may_be_degrees(tmp_path: Path) -> None:
+    path = tmp_path / "joint.toml"
+    path.write_text(IN_DEGREES)
+    joint = Joint.load(path)
+    assert joint.link is not None
+    assert joint.link.angle == pytest.approx(-math.pi / 2)
+    assert joint.limits.position == pytest.approx((math.radians(-80.0), 1.25))
+    assert joint.limits.velocity == pytest.approx(math.pi)
+
+
+def test_angles_that_do_not_change_stay_as_they_are_written(tmp_path: Path) -> None:
+    path = tmp_path / "joint.toml"
+    path.write_text(IN_DEGREES)
+    joint = Joint.load(path)
+    joint.replace(gear_ratio=101.0).save(path)
+    assert path.read_text() == IN_DEGREES + "\n[drive]\ngear_ratio = 101.0\n"
+    limits = Limits(position=(-1.0, 1.0), velocity=joint.limits.velocity)
+    joint.replace(limits=limits).save(path)
+    assert '["-80deg", 1.25]' not in path.read_text()
+    assert 'position = [-1.0, 1.0]  # stops\nvelocity = "180deg"' in path.read_text()
+
+
+def test_the_limits_of_a_joint_that_slides_are_no_angles(tmp_path: Path) -> None:
+    path = tmp_path / "joint.toml"
+    path.write_text(IN_DEGREES)
+    Joint.load(path).replace(kind="prismatic").save(path)
+    assert "velocity = 3.14" in path.read_text()
+    path.write_text(IN_DEGREES.replace("revolute", "prismatic"))
+    assert refusal(path) == "[limits]: position is '-80deg': a number is expected"
+
+
 def test_what_is_gone_leaves_the_comments_of_its_neighbours(tmp_path: Path) -> None:
     path = tmp_path / "joint.toml"
     path.write_text(COMMENTED)
@@ -498,7 +541,10 @@ BAD = [
     ("[sensor]\ngain = 1", "[sensor]: gain: there is no such key; known are present"),
     ("[link]\nmass = 3.0", "[link]: centre_of_mass: it is missing"),
     ("[link]\nmass = -3\ncentre_of_mass = 1", "[link]: mass is -3.0: 0 or more is expected"),
-    ("[link]\nmass = 3\ncentre_of_mass = 1\nangle = 'up'", "[link]: angle is 'up': a number"),
+    (
+        "[link]\nmass = 3\ncentre_of_mass = 1\nangle = 'up'",
+        "[link]: angle is 'up': an angle is expected",
+    ),
     (
         "[parameters.coulom]",
         "[parameters]: coulom: there is no such parameter; did you mean 'coulomb'?",
@@ -524,7 +570,16 @@ BAD = [
         "[limits]: position is [1.2, -1.2]: the first limit must be below",
     ),
     ("[limits]\nposition = 1.2", "[limits]: position is 1.2: [lowest, highest] is expected"),
-    ("[limits]\nposition = [0, 'a']", "[limits]: position is 'a': a number is expected"),
+    (
+        "[limits]\nposition = [0, 'a']",
+        "[limits]: position is 'a': an angle is expected, in rad or as",
+    ),
+    (
+        "[limits]\nposition = ['-80deg', '80 dge']",
+        "[limits]: position is '80 dge': an angle is expected, in rad or as \"60deg\"",
+    ),
+    ("[limits]\nvelocity = 'fast'", "[limits]: velocity is 'fast': an angle is expected"),
+    ("[limits]\ntorque = '5deg'", "[limits]: torque is '5deg': a number is expected"),
     ("[limits]\ntorque = -160", "[limits]: torque is -160.0: more than 0 is expected"),
     ("schema = 1", ", line 2: not TOML: Cannot overwrite a value"),
     ("\n[drive\ngear_ratio = 101", ", line 3: not TOML: Expected ']'"),

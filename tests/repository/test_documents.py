@@ -49,6 +49,9 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     estimate = jid.identify(recording, jid.thesis_joint())
     estimate.save(folder / "joint.toml")
     estimate.save(folder / "estimate.json")
+    robot = data_folder() / "kr300_joint1.toml"
+    shipped = jid.identify(jid.load(robot.with_suffix(".csv.gz")), jid.Joint.load(robot))
+    shipped.save(folder / "kr300.toml")
     for name in ("run", "monday", "tuesday"):
         recording.save(folder / f"{name}.csv")
     text = (folder / "run.csv").read_text(encoding="utf-8")

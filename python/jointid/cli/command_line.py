@@ -9,13 +9,14 @@ import traceback
 from collections.abc import Sequence
 
 from jointid.base.errors import InputError
+from jointid.base.interruption import INTERRUPTED, raise_on_interruption
 from jointid.cli.outputs import check_distinct
 from jointid.cli.parser import BAD_USAGE, command_parser
 from jointid.cli.wording import Wording
 
 # Errors of a disk, which name no file when they are raised by a write.
 _DISK = {errno.ENOSPC, errno.EIO, errno.EROFS, errno.EFBIG, getattr(errno, "EDQUOT", -1)}
-DONE, BAD_INPUT, BUG, INTERRUPTED = 0, BAD_USAGE, 70, 130
+DONE, BAD_INPUT, BUG = 0, BAD_USAGE, 70
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -43,9 +44,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     if arguments.command is None:
         grammar.print_help()
         return DONE
-    from jointid.cli.commands import COMMANDS
-
     try:
+        from jointid.cli.commands import COMMANDS
+
+        raise_on_interruption()
         check_distinct(arguments)
         code = COMMANDS[arguments.command](arguments)
     except KeyboardInterrupt as stop:

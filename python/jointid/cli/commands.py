@@ -105,6 +105,7 @@ def identify(arguments: argparse.Namespace) -> int:
                 print(f"\n{check.report()}")
         if causes is not None:
             print(f"\n{causes.report(Wording.of(arguments).of_action)}")
+    _say_written(refused, arguments)
     return _exit_code(refused, arguments)
 
 
@@ -145,6 +146,7 @@ def compare(arguments: argparse.Namespace) -> int:
         )
     refused = _write(comparison.estimate, arguments)
     print(comparison.to_json() if arguments.json else comparison.report())
+    _say_written(refused, arguments)
     return _exit_code(refused, arguments)
 
 
@@ -203,6 +205,16 @@ def _write(estimate: Estimate, arguments: argparse.Namespace) -> str:
         return blocking[0]
     estimate.save(arguments.save)
     return ""
+
+
+def _say_written(refused: str, arguments: argparse.Namespace) -> None:
+    """Say after the report which files were written; JSON stands alone."""
+    lines = [f"report: {arguments.report}"] if arguments.report is not None else []
+    if arguments.save is not None and not refused:
+        kind = "joint file" if arguments.save.suffix == ".toml" else "estimate"
+        lines.append(f"{kind}: {arguments.save}")
+    if lines and not arguments.json:
+        print("", *lines, sep="\n")
 
 
 def _exit_code(refused: str, arguments: argparse.Namespace) -> int:

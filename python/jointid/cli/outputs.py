@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import errno
 from pathlib import Path
+from tempfile import NamedTemporaryFile
 
 from jointid.base.errors import InputError
 
@@ -76,15 +78,31 @@ def check_page(argument: str, path: Path | None) -> None:
 
 
 def check_folder(argument: str, path: Path | None) -> None:
-    """Refuse a file to be written in a folder that does not exist.
+    """Refuse a file to be written in a folder that does not exist, or takes no files.
 
     Raises
     ------
     InputError
-        There is no such folder.
+        There is no such folder, or nothing can be written in it.
     """
-    if path is not None and not path.parent.is_dir():
+    if path is None:
+        return
+    if not path.parent.is_dir():
         raise InputError(f"the folder {path.parent} does not exist", argument=argument, value=path)
+    if path.exists():
+        return
+    try:  # the permissions alone do not tell: some folders take no files from anybody
+        with NamedTemporaryFile(dir=path.parent, prefix=f".{path.name[:20]}."):
+            pass
+    except OSError as error:
+        # In such a folder "no such file" is meant of the file to be written.
+        reason = f" ({error.strerror})" if error.strerror and error.errno != errno.ENOENT else ""
+        raise InputError(
+            f"nothing can be written in the folder {path.parent}{reason}",
+            argument=argument,
+            value=path,
+            remedy="give another name",
+        ) from error
 
 
 def check_output_folder(argument: str, path: Path) -> None:

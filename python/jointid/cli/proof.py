@@ -84,19 +84,23 @@ def _add_common(command: Any, printed: str) -> None:
 
 def check(arguments: argparse.Namespace) -> int:
     """Show what is connected."""
+    from jointid.cli.bench_settings import in_force
     from jointid.hardware.bench.bench import Bench
     from jointid.hardware.proof.check import check_bench
 
     bench = Bench.load(arguments.joint)
+    settings = in_force(arguments.joint, bench)
     found = check_bench(bench, emulate=arguments.emulate, seed=arguments.seed)
     certified = None if arguments.emulate else _objections(arguments.joint, bench, found.identity)
     if arguments.json:
-        document = {**found.to_dict(), "certificate": certified}
+        document = {**found.to_dict(), "certificate": certified, "in_force": settings.to_dict()}
         print(json.dumps(document, indent=1, ensure_ascii=False))
     else:
+        print(settings.text())
         print(found.text())
         if certified is not None:
-            print("certificate: " + ("; ".join(certified) if certified else "holds"))
+            remedy = "; run `jointid first-motion` before `jointid run`"
+            print(f"certificate: {'; '.join(certified) + remedy if certified else 'holds'}")
             for note in _notes(arguments.joint, bench, found.identity):
                 print(f"note: {note}")
     return 0 if found.passed else REFUSED
@@ -105,6 +109,7 @@ def check(arguments: argparse.Namespace) -> int:
 def first_motion(arguments: argparse.Namespace) -> int:
     """Move a joint for the first time; a real one that passes is certified."""
     from jointid.hardware.bench.bench import Bench
+    from jointid.hardware.bench.opened_drive import open_drive
     from jointid.hardware.proof.certificate import Certificate, certificate_path
     from jointid.hardware.proof.certified_limits import NO_SERIAL
     from jointid.hardware.proof.procedure import first_motion as move
@@ -117,6 +122,9 @@ def first_motion(arguments: argparse.Namespace) -> int:
     if arguments.unknown_friction:
         options = replace(options, compare_friction=False)
     bench = replace(bench, first_motion=options)
+    if not (arguments.emulate or arguments.yes):
+        with open_drive(bench):  # a bus that is not there is said before anybody is asked
+            pass
     if not (arguments.emulate or arguments.yes or _agreed(bench)):
         print("jointid first-motion: not started", file=sys.stderr)
         return REFUSED

@@ -10,6 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
 from jointid.cli.arguments import TEXT, decimal, whole, whole_seed
+from jointid.cli.endings import (
+    document,
+    motor_and_recording,
+    motor_off,
+    motor_off_before,
+    refused,
+    stopped,
+)
 from jointid.cli.outputs import check_folder, check_output_folder
 from jointid.cli.proof import missing_certificate
 from jointid.cli.wording import ADVICE, Wording
@@ -163,6 +171,7 @@ def emulate(arguments: argparse.Namespace) -> int:
 def run(arguments: argparse.Namespace) -> int:
     """Run and identify a joint on its bench in turn; returns the exit code."""
     from jointid.base.files import write_whole
+    from jointid.cli.bench_settings import in_force
     from jointid.commissioning import commission
     from jointid.hardware.bench.bench import Bench
     from jointid.hardware.bench.opened_drive import open_drive
@@ -170,21 +179,27 @@ def run(arguments: argparse.Namespace) -> int:
 
     _check(arguments)
     bench = Bench.load(arguments.joint)
+    as_json, output = arguments.json, arguments.output
+    if arguments.dry_run and not as_json:
+        print(in_force(arguments.joint, bench).text())
     try:
+        if not (arguments.emulate or arguments.force):
+            missing = missing_certificate(arguments.joint, bench)
+            if missing:
+                refused("run", "certificate", missing, as_json=as_json)
+                return STOPPED
         if arguments.dry_run:
             with open_drive(bench, emulate=arguments.emulate, seed=arguments.seed) as drive:
                 Session(
                     drive, bench.controller, bench.trajectory, bench.limits, options=bench.options
                 ).run(dry_run=True)
-            print("all pre-flight checks passed")
+            _say_passed(arguments, bench)
             return 0
-        if not (arguments.emulate or arguments.force):
-            refused = missing_certificate(arguments.joint, bench)
-            if refused:
-                print(f"jointid run: {refused}", file=sys.stderr)
-                return STOPPED
+        if not (arguments.emulate or arguments.yes):
+            with open_drive(bench):  # a bus that is not there is said before anybody is asked
+                pass
         if not (arguments.emulate or arguments.yes or _agreed(bench)):
-            print("jointid run: not started", file=sys.stderr)
+            refused("run", "not_agreed", "not started", as_json=as_json)
             return STOPPED
         with _observers(arguments) as observers:
             result = commission(
@@ -198,23 +213,57 @@ def run(arguments: argparse.Namespace) -> int:
                 callback=None if arguments.quiet else _say,
                 agree=None if arguments.emulate or arguments.yes else _agreed_again,
             )
-    except (SessionRefusedError, SessionStoppedError) as error:
-        print(f"jointid run: {error}", file=sys.stderr)
+    except SessionRefusedError as error:
+        moved, off = motor_off_before(error)
+        if moved:  # it was a later run that was refused
+            stopped("preflight", str(error), off, output, as_json=as_json)
+        else:
+            refused("run", "preflight", str(error), as_json=as_json)
         return STOPPED
-    if arguments.save is not None:
+    except SessionStoppedError as error:
+        stop = error.stop
+        stopped(stop.limit, str(error), stop.motor_off, output, as_json=as_json)
+        return STOPPED
+    except (Exception, KeyboardInterrupt) as error:
+        moved, off = motor_off_before(error)
+        if moved and isinstance(error, KeyboardInterrupt):
+            print(motor_and_recording(off, output), file=sys.stderr)
+        elif moved:  # shown below the traceback
+            error.add_note(motor_and_recording(off, output))
+        raise
+    if arguments.save is not None and result.blocked is None:
         if not arguments.save.exists():  # comments and the table [session] are kept
             write_whole(arguments.save, arguments.joint.read_bytes())
         result.estimates[-1].save(arguments.save)
     if arguments.output is not None:
         _write(result, arguments.output)
-    if arguments.json:
-        print(json.dumps(result.to_dict(), indent=1, ensure_ascii=False))
+    if as_json:
+        print(json.dumps(document(result, output), indent=1, ensure_ascii=False))
     else:
         print(result.report())
         if arguments.output is not None:
             written = "recordings, frame logs" + (", estimates" if result.estimates else "")
             print(f"\n{written} and tracking_error.png: {arguments.output}")
+        print(motor_and_recording(motor_off(result), output))
+    if result.blocked is not None:
+        unsaved = "" if arguments.save is None else f"; {arguments.save} was not written"
+        print(
+            f"jointid run: the finding {result.blocked.code} is blocking: the joint was not moved with the "
+            f"estimate{unsaved}",
+            file=sys.stderr,
+        )
+        return STOPPED
     return 0
+
+
+def _say_passed(arguments: argparse.Namespace, bench: Bench) -> None:
+    from jointid.cli.bench_settings import in_force
+
+    if arguments.json:
+        found = {"status": "passed", "in_force": in_force(arguments.joint, bench).to_dict()}
+        print(json.dumps(found, indent=1, ensure_ascii=False))
+    else:
+        print("all pre-flight checks passed")
 
 
 def _check(arguments: argparse.Namespace) -> None:
@@ -224,6 +273,13 @@ def _check(arguments: argparse.Namespace) -> None:
     if arguments.cycles == 0 and arguments.save is not None:
         raise InputError(
             "with 0 cycles nothing is identified", argument="save", value=arguments.save
+        )
+    if arguments.cycles == 0 and arguments.output is None and not arguments.dry_run:
+        raise InputError(
+            "0 cycles only record, and nothing says where; the recording would be lost",
+            argument="cycles",
+            value=arguments.cycles,
+            remedy="give a folder: --output runs",
         )
     if arguments.save is not None and arguments.save.suffix != ".toml":
         raise InputError("a joint file ends in .toml", argument="save", value=arguments.save)

@@ -43,7 +43,13 @@ def _runs(result: Commissioning) -> list[str]:
         for run in (*result.runs, *last)
     ]
     lines = [*_table(rows), "", "Errors without each run's first sixth, by the encoder."]
-    if not result.estimates:
+    if result.blocked is not None:
+        lines += ["", f"{result.blocked.code} is blocking: {result.blocked.cause}."]
+        return [
+            *lines,
+            "The joint was not moved with this estimate, and its values cannot be used.",
+        ]
+    if len(result.runs) == 1:
         return lines
     summary = f"The tracking error fell by a factor of {result.improvement:.1f}"
     if result.true_run is not None:
@@ -87,12 +93,13 @@ def _parameters(result: Commissioning) -> list[str]:
     rows = [head]
     assumed = last.joint.parameters
     initial = result.runs[0].controller.asdict()
-    for name in last.free:
+    held = {name for name, found in last.parameters.items() if found.at_bound}
+    for name in (each for each in last.parameters if each in {*last.free, *held}):
         if name not in assumed:
             continue
         found = [estimate.parameters[name] for estimate in result.estimates]
         row = [name, f"{initial[name]:.4g}" if name in initial else ""]
-        row += [f"{each.value:.5g}" for each in found]
+        row += [f"{each.value:.5g}{' (bound)' if each.at_bound else ''}" for each in found]
         error = found[-1].stderr
         row.append("" if error is None else f"{error:.2g}")
         if result.truth:

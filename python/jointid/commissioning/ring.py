@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.findings import Finding
 from jointid.hardware.bench.bench import Bench
 from jointid.hardware.bench.emulated_joints import true_joint
 from jointid.hardware.bench.opened_drive import open_drive
@@ -57,7 +59,7 @@ class Commissioning:
     Attributes
     ----------
     runs : tuple of BenchRun
-        The initial one, then one for each cycle that `agree` allowed.
+        The initial one, then one for each cycle that `agree` allowed, and whose estimate has no blocking finding.
     estimates : tuple of Estimate
         One for each cycle, each of all that was recorded until then; none when the joint was only recorded.
     truth : mapping of str to float
@@ -73,6 +75,11 @@ class Commissioning:
     truth: Mapping[str, float]
     true_run: BenchRun | None = None
     without_ripple: Estimate | None = None
+
+    @property
+    def blocked(self) -> Finding | None:
+        """The blocking finding of the last estimate, with which the joint was not moved; None without one."""
+        return None if not self.estimates else _blocking(self.estimates[-1])
 
     @property
     def improvement(self) -> float:
@@ -97,6 +104,7 @@ class Commissioning:
                 for r in (*self.runs, *last)
             ],
             "improvement": self.improvement,
+            "blocked": None if self.blocked is None else self.blocked.code,
             "estimates": estimates,
             "truth": dict(self.truth),
             "without_ripple": None
@@ -124,6 +132,9 @@ def commission(
     agree: Callable[[Estimate], bool] | None = None,
 ) -> Commissioning:
     """Move the joint, identify it from that, and move it again with the estimate.
+
+    An estimate with a finding of severity "blocking" cannot be used: the joint is not moved with it, and the
+    commissioning ends there, see `Commissioning.blocked`.
 
     Parameters
     ----------
@@ -166,13 +177,18 @@ def commission(
         controller = believing(controller, bench.joint)
     report = callback if callback is not None else lambda _: None
     folder = None if output is None else Path(output)
+    fresh = False
     if folder is not None:
+        fresh = not folder.exists()
         folder.mkdir(parents=True, exist_ok=True)
     runs: list[BenchRun] = []
     estimates: list[Estimate] = []
     true_run: BenchRun | None = None
     recordings: dict[str, Recording] = {}
-    with open_drive(bench, emulate=emulate, seed=seed) as drive:
+    with (
+        _no_empty_folder(folder if fresh else None),
+        open_drive(bench, emulate=emulate, seed=seed) as drive,
+    ):
 
         def run(name: str, law: Controller, found: Joint | None = None) -> BenchRun:
             report(f"run: {name}")
@@ -208,17 +224,20 @@ def commission(
                 estimates.append(estimate)
                 if folder is not None:
                     estimate.save(folder / f"cycle_{cycle}.json")
+                if _blocking(estimate) is not None:
+                    break
                 if agree is not None and not agree(estimate):
                     break
                 found = estimate.joint
                 runs.append(run(f"cycle {cycle}", believing(controller, found), found))
-            if emulate and cycles:
+            if emulate and cycles and _blocking(estimates[-1]) is None:
                 true_run = run("true parameters", believing(controller, true_joint(bench)))
         except (Exception, KeyboardInterrupt) as error:
             _keep(error, recordings)
             raise
     plain = None
-    if estimates and bench.joint.model.resolved.ripple:
+    usable = bool(estimates) and _blocking(estimates[-1]) is None
+    if usable and bench.joint.model.resolved.ripple:
         before = [each.recording for each in runs[: len(estimates)]]
         plain = identify(before, bench.joint, model=Model(ripple=()), search=search)
     truth = bench.emulation.truth if emulate and bench.emulation is not None else {}
@@ -229,6 +248,22 @@ def commission(
         true_run=true_run,
         without_ripple=plain,
     )
+
+
+def _blocking(estimate: Estimate) -> Finding | None:
+    """The first finding that says that the values cannot be used."""
+    return next((each for each in estimate.findings if each.severity == "blocking"), None)
+
+
+@contextmanager
+def _no_empty_folder(folder: Path | None) -> Iterator[None]:
+    """Take a folder away again that was made for a session that was not started."""
+    try:
+        yield
+    finally:
+        if folder is not None:
+            with suppress(OSError):  # it is not empty
+                folder.rmdir()
 
 
 def _keep(error: BaseException, recordings: Mapping[str, Recording]) -> None:

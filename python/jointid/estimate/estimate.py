@@ -348,6 +348,13 @@ class Estimate:
 
         path = require_path("path", path)
         text = read_text(path)
+        if not text.lstrip().startswith(
+            ("{", "[")
+        ):  # another file: where its JSON ends would not help
+            raise InputError(
+                "an estimate is expected, the .json file that identify saves",
+                place=str(path),
+            )
         try:
             return cls.from_json(text)
         except InputError as error:

@@ -15,6 +15,7 @@ from jointid.hardware.bench.table import Table, types_of
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.options import SessionOptions, check_cycles
 from jointid.hardware.session.realtime import RealTimeOptions
+from jointid.joint.angles import ANGLE_EXPECTED, text_in
 from jointid.joint.checks import suggestion
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_from_document, read_document
@@ -38,6 +39,7 @@ _REQUIRED = {
     "controller": "which describes the controller",
 }
 _TRAJECTORIES = ("thesis", "sine", "multisine", "sigmoid", "step", "trapezoid")
+_ANGLES = ("amplitude", "offset", "distance")  # of a trajectory
 _LAWS = {
     "adaptive_robust": _core.AdaptiveRobust,
     "compensated_pid": _core.CompensatedPid,
@@ -111,6 +113,9 @@ def _trajectory(table: Table) -> Trajectory:
     for name, parameter in expected.items():
         if parameter.default is parameter.empty and name not in arguments.entries:
             table.refuse(name, f"missing; the form {form!r} needs it")
+    for name in _ANGLES:
+        if (text := text_in(arguments.entries.get(name))) is not None:
+            table.refuse(name, ANGLE_EXPECTED, text)
     trajectory: Trajectory = arguments.call(make, dict.fromkeys(expected, ""))
     return trajectory
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import MISSING, fields
 from typing import Any, NoReturn, TypeVar
 
 from jointid.base.errors import NOT_GIVEN, InputError
+from jointid.joint.angles import in_radians
 from jointid.joint.checks import suggestion
 
 _KINDS: dict[str, tuple[tuple[type, ...], str]] = {
@@ -50,7 +50,7 @@ class Table:
             raise InputError(
                 f"a table [{name}] is expected", argument=name, value=entries, place=source
             )
-        self.entries = {str(key): _angle(value) for key, value in entries.items()}
+        self.entries = {str(key): in_radians(value) for key, value in entries.items()}
         self.name, self.source = name, source
 
     @property
@@ -161,15 +161,3 @@ def types_of(kind: Any) -> dict[str, str]:
         item.name: item.type.__name__ if isinstance(item.type, type) else str(item.type)
         for item in fields(kind)
     }
-
-
-def _angle(value: Any) -> Any:
-    """Angles may be written as "60deg"."""
-    if isinstance(value, str) and value.endswith("deg"):
-        try:
-            return math.radians(float(value.removesuffix("deg")))
-        except ValueError:
-            return value
-    if isinstance(value, list):
-        return [_angle(entry) for entry in value]
-    return value

@@ -46,6 +46,8 @@ class ElmoEmulation:
         The true one. Default: that of the joint file.
     sensor_sign : float
         1, or -1: the torque sensor reads less for a positive torque. Default 1.
+    peak_current : float, optional
+        PL[1] of the drive [A]. Default: what the joint file's torque or current limit allows.
 
     Raises
     ------
@@ -65,6 +67,7 @@ class ElmoEmulation:
     torque_scale: float = 1.0
     gear_ratio: float | None = None
     sensor_sign: float = 1.0
+    peak_current: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("torque_sign", "encoder_sign", "sensor_sign"):
@@ -78,6 +81,9 @@ class ElmoEmulation:
         ratio = self.gear_ratio
         if ratio is not None and not 1e-3 <= abs(ratio) <= 1e6:
             raise InputError("0.001 to 1e6 is expected", argument="gear_ratio", value=ratio)
+        peak = self.peak_current
+        if peak is not None and not 1e-3 <= peak <= 1e3:
+            raise InputError("0.001 to 1000 A is expected", argument="peak_current", value=peak)
         if not 0.0 <= self.idle_loop <= 0.01:
             raise InputError("0 to 0.01 s is expected", argument="idle_loop", value=self.idle_loop)
         if not -0.01 <= self.clock_drift <= 0.01:
@@ -144,7 +150,7 @@ def elmo_devices(
         counts_per_turn=int(emulation.encoder_sign) * bench.drive.counts_per_turn,
         gear_ratio=joint.gear_ratio,
         torque_constant=emulation.torque_sign * emulation.torque_scale * joint.torque_constant,
-        peak_current=largest,
+        peak_current=largest if emulation.peak_current is None else emulation.peak_current,
         continuous_current=largest,
         idle_loop=emulation.idle_loop,
         idle_jitter=emulation.idle_jitter,

@@ -38,7 +38,10 @@ def reasons_not_to_start(
     """
     reasons = []
     if not math.isfinite(allowed_torque):
-        reasons.append("the session has no torque limit; give one in [limits] or [session.limits]")
+        reasons.append(
+            "the session has no torque limit; give torque [N·m] or current [A] in [limits], or torque [N·m] in "
+            "[session.limits] of the joint file"
+        )
     if not peak > 0.0:
         reasons.append(f"the drive's peak current PL[1] is {peak:g} A; more than 0 is expected")
     allowed = allowed_torque / abs(per_ampere)
@@ -56,7 +59,8 @@ def reasons_not_to_start(
         meaning = failure_meaning(int(link.ask(Command(letters="MF")).value))
         reasons.append(
             f"the drive has shut its motor down before ({meaning or 'MF is 0'}); when that is "
-            "fixed, start with acknowledge = true"
+            "fixed, start once with acknowledge = true under [session.drive] of the joint file, and remove "
+            "it afterwards"
         )
     if status.unit_mode != 1:
         reasons.append(f"the drive is in unit mode {status.unit_mode}, not in torque mode (UM=1)")

@@ -133,9 +133,9 @@ class Certificate:
         except InputError as error:
             raise error.at(str(source)) if error.place != str(source) else error from error
         except ValueError as error:
-            raise InputError("no date", argument="date", place=str(source)) from error
+            raise _no_date(table["date"], source) from error
         if date.tzinfo is None:
-            raise InputError("a date with its zone is expected", argument="date", place=str(source))
+            raise _no_date(table["date"], source)
         return cls(date=date, **{name: table[name] for name in _TABLES})
 
     def objections(
@@ -160,12 +160,13 @@ class Certificate:
             found.append(f"it is {age.days} days old, more than {VALID.days}")
         if age < -_CLOCK:
             found.append(f"it is dated {self.date.isoformat(timespec='minutes')}, in the future")
-        found += _changes("the joint file's", self.joint, joint_facts(bench))
+        found += _changes("joint", "the joint file's", self.joint, joint_facts(bench))
         wiring = _plain(drive_type(bench.drive_type).wiring(bench.drive))
-        found += _changes("the joint file's", self.wiring, wiring)
+        found += _changes("wiring", "the joint file's", self.wiring, wiring)
         found += widened(self.limits, bench)
         if identity is not None:
-            found += _changes("the drive's", self.drive, _plain(identity_facts(identity)))
+            facts = _plain(identity_facts(identity))
+            found += _changes("drive", "the drive's", self.drive, facts)
         return found
 
     def notes(self, bench: Bench, identity: Mapping[str, Any] | None = None) -> list[str]:
@@ -209,7 +210,20 @@ def identity_facts(identity: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _changes(whose: str, before: Mapping[str, Any], after: Mapping[str, Any]) -> list[str]:
+def _no_date(text: str, source: Path) -> InputError:
+    return InputError(
+        'a date such as "2026-01-31T12:00:00+00:00" is expected',
+        argument="date",
+        value=text,
+        place=str(source),
+    )
+
+
+def _changes(
+    table: str, whose: str, before: Mapping[str, Any], after: Mapping[str, Any]
+) -> list[str]:
+    if after and not before:
+        return [f"the certificate lacks what [{table}] states"]
     return [
         f"{whose} {name} was {before.get(name, 'not there')} and is {after.get(name, 'not there')}"
         for name in dict.fromkeys((*before, *after))

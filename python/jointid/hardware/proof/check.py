@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,6 +18,10 @@ from jointid.hardware.session.drive_report import DriveReport
 from jointid.hardware.session.start_checks import problems_at_rest
 
 _DRIFT = 5.0  # counts within the time that the joint is watched
+_LITTLE_ABOVE = (
+    2.0  # times the joint's velocity: a drive's own speed limit beyond that protects nothing
+)
+_SPEEDS = ("HL[2]", "LL[2]")  # names of a drive's own speed limits, in counts a second
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,6 +44,8 @@ class BenchCheck:
         Between the drive's settings and what the joint file needs.
     problems : tuple of str
         Reasons not to move the joint.
+    remarks : tuple of str
+        Worth a change, but no reason not to move the joint.
     """
 
     address: str
@@ -51,6 +57,7 @@ class BenchCheck:
     noise: float = math.nan
     differences: tuple[str, ...] = ()
     problems: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -72,6 +79,7 @@ class BenchCheck:
             **numbers,
             "differences": list(self.differences),
             "problems": list(self.problems),
+            "remarks": list(self.remarks),
         }
 
     def text(self) -> str:
@@ -99,6 +107,7 @@ class BenchCheck:
         lines.append(f"position: {self.position:+.5f} rad, speed {self.velocity:+.5f} rad/s")
         if math.isfinite(self.reading):
             lines.append(f"torque sensor: reads {self.reading:+.3f} ± {self.noise:.3f}")
+        lines += [f"REMARK: {each}" for each in self.remarks]
         lines += [f"DIFFERENT: {each}" for each in self.differences]
         lines += [f"PROBLEM: {each}" for each in self.problems]
         if self.passed:
@@ -182,6 +191,8 @@ def _read(bench: Bench, drive: Drive, found: dict[str, Any]) -> None:
     resolution = bench.options.resolution or getattr(drive, "resolution", None)
     if resolution is None:
         raise InputError("missing; this drive has none", argument="resolution")
+    if found["report"] is not None:
+        found["remarks"] = tuple(_wide_speeds(found["report"], bench.limits.velocity, resolution))
     positions = np.array([each.position for each in samples])
     duration = max(last.time - samples[0].time, period)
     found["position"] = last.position
@@ -197,3 +208,16 @@ def _read(bench: Bench, drive: Drive, found: dict[str, Any]) -> None:
             "support it against gravity"
         )
     found["problems"] = tuple(problems)
+
+
+def _wide_speeds(report: DriveReport, velocity: float, resolution: float) -> Iterator[str]:
+    """Say which of the drive's own speed limits would let a joint run away that nobody commands any more."""
+    counts = velocity / resolution
+    for name in _SPEEDS:
+        value = report.value(name)
+        if isinstance(value, int | float) and abs(value) > _LITTLE_ABOVE * counts:
+            own = math.copysign(counts, value)
+            yield (
+                f"the drive's own speed limit {name} is {value:.0f} counts/s, {abs(value) / counts:.0f} times the "
+                f"joint's velocity limit of {velocity:g} rad/s; set {name} a little beyond {own:.0f} counts/s"
+            )

@@ -18,6 +18,23 @@ _WHOLE = 0.875 - 1e-9
 _ROUNDING = 1e-6  # of a 32-bit float
 # Counts in a cycle: from such a speed no friction brings a joint to a stand within the next.
 _MOVING = 20
+# At a reversal the torque swings by twice the breakaway while the joint stands. It is believed to a factor of 2.
+_BELIEVED = 2.0
+# Of the torque limit: who stands still while it swings by more has no torque left to move it.
+_NEARLY_ALL = 1.98
+
+_WHY_CUT = (
+    "likely: a torque limit, or a PL[1] of the drive, that is too small for this motion; a torque_constant or "
+    "gear_ratio that is not the joint's; a brake that is closed, a blocked joint, or an encoder that hangs"
+)
+_WHY_FAST = (
+    "; likely: late or lost cycles, behind which the command jumps; [session.limits] torque_rate too small for the "
+    "step of the friction compensation at a reversal; gains too high for the encoder's counts"
+)
+_WHY_STANDING = (
+    "; the joint file states no friction ([parameters] coulomb, static): where the breakaway torque is more than half "
+    "the torque limit, a healthy joint stands like this at a slow reversal"
+)
 
 
 class Guard:
@@ -32,6 +49,8 @@ class Guard:
         Output angle of an encoder count [rad].
     foresight : Foresight, optional
         Checks that need to know the joint. Default: none.
+    breakaway : float, optional
+        Torque that the joint is believed to need before it moves [N·m]. Default: not known.
 
     Attributes
     ----------
@@ -45,6 +64,7 @@ class Guard:
         period: float,
         resolution: float,
         foresight: Foresight | None = None,
+        breakaway: float | None = None,
     ) -> None:
         self._foresight = foresight
         self._limits, self._period = limits, period
@@ -52,6 +72,9 @@ class Guard:
         self._largest_measured = limits.largest_measured
         self._largest_difference = limits.largest_difference
         self._moving = _MOVING * resolution / period
+        self._friction_known = breakaway is not None
+        swing = min(2.0 * _BELIEVED * (breakaway or 0.0), _NEARLY_ALL * limits.torque)
+        self._largest_swing = max(limits.torque, swing)
         self._last = 0.0  # commanded by the controller; enabling commands zero
         self._cut = 0  # commands that the drive accepted only in part
         self._accepted = 0.0  # torque accepted by the drive
@@ -124,13 +147,13 @@ class Guard:
         if abs(torque) > limits.torque * (1.0 + 1e-9):
             _hold("torque", torque, limits.torque, "N·m")
         rate = (torque - self._last) / self._period
-        _hold("torque_rate", rate, limits.torque_rate, "N·m/s")
+        _hold("torque_rate", rate, limits.torque_rate, "N·m/s", _WHY_FAST)
         self._last = torque
         cut = saturations + self._cut
         if cut > limits.saturated_samples:
             raise LimitError(
                 "saturated_samples",
-                f"the torque limit cut the command {cut} times, more than {limits.saturated_samples}",
+                f"the torque limit cut the command {cut} times, more than {limits.saturated_samples}; {_WHY_CUT}",
                 measured=cut,
                 allowed=limits.saturated_samples,
             )
@@ -191,16 +214,19 @@ class Guard:
         if self._repeated <= self._limits.repeated_positions:
             return
         change = abs(self._accepted - self._accepted_there)
+        doubt = ""
         if abs(self._speed_there) > self._moving:
             reason = f"it was {abs(self._speed_there):.3f} rad/s fast before"
-        elif change > self._limits.torque:
+        elif change > self._largest_swing:
             reason = f"the torque has changed by {change:.0f} N·m since"
+            if not self._friction_known:
+                doubt = _WHY_STANDING
         else:
             return
         raise LimitError(
             "repeated_positions",
             f"the joint has been at {position:.6f} rad for {self._repeated} cycles, though {reason}: the "
-            "encoder hangs, or the joint is blocked",
+            f"encoder hangs, or the joint is blocked{doubt}",
             measured=self._repeated,
             allowed=self._limits.repeated_positions,
         )
@@ -223,12 +249,12 @@ class Guard:
             )
 
 
-def _hold(limit: str, value: float, allowed: float, unit: str) -> None:
+def _hold(limit: str, value: float, allowed: float, unit: str, why: str = "") -> None:
     """Also a value that is not finite exceeds its limit."""
     if not abs(value) <= allowed:
         raise LimitError(
             limit,
-            f"{value:.4g} {unit}, more than {allowed:g} {unit}",
+            f"{value:.4g} {unit}, more than {allowed:g} {unit}{why}",
             measured=value,
             allowed=allowed,
         )

@@ -41,7 +41,8 @@ class SessionLimits:
         Cycles in a row that ended after the next had to begin.
     repeated_positions : int
         Times in a row that the position is the same to the count although the joint was moving just
-        before, or the torque has since changed by more than `torque`: an encoder that hangs, or a blocked joint.
+        before, or the torque has since changed by more than `torque` and more than four times the believed
+        breakaway torque (but never more than 1.98 times `torque`): an encoder that hangs, or a blocked joint.
     clipped_samples : int
         Readings in a row at the end of the sensor's range.
     late_samples : int

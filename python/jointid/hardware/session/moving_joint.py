@@ -37,11 +37,7 @@ class MovingJoint:
         """Return what a joint states; None when there is none, or its inertia is not known."""
         if not isinstance(joint, Joint):
             return None
-        values = {
-            name: parameter.value
-            for name, parameter in joint.parameters.items()
-            if parameter.value is not None
-        }
+        values = _values(joint)
         inertia = values.get("inertia", joint.reflected_inertia)
         if inertia is None or not inertia > 0.0:
             return None
@@ -49,14 +45,12 @@ class MovingJoint:
             inertia += joint.link_inertia
         link = joint.link if joint.kind == "revolute" else None
         weight = 0.0 if link is None else link.mass * link.gravity * link.centre_of_mass
-        coulomb, viscous = _largest(values, "coulomb"), _largest(values, "viscous")
-        static = _largest(values, "static")
         return cls(
             inertia=inertia,
             weight=weight,
             angle=0.0 if link is None else link.angle,
-            dry=None if coulomb is None else coulomb + (static or 0.0),
-            viscous=viscous,
+            dry=breakaway(joint),
+            viscous=_largest(values, "viscous"),
         )
 
     def braking(self, torque: float) -> tuple[float, float] | None:
@@ -87,6 +81,24 @@ class MovingJoint:
         gravity = abs(self.weight * math.cos(position + self.angle))
         friction = self.dry + (self.viscous or 0.0) * abs(velocity)
         return friction + self.inertia * abs(acceleration) + gravity
+
+
+def breakaway(joint: object) -> float | None:
+    """Return the largest dry friction that a joint states [N·m], of Coulomb and static; None: it is not known."""
+    if not isinstance(joint, Joint):
+        return None
+    values = _values(joint)
+    coulomb = _largest(values, "coulomb")
+    return None if coulomb is None else coulomb + (_largest(values, "static") or 0.0)
+
+
+def _values(joint: Joint) -> dict[str, float]:
+    """Those parameters whose value is known."""
+    return {
+        name: parameter.value
+        for name, parameter in joint.parameters.items()
+        if parameter.value is not None
+    }
 
 
 def _largest(values: dict[str, float], name: str) -> float | None:

@@ -21,7 +21,7 @@ from jointid.hardware.session.guard import Guard
 from jointid.hardware.session.interruptions import Interruptions
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.metadata import plain, session_metadata
-from jointid.hardware.session.moving_joint import MovingJoint
+from jointid.hardware.session.moving_joint import MovingJoint, breakaway
 from jointid.hardware.session.options import SessionOptions, check_cycles, with_resolution
 from jointid.hardware.session.outcome import ending_of, recording_of, stop_of
 from jointid.hardware.session.realtime import RealTime, RealTimeOptions
@@ -107,7 +107,8 @@ class Session:
         check_drive(drive)
         self._drive, self._controller, self._trajectory = drive, controller, trajectory
         self._limits = limits
-        self._moved = MovingJoint.of(getattr(drive, "joint", None) if joint is None else joint)
+        moved = getattr(drive, "joint", None) if joint is None else joint
+        self._moved, self._breakaway = MovingJoint.of(moved), breakaway(moved)
         self._options = with_resolution(options if options is not None else SessionOptions(), drive)
         self._output = None if output is None else Path(output)
         self._observer = observer
@@ -290,6 +291,7 @@ class Session:
                     options.period,
                     options.resolution,
                     foresight_of(self._moved, self._drive, limits, options),
+                    self._breakaway,
                 ),
                 options,
                 interruptions=interruptions,
