@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,7 +79,7 @@ class Axis:
         self._interruptions = interruptions
         self.period, self.resolution = period, resolution
         self.travel = self.largest_torque = 0.0
-        self.on = False
+        self.on = self._free = False
         self._torque = 0.0
         self._lost = self.lost = 0
         self._unfollowed = 0
@@ -95,6 +97,14 @@ class Axis:
     def latency(self) -> float:
         """From sending a command until it acts [s]."""
         return self._drive.command_latency
+
+    @contextmanager
+    def by_hand(self) -> Iterator[None]:
+        """Without bounds, for as long as somebody turns the joint; they begin anew where it is left."""
+        self._free = True
+        yield
+        self._free = False
+        self._start, self.travel = self.sample.position, 0.0
 
     def enable(self) -> None:
         """Switch the motor on, at no torque."""
@@ -179,6 +189,8 @@ class Axis:
         position = sample.position
         if not math.isfinite(position):
             raise RefusedBenchError("not_ready", f"the position is {position}")
+        if self._free:
+            return
         self.travel = max(self.travel, abs(position - self._start))
         if self.travel > options.travel:
             raise RefusedBenchError(

@@ -14,6 +14,7 @@ REASONS = {
     "gear_ratio": "the gear ratio, or the encoder's counts a turn, are not those of the joint file",
     "torque_constant_or_gear_ratio": "the torque constant or the gear ratio of the joint file is wrong",
     "sensor_sign": "the torque sensor reads the negative of the torque",
+    "encoder_stands": "the encoder does not count where the joint is turned, or must move",
     "sensor_moves_alone": "the torque sensor shows a motion, or a blocked joint, and the encoder stands",
     "does_not_stop": "the joint does not stop when the torque is gone",
     "too_far": "the joint went farther than a first motion may",

@@ -8,6 +8,8 @@ from typing import Any
 
 UNCHECKED = {
     "positive_direction": "torque and encoder inverted together look like a right bench: see which way the link goes",
+    "encoder": "that the encoder counts: no sensor shows a joint that moves behind one that hangs, and nobody turned "
+    "it by hand, motor off, before the torque; the travel reported is what the encoder saw",
     "homing": "that the joint's zero is where position_offset says",
     "backlash": "how far the motor turns without the output",
     "torque_constant": "the torque constant: the joint file states neither friction nor inertia to hold it against",

@@ -15,6 +15,7 @@ from jointid.hardware.proof.axis import Axis
 from jointid.hardware.proof.breakaway import Breakaway, find_breakaway
 from jointid.hardware.proof.control import small_move
 from jointid.hardware.proof.expected import Expected, expected_of, scale_fault
+from jointid.hardware.proof.hand_turn import await_hand_turn
 from jointid.hardware.proof.pushes import (
     STRENGTH,
     Motion,
@@ -74,6 +75,7 @@ class Steps:
         self._expected: Expected = expected_of(bench.joint)
         if not self._options.compare_friction:
             self._expected = replace(self._expected, breakaway=None)
+        self._watched = self._expected.sensor and self._options.watch_sensor
         self._deviation = math.nan  # of the torque sensor's readings at rest
         self.axis: Axis | None = None
         self.lines: list[str] = []
@@ -83,6 +85,8 @@ class Steps:
         }
         self.signs: dict[str, int | None] = {"torque_and_encoder": None, "sensor": None}
         self.unchecked = ["positive_direction", "homing", "backlash", "watchdog", "emergency_stop"]
+        if not self._watched and self._options.hand_turn is None:
+            self.unchecked.append("encoder")
 
     def _say(self, line: str) -> None:
         self.lines.append(line)
@@ -104,6 +108,8 @@ class Steps:
         axis.enable()
         self._stands(axis, "motor on, no torque")
         found = [self._breakaway(axis, direction, cap) for direction in (1.0, -1.0)]
+        if "encoder" in self.unchecked:
+            self.unchecked.remove("encoder")  # it has counted, both ways
         self._judge_signs(found)
         breakaway = (found[0].torque, found[1].torque)
         self._judge_scales(axis, breakaway)
@@ -115,8 +121,15 @@ class Steps:
         given, limit = self._options.largest_torque, self._bench.limits.torque
         if given is None:
             stated = self._expected.breakaway
-            watched = self._expected.sensor and self._options.watch_sensor
-            factor = _CAP if watched else _CAP_UNWATCHED
+            if stated is None and not self._watched:
+                # Up to the torque limit a joint whose encoder hangs would turn many times, and nothing sees it.
+                raise RefusedBenchError(
+                    "not_ready",
+                    "neither a known friction nor a torque sensor ends a search for motion if the encoder hangs: give "
+                    "the joint file its friction, or set largest_torque (--largest-torque) to at most twice "
+                    "the torque at which the joint is thought to move",
+                )
+            factor = _CAP if self._watched else _CAP_UNWATCHED
             given = math.inf if stated is None else factor * stated
         cap = min(given, limit)
         if not math.isfinite(cap):
@@ -150,6 +163,10 @@ class Steps:
             interruptions=interruptions,
         )
         self.axis = axis
+        if self._options.hand_turn is not None:
+            self._say(f"turn the joint by hand, and leave it: {self._options.hand_turn:g} s")
+            turned = await_hand_turn(axis, self._options.hand_turn)
+            self._say(f"the encoder counts: turned by {turned:.5f} rad")
         reasons = list(problems_at_rest(axis.sample, bench.limits))
         low, high = bench.limits.position
         if not low + self._options.travel <= axis.sample.position <= high - self._options.travel:
@@ -183,7 +200,7 @@ class Steps:
                 )
         if self._expected.sensor:
             self.found["sensor_zero"] = float(np.mean(readings))
-            if self._options.watch_sensor:
+            if self._watched:
                 self._deviation = float(np.std(readings))
         self._say(f"stands, {when}: {axis.sample.position:+.5f} rad")
 
