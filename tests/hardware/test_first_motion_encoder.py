@@ -1,10 +1,21 @@
 """A first motion with an encoder that hangs: seen before the torque, or as soon as the joint must have moved."""
 
+import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 import pytest
-from first_motion_benches import FRICTIONS, STRONG, WEAK, bench_with, moved, without_sensor
+from first_motion_benches import (
+    FARTHEST,
+    FRICTIONS,
+    STRONG,
+    WEAK,
+    bench_with,
+    breakaway,
+    moved,
+    without_sensor,
+)
 
 from jointid.hardware.bench.bench import Bench
 from jointid.hardware.elmo.emulated_drive import EmulatedElmo
@@ -62,3 +73,39 @@ def test_without_a_turn_by_hand_there_is_no_torque() -> None:
     assert result.reason == "encoder_stands"
     assert spy.torque == 0.0
     assert not result.largest_torque
+
+
+def hanging(when: float, way: float) -> Callable[[EmulatedElmo], object]:
+    """The encoder hangs when the joint has gone a way [rad] from where it is at a time after the motor is on [s]."""
+
+    def change(drive: EmulatedElmo) -> None:
+        free = drive.advance
+        seen: dict[str, float] = {}
+
+        def advance() -> None:
+            now = drive.bus.now()
+            if drive.motor_on:
+                seen.setdefault("on", now)
+                if now - seen["on"] > when:
+                    place = seen.setdefault("place", drive.joint.position)
+                    if drive.stuck_encoder is None and abs(drive.joint.position - place) > way:
+                        drive.stuck_encoder = drive.counts()
+            free()
+
+        drive.advance = advance  # type: ignore[method-assign]
+
+    return change
+
+
+@pytest.mark.parametrize("sensor", [True, False])
+@pytest.mark.parametrize("friction", ["weak", "strong"])
+@pytest.mark.parametrize(("when", "degrees"), [(19.0, 0.02), (26.0, 0.1)])
+def test_an_encoder_that_hangs_later_is_seen(
+    sensor: bool, friction: str, when: float, degrees: float
+) -> None:
+    bench = bench_with(FRICTIONS[friction])
+    bench = bench if sensor else without_sensor(bench)
+    result, spy = moved(bench, change=hanging(when, math.radians(degrees)))
+    assert result.reason == "encoder_stands", result.report()
+    assert spy.way < FARTHEST
+    assert spy.torque < 1.3 * breakaway(bench)

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jointid.hardware.bench.first_motion_options import FirstMotionOptions
+from jointid.hardware.proof.encoder_watch import EncoderWatch
 from jointid.hardware.proof.refusal import RefusedBenchError
 from jointid.hardware.session.drive import Drive, DriveFaultError, DriveSample
 from jointid.hardware.session.interruptions import Interruptions
@@ -63,6 +64,8 @@ class Axis:
         Samples that did not come in time.
     sample : DriveSample
         The last one.
+    encoder_watch : EncoderWatch or None
+        From when the breakaway is known.
     """
 
     def __init__(
@@ -80,6 +83,7 @@ class Axis:
         self.period, self.resolution = period, resolution
         self.travel = self.largest_torque = 0.0
         self.on = self._free = False
+        self.encoder_watch: EncoderWatch | None = None
         self._torque = 0.0
         self._lost = self.lost = 0
         self._unfollowed = 0
@@ -143,6 +147,7 @@ class Axis:
                     raise
                 if self.on:  # nobody sees the joint: no torque, and our heartbeat with it
                     self._drive.command(0.0)
+                    self._torque = 0.0
                 continue
             self._lost = 0
             self._hold(sample)
@@ -202,6 +207,13 @@ class Axis:
             raise RefusedBenchError(
                 "too_fast",
                 f"the joint moves at {speed:.3f} rad/s, more than {options.velocity:g} rad/s",
+            )
+        watch = self.encoder_watch
+        if watch is not None and watch.stands(sample.time, position, self._torque):
+            raise RefusedBenchError(
+                "encoder_stands",
+                f"under {self._torque:.4g} N·m, after it broke away at less, the joint must have moved and the encoder "
+                f"stands at {position:.5f} rad: it hangs, or is not connected any more; or something blocks the joint",
             )
         if self.on and not math.isnan(sample.torque):
             self._follow(sample.torque)

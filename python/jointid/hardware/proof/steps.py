@@ -14,6 +14,7 @@ from jointid.hardware.bench.bench import Bench
 from jointid.hardware.proof.axis import Axis
 from jointid.hardware.proof.breakaway import Breakaway, find_breakaway
 from jointid.hardware.proof.control import small_move
+from jointid.hardware.proof.encoder_watch import EncoderWatch
 from jointid.hardware.proof.expected import Expected, expected_of, scale_fault
 from jointid.hardware.proof.hand_turn import await_hand_turn
 from jointid.hardware.proof.pushes import (
@@ -112,6 +113,8 @@ class Steps:
             self.unchecked.remove("encoder")  # it has counted, both ways
         self._judge_signs(found)
         breakaway = (found[0].torque, found[1].torque)
+        if self._expected.inertia is not None:
+            axis.encoder_watch = EncoderWatch(breakaway, self._expected.inertia, axis.resolution)
         self._judge_scales(axis, breakaway)
         motion = self._judge_sensor(axis, breakaway)
         self._under_control(axis, breakaway, motion, max(each.wind_up for each in found))
@@ -352,6 +355,7 @@ class Steps:
         if inertia is None:
             self.unchecked.append("control")
             return
+        axis.encoder_watch = EncoderWatch(breakaway, inertia, axis.resolution)
         for amplitude in self._options.moves:
             worst = small_move(axis, amplitude, breakaway, inertia, wind_up)
             self._say(
