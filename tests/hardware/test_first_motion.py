@@ -299,3 +299,24 @@ def test_options_are_checked() -> None:
         values: dict[str, Any] = wrong
         with pytest.raises(jid.InputError, match=next(iter(wrong))):
             jid.hardware.FirstMotionOptions(**values)
+
+
+@pytest.mark.parametrize("factor", [0.1, 5.0])
+def test_an_inertia_that_is_not_the_stated_one_is_refused(factor: float) -> None:
+    bench = bench_with(STRONG)
+    rotor = bench.joint.rotor_inertia
+    assert rotor is not None
+    assert bench.emulation is not None
+
+    def other(drive: EmulatedElmo) -> None:
+        assert bench.emulation is not None
+        drive.joint = stepped_joint(
+            true_joint(bench).replace(rotor_inertia=factor * rotor),
+            sensors=bench.emulation.sensors,
+            period=bench.options.period,
+        )
+
+    result, spy = moved(bench, change=other)
+    assert result.reason == "inertia", result.report()
+    assert spy.way < FARTHEST
+    assert spy.torque < 1.3 * breakaway(bench)

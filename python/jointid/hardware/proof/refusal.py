@@ -13,6 +13,7 @@ REASONS = {
     "torque_constant": "the torque is not what the joint file's torque constant makes of the current",
     "gear_ratio": "the gear ratio, or the encoder's counts a turn, are not those of the joint file",
     "torque_constant_or_gear_ratio": "the torque constant or the gear ratio of the joint file is wrong",
+    "inertia": "the joint's inertia is not the one that the joint file states",
     "sensor_sign": "the torque sensor reads the negative of the torque",
     "encoder_stands": "the encoder does not count where the joint is turned, or must move",
     "sensor_moves_alone": "the torque sensor shows a motion, or a blocked joint, and the encoder stands",

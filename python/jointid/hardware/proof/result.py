@@ -15,6 +15,7 @@ UNCHECKED = {
     "torque_constant": "the torque constant: the joint file states neither friction nor inertia to hold it against",
     "gear_ratio": "the gear ratio and the encoder's counts: there is no encoder at the output, and no friction "
     "in the joint file to hold them against",
+    "inertia": "the joint's inertia: the joint file states none to hold it against, or it could not be measured",
     "sensor_sign": "the sign of the torque sensor: it shows too little of the joint's acceleration",
     "watchdog": "that the drive stops by itself when the host is gone: pull the plug once",
     "emergency_stop": "the emergency stop, the brake and the end stops",

@@ -43,6 +43,11 @@ _QUICK = 0.3  # of the velocity allowed: nor those that were so fast
 _PUSHED = 0.6  # of the time allowed, after which no more pushes begin
 _FEW_PUSHES = 4  # pairs that only tell a wrong torque constant from a wrong gear ratio
 _DRIFT = 5.0  # counts: a joint that stands moves less
+_SURE, _SURE_WOUND, _WOUND = (
+    1.02,
+    1.1,
+    2e-4,
+)  # of the breakaway; the joint slides; [rad] of yielding
 _FARTHER = 2.0  # measured over stated inertia, where nothing else is known
 
 
@@ -77,6 +82,7 @@ class Steps:
         if not self._options.compare_friction:
             self._expected = replace(self._expected, breakaway=None)
         self._watched = self._expected.sensor and self._options.watch_sensor
+        self._sure = (math.inf, math.inf)  # torques under which the joint slides [N·m]
         self._deviation = math.nan  # of the torque sensor's readings at rest
         self.axis: Axis | None = None
         self.lines: list[str] = []
@@ -113,8 +119,12 @@ class Steps:
             self.unchecked.remove("encoder")  # it has counted, both ways
         self._judge_signs(found)
         breakaway = (found[0].torque, found[1].torque)
+        # A gear that winds up is taken for sliding a little before it does.
+        wound = max(each.wind_up for each in found) > _WOUND
+        sure = tuple((_SURE_WOUND if wound else _SURE) * each for each in breakaway)
+        self._sure = (sure[0], sure[1])
         if self._expected.inertia is not None:
-            axis.encoder_watch = EncoderWatch(breakaway, self._expected.inertia, axis.resolution)
+            axis.encoder_watch = EncoderWatch(self._sure, self._expected.inertia, axis.resolution)
         self._judge_scales(axis, breakaway)
         motion = self._judge_sensor(axis, breakaway)
         self._under_control(axis, breakaway, motion, max(each.wind_up for each in found))
@@ -315,21 +325,29 @@ class Steps:
     def _judge_inertia(self, inertia: float) -> None:
         """Without a stated friction the inertia alone tells of the torque constant, and nothing of the gear ratio."""
         expected = self._expected
-        if expected.breakaway is not None:
-            return
-        self.unchecked.append("gear_ratio")
+        known = expected.breakaway is not None  # the friction has shown that the scales are right
+        if not known:
+            self.unchecked.append("gear_ratio")
         stated = expected.inertia
         if stated is None or not math.isfinite(inertia):
-            self.unchecked.append("torque_constant")
+            self.unchecked.append("inertia" if known else "torque_constant")
             return
         ratio = inertia / stated
         if 1.0 / _FARTHER <= ratio <= _FARTHER:
             return
+        said = (
+            f"the joint's inertia is {inertia:.3g} kg·m² by the joint file's constants, {ratio:.3g} times the "
+            f"{stated:.3g} kg·m² that it states"
+        )
+        if known:
+            raise RefusedBenchError(
+                "inertia",
+                f"{said}, and its friction is as stated: rotor_inertia or [link] is wrong",
+            )
         # A wrong gear ratio leaves the rotor's inertia as it is, and can only add to it: of the link's.
         raise RefusedBenchError(
             "torque_constant" if ratio < 1.0 else "torque_constant_or_gear_ratio",
-            f"the joint's inertia is {inertia:.3g} kg·m² by the joint file's constants, {ratio:.3g} times the "
-            f"{stated:.3g} kg·m² that it states: one of the constants is wrong, or the stated inertia",
+            f"{said}: one of the constants is wrong, or the stated inertia",
         )
 
     def _judge_response(self, response: SensorResponse) -> None:
@@ -355,7 +373,7 @@ class Steps:
         if inertia is None:
             self.unchecked.append("control")
             return
-        axis.encoder_watch = EncoderWatch(breakaway, inertia, axis.resolution)
+        axis.encoder_watch = EncoderWatch(self._sure, inertia, axis.resolution)
         for amplitude in self._options.moves:
             worst = small_move(axis, amplitude, breakaway, inertia, wind_up)
             self._say(
