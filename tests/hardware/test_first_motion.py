@@ -320,3 +320,12 @@ def test_an_inertia_that_is_not_the_stated_one_is_refused(factor: float) -> None
     assert result.reason == "inertia", result.report()
     assert spy.way < FARTHEST
     assert spy.torque < 1.3 * breakaway(bench)
+
+
+@pytest.mark.parametrize(("period", "said"), [(0.001, "% of the bus"), (0.01, "too long")])
+def test_a_period_that_is_not_for_a_first_motion_is_refused(period: float, said: str) -> None:
+    bench = bench_with(WEAK)
+    result, spy = moved(replace(bench, options=replace(bench.options, period=period)))
+    assert result.reason == "not_ready"
+    assert said in result.message
+    assert spy.torque == 0.0

@@ -30,11 +30,12 @@ from jointid.hardware.proof.refusal import RefusedBenchError
 from jointid.hardware.session.drive import Drive
 from jointid.hardware.session.drive_report import DriveReport
 from jointid.hardware.session.interruptions import Interruptions
-from jointid.hardware.session.start_checks import problems_at_rest
+from jointid.hardware.session.start_checks import FULLEST_BUS, problems_at_rest
 
 # Times the stated breakaway. With 5, a torque constant wrong by 3 is still found where friction is stated within
 # 1.5; without a sensor to watch, nothing sees a joint that moves behind an encoder that hangs.
 _CAP, _CAP_UNWATCHED = 5.0, 2.0
+_SLOWEST = 0.005  # [s] of a period; at twice that, benches that are right went too far
 _FEWEST, _MOST = 5, 25  # pairs of pushes
 _CLEAR = 6.0  # standard errors of a sign
 _REACH, _FARTHEST = math.radians(0.02), math.radians(0.12)  # of the first push and of the last
@@ -156,6 +157,7 @@ class Steps:
         """Connect; the axis, motor off."""
         bench, drive = self._bench, self._drive
         period = bench.options.period
+        self._refuse_period(period)
         drive.connect(period)
         problems = list(drive.problems(bench.limits.torque))
         ask = getattr(drive, "report", None)
@@ -190,6 +192,22 @@ class Steps:
         if reasons:
             raise RefusedBenchError("not_ready", "; ".join(reasons))
         return axis
+
+    def _refuse_period(self, period: float) -> None:
+        """Refuse a period in which the bus has no room, or in which a push goes too far between two samples."""
+        load = self._drive.bus_load(period)
+        if not load <= FULLEST_BUS:
+            raise RefusedBenchError(
+                "not_ready",
+                f"a cycle takes {100.0 * load:.0f} % of the bus, more than {100.0 * FULLEST_BUS:.0f} %; take a "
+                "longer period",
+            )
+        if period > _SLOWEST:
+            raise RefusedBenchError(
+                "not_ready",
+                f"a period of {period:g} s is too long for a first motion: between two samples a push goes too far; "
+                f"at most {_SLOWEST:g} s are expected",
+            )
 
     def _stands(self, axis: Axis, when: str) -> None:
         """See that the joint stands."""
