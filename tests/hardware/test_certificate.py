@@ -61,6 +61,7 @@ def test_it_is_read_as_it_was_written(bench: Bench, tmp_path: Path) -> None:
         ({"gear_ratio": 100.0}, "gear_ratio"),
         ({"gear_ratio": -101.0}, "gear_ratio"),
         ({"torque_constant": 0.2}, "torque_constant"),
+        ({"rotor_inertia": 2.5e-3}, "rotor_inertia"),
     ],
 )
 def test_a_change_of_the_joint_file_voids_it(

@@ -2,18 +2,26 @@
 
 import math
 import signal
-from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import pytest
+from first_motion_benches import (
+    FARTHEST,
+    FRICTIONS,
+    STRONG,
+    THESIS,
+    WEAK,
+    bench_with,
+    breakaway,
+    moved,
+    without_sensor,
+)
 
 import jointid as jid
-from jointid.hardware.bench.bench import Bench
 from jointid.hardware.bench.emulated_joints import true_joint
 from jointid.hardware.elmo.drive import ElmoDrive
-from jointid.hardware.elmo.emulated_bench import ElmoEmulation, elmo_devices
+from jointid.hardware.elmo.emulated_bench import elmo_devices
 from jointid.hardware.elmo.emulated_drive import EmulatedElmo
 from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.emulated.faults import BusFault
@@ -21,70 +29,6 @@ from jointid.hardware.proof.expected import expected_of
 from jointid.hardware.proof.result import UNCHECKED, FirstMotion
 from jointid.simulation.plant import Bristle
 from jointid.simulation.stepped import stepped_joint
-
-EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
-FARTHEST = math.radians(0.5)
-# What the joint has in truth, and what its file states: at most 1.5 times beside it.
-WEAK = ({"coulomb": 3.0, "static": 0.0, "viscous": 1.0}, {"coulomb": 3.0, "static": 0.0})
-STRONG = ({"coulomb": 25.0, "static": 0.0}, {"coulomb": 25.0, "static": 0.0})
-THESIS = ({"coulomb": 25.0, "static": 20.0}, {"coulomb": 10.0, "static": 20.0})
-FRICTIONS = {"weak": WEAK, "strong": STRONG, "thesis": THESIS}
-
-
-class Spy:
-    """What the emulated joint truly feels and does."""
-
-    def __init__(self, drive: EmulatedElmo) -> None:
-        self.torque = self.way = 0.0
-        self._drive, self._start, self._advance = drive, drive.joint.position, drive.advance
-        drive.advance = self._seen  # type: ignore[method-assign]
-
-    def _seen(self) -> None:
-        drive, settings = self._drive, self._drive.settings
-        if drive.motor_on:
-            torque = drive.current * settings.torque_constant * settings.gear_ratio
-            self.torque = max(self.torque, abs(torque))
-        self._advance()
-        self.way = max(self.way, abs(drive.joint.position - self._start))
-
-
-def bench_with(
-    friction: tuple[dict[str, float], dict[str, float]] = THESIS,
-    position: float = 0.0,
-    **wrong: Any,
-) -> Bench:
-    """The example's bench, wrong in some way."""
-    bench = Bench.load(EXAMPLE)
-    truth, stated = friction
-    assert bench.emulation is not None
-    emulation = replace(
-        bench.emulation,
-        truth={**bench.emulation.truth, **truth},
-        drive=ElmoEmulation(**wrong),
-        position=position,
-    )
-    return replace(bench, joint=bench.joint.with_parameters(stated), emulation=emulation)
-
-
-def moved(
-    bench: Bench,
-    seed: int = 0,
-    change: Callable[[EmulatedElmo], object] | None = None,
-    faults: tuple[BusFault, ...] = (),
-) -> tuple[FirstMotion, Spy]:
-    devices = elmo_devices(bench, seed)
-    if change is not None:
-        change(devices[0])
-    spy = Spy(devices[0])
-    with EmulatedBus(*devices, faults=faults) as bus:
-        result = jid.hardware.first_motion(bench, drive=ElmoDrive(bus, bench.joint, bench.drive))
-    assert not devices[0].motor_on
-    return result, spy
-
-
-def breakaway(bench: Bench) -> float:
-    assert bench.emulation is not None
-    return bench.emulation.truth["coulomb"] + bench.emulation.truth["static"]
 
 
 @pytest.mark.parametrize("friction", FRICTIONS)
@@ -170,20 +114,6 @@ def test_an_encoder_that_hangs_shows_in_the_sensor(friction: str) -> None:
     assert result.reason == "sensor_moves_alone"
     assert spy.way < FARTHEST
     assert spy.torque < 1.3 * breakaway(bench)
-
-
-def without_sensor(bench: Bench) -> Bench:
-    """The bench of a joint that has no torque sensor."""
-    kept = {name: p for name, p in bench.joint.parameters.items() if "sensor" not in name}
-    model = bench.joint.model.replace(ripple=())
-    assert bench.emulation is not None
-    truth = {name: v for name, v in bench.emulation.truth.items() if "sensor" not in name}
-    return replace(
-        bench,
-        joint=bench.joint.replace(sensor=False, model=model, parameters=kept),
-        drive=replace(bench.drive, torque=None),
-        emulation=replace(bench.emulation, truth=truth),
-    )
 
 
 def test_without_a_sensor_the_cap_is_low() -> None:
@@ -369,3 +299,33 @@ def test_options_are_checked() -> None:
         values: dict[str, Any] = wrong
         with pytest.raises(jid.InputError, match=next(iter(wrong))):
             jid.hardware.FirstMotionOptions(**values)
+
+
+@pytest.mark.parametrize("factor", [0.1, 5.0])
+def test_an_inertia_that_is_not_the_stated_one_is_refused(factor: float) -> None:
+    bench = bench_with(STRONG)
+    rotor = bench.joint.rotor_inertia
+    assert rotor is not None
+    assert bench.emulation is not None
+
+    def other(drive: EmulatedElmo) -> None:
+        assert bench.emulation is not None
+        drive.joint = stepped_joint(
+            true_joint(bench).replace(rotor_inertia=factor * rotor),
+            sensors=bench.emulation.sensors,
+            period=bench.options.period,
+        )
+
+    result, spy = moved(bench, change=other)
+    assert result.reason == "inertia", result.report()
+    assert spy.way < FARTHEST
+    assert spy.torque < 1.3 * breakaway(bench)
+
+
+@pytest.mark.parametrize(("period", "said"), [(0.001, "% of the bus"), (0.01, "too long")])
+def test_a_period_that_is_not_for_a_first_motion_is_refused(period: float, said: str) -> None:
+    bench = bench_with(WEAK)
+    result, spy = moved(replace(bench, options=replace(bench.options, period=period)))
+    assert result.reason == "not_ready"
+    assert said in result.message
+    assert spy.torque == 0.0

@@ -122,7 +122,7 @@ FILES: Mapping[str, str] = {
 FLAGS = frozenset(
     {
         *("--drop-copies", "--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run"),
-        *("--selftest", "--causes", "--unknown-friction", "--json"),
+        *("--selftest", "--causes", "--unknown-friction", "--json", "--watchdog"),
     }
 )
 """Options that may stand without a value."""

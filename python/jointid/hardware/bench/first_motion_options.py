@@ -20,13 +20,16 @@ class FirstMotionOptions:
     largest_torque : float, optional
         The cap, by the joint file's constants [N·m]: without motion, the torque ends there. Default: five
         times the breakaway that the joint file states, twice where there is no torque sensor to watch, and never more
-        than the session's torque limit.
+        than the session's torque limit. Required where there is neither a stated breakaway nor a sensor to watch.
     compare_friction : bool
         The joint file states the joint's friction within a factor of 1.5, and the measured breakaway is held
         against it. False where its values are only guesses. Default True.
     watch_sensor : bool
         A torque sensor that leaves its reading at rest while the encoder stands ends the search for motion.
         Default True.
+    hand_turn : float, optional
+        Time to wait, motor off, until somebody has turned the joint by hand and the encoder has counted [s]. Default:
+        nobody is awaited; without a sensor to watch, an encoder that hangs then shows only at the cap.
     counts : int
         Encoder counts that are a motion, beside `more_counts`. Default 5.
     more_counts : int
@@ -55,6 +58,7 @@ class FirstMotionOptions:
     largest_torque: float | None = None
     compare_friction: bool = True
     watch_sensor: bool = True
+    hand_turn: float | None = None
     counts: int = 5
     more_counts: int = 10
     growth_time: float = 2.0

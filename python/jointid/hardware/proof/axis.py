@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from jointid.hardware.bench.first_motion_options import FirstMotionOptions
+from jointid.hardware.proof.encoder_watch import EncoderWatch
 from jointid.hardware.proof.refusal import RefusedBenchError
 from jointid.hardware.session.drive import Drive, DriveFaultError, DriveSample
 from jointid.hardware.session.interruptions import Interruptions
@@ -61,6 +64,8 @@ class Axis:
         Samples that did not come in time.
     sample : DriveSample
         The last one.
+    encoder_watch : EncoderWatch or None
+        From when the breakaway is known.
     """
 
     def __init__(
@@ -77,7 +82,8 @@ class Axis:
         self._interruptions = interruptions
         self.period, self.resolution = period, resolution
         self.travel = self.largest_torque = 0.0
-        self.on = False
+        self.on = self._free = False
+        self.encoder_watch: EncoderWatch | None = None
         self._torque = 0.0
         self._lost = self.lost = 0
         self._unfollowed = 0
@@ -95,6 +101,14 @@ class Axis:
     def latency(self) -> float:
         """From sending a command until it acts [s]."""
         return self._drive.command_latency
+
+    @contextmanager
+    def by_hand(self) -> Iterator[None]:
+        """Without bounds, for as long as somebody turns the joint; they begin anew where it is left."""
+        self._free = True
+        yield
+        self._free = False
+        self._start, self.travel = self.sample.position, 0.0
 
     def enable(self) -> None:
         """Switch the motor on, at no torque."""
@@ -133,6 +147,7 @@ class Axis:
                     raise
                 if self.on:  # nobody sees the joint: no torque, and our heartbeat with it
                     self._drive.command(0.0)
+                    self._torque = 0.0
                 continue
             self._lost = 0
             self._hold(sample)
@@ -179,6 +194,8 @@ class Axis:
         position = sample.position
         if not math.isfinite(position):
             raise RefusedBenchError("not_ready", f"the position is {position}")
+        if self._free:
+            return
         self.travel = max(self.travel, abs(position - self._start))
         if self.travel > options.travel:
             raise RefusedBenchError(
@@ -190,6 +207,13 @@ class Axis:
             raise RefusedBenchError(
                 "too_fast",
                 f"the joint moves at {speed:.3f} rad/s, more than {options.velocity:g} rad/s",
+            )
+        watch = self.encoder_watch
+        if watch is not None and watch.stands(sample.time, position, self._torque):
+            raise RefusedBenchError(
+                "encoder_stands",
+                f"under {self._torque:.4g} N·m, after it broke away at less, the joint must have moved and the encoder "
+                f"stands at {position:.5f} rad: it hangs, or is not connected any more; or something blocks the joint",
             )
         if self.on and not math.isnan(sample.torque):
             self._follow(sample.torque)

@@ -44,7 +44,7 @@ class Certificate:
     date : datetime
         With its zone.
     joint : mapping
-        What the joint file stated: gear ratio, torque constant, sign of the sensor's gain.
+        What the joint file stated: gear ratio, torque constant, rotor inertia, sign of the sensor's gain.
     wiring : mapping
         Options of the drive that decide about signs and scales, see `DriveType.wiring`.
     drive : mapping
@@ -196,6 +196,7 @@ def joint_facts(bench: Bench) -> dict[str, Any]:
             "drive_type": bench.drive_type,
             "gear_ratio": joint.gear_ratio,
             "torque_constant": joint.torque_constant,
+            "rotor_inertia": joint.rotor_inertia,
             "sensor_sign": math.copysign(1.0, value) if value and joint.sensor else None,
         }
     )

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jointid.hardware.proof.axis import Axis, Trace
+from jointid.hardware.proof.refusal import RefusedBenchError
 
 Array = npt.NDArray[np.float64]
 
@@ -100,13 +101,19 @@ def push(axis: Axis, direction: float, torque: float, reach: float) -> Push:
     Raises
     ------
     RefusedBenchError
-        A bound of the axis.
+        A bound of the axis, or nothing moved.
     """
     begin = len(axis.rows)
     place, end = axis.sample.position, axis.now + _LONGEST
     while abs(axis.read().position - place) < reach and axis.now < end:
         axis.command(direction * torque)
     axis.rest()
+    if max(abs(row[1] - place) for row in axis.rows[begin:]) < 1.5 * axis.resolution:
+        raise RefusedBenchError(
+            "encoder_stands",
+            f"{direction * torque:.4g} N·m did not move the joint, which broke away at less before: the encoder "
+            "hangs, or is not connected any more; or something blocks the joint",
+        )
     return Push(axis.trace(begin), direction, axis.latency, axis.resolution)
 
 

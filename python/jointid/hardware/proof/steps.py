@@ -14,7 +14,9 @@ from jointid.hardware.bench.bench import Bench
 from jointid.hardware.proof.axis import Axis
 from jointid.hardware.proof.breakaway import Breakaway, find_breakaway
 from jointid.hardware.proof.control import small_move
+from jointid.hardware.proof.encoder_watch import EncoderWatch
 from jointid.hardware.proof.expected import Expected, expected_of, scale_fault
+from jointid.hardware.proof.hand_turn import await_hand_turn
 from jointid.hardware.proof.pushes import (
     STRENGTH,
     Motion,
@@ -28,11 +30,12 @@ from jointid.hardware.proof.refusal import RefusedBenchError
 from jointid.hardware.session.drive import Drive
 from jointid.hardware.session.drive_report import DriveReport
 from jointid.hardware.session.interruptions import Interruptions
-from jointid.hardware.session.start_checks import problems_at_rest
+from jointid.hardware.session.start_checks import FULLEST_BUS, problems_at_rest
 
 # Times the stated breakaway. With 5, a torque constant wrong by 3 is still found where friction is stated within
 # 1.5; without a sensor to watch, nothing sees a joint that moves behind an encoder that hangs.
 _CAP, _CAP_UNWATCHED = 5.0, 2.0
+_SLOWEST = 0.005  # [s] of a period; at twice that, benches that are right went too far
 _FEWEST, _MOST = 5, 25  # pairs of pushes
 _CLEAR = 6.0  # standard errors of a sign
 _REACH, _FARTHEST = math.radians(0.02), math.radians(0.12)  # of the first push and of the last
@@ -41,6 +44,11 @@ _QUICK = 0.3  # of the velocity allowed: nor those that were so fast
 _PUSHED = 0.6  # of the time allowed, after which no more pushes begin
 _FEW_PUSHES = 4  # pairs that only tell a wrong torque constant from a wrong gear ratio
 _DRIFT = 5.0  # counts: a joint that stands moves less
+_SURE, _SURE_WOUND, _WOUND = (
+    1.02,
+    1.1,
+    2e-4,
+)  # of the breakaway; the joint slides; [rad] of yielding
 _FARTHER = 2.0  # measured over stated inertia, where nothing else is known
 
 
@@ -74,6 +82,8 @@ class Steps:
         self._expected: Expected = expected_of(bench.joint)
         if not self._options.compare_friction:
             self._expected = replace(self._expected, breakaway=None)
+        self._watched = self._expected.sensor and self._options.watch_sensor
+        self._sure = (math.inf, math.inf)  # torques under which the joint slides [N·m]
         self._deviation = math.nan  # of the torque sensor's readings at rest
         self.axis: Axis | None = None
         self.lines: list[str] = []
@@ -83,6 +93,8 @@ class Steps:
         }
         self.signs: dict[str, int | None] = {"torque_and_encoder": None, "sensor": None}
         self.unchecked = ["positive_direction", "homing", "backlash", "watchdog", "emergency_stop"]
+        if not self._watched and self._options.hand_turn is None:
+            self.unchecked.append("encoder")
 
     def _say(self, line: str) -> None:
         self.lines.append(line)
@@ -104,8 +116,16 @@ class Steps:
         axis.enable()
         self._stands(axis, "motor on, no torque")
         found = [self._breakaway(axis, direction, cap) for direction in (1.0, -1.0)]
+        if "encoder" in self.unchecked:
+            self.unchecked.remove("encoder")  # it has counted, both ways
         self._judge_signs(found)
         breakaway = (found[0].torque, found[1].torque)
+        # A gear that winds up is taken for sliding a little before it does.
+        wound = max(each.wind_up for each in found) > _WOUND
+        sure = tuple((_SURE_WOUND if wound else _SURE) * each for each in breakaway)
+        self._sure = (sure[0], sure[1])
+        if self._expected.inertia is not None:
+            axis.encoder_watch = EncoderWatch(self._sure, self._expected.inertia, axis.resolution)
         self._judge_scales(axis, breakaway)
         motion = self._judge_sensor(axis, breakaway)
         self._under_control(axis, breakaway, motion, max(each.wind_up for each in found))
@@ -115,8 +135,15 @@ class Steps:
         given, limit = self._options.largest_torque, self._bench.limits.torque
         if given is None:
             stated = self._expected.breakaway
-            watched = self._expected.sensor and self._options.watch_sensor
-            factor = _CAP if watched else _CAP_UNWATCHED
+            if stated is None and not self._watched:
+                # Up to the torque limit a joint whose encoder hangs would turn many times, and nothing sees it.
+                raise RefusedBenchError(
+                    "not_ready",
+                    "neither a known friction nor a torque sensor ends a search for motion if the encoder hangs: give "
+                    "the joint file its friction, or set largest_torque (--largest-torque) to at most twice "
+                    "the torque at which the joint is thought to move",
+                )
+            factor = _CAP if self._watched else _CAP_UNWATCHED
             given = math.inf if stated is None else factor * stated
         cap = min(given, limit)
         if not math.isfinite(cap):
@@ -130,6 +157,7 @@ class Steps:
         """Connect; the axis, motor off."""
         bench, drive = self._bench, self._drive
         period = bench.options.period
+        self._refuse_period(period)
         drive.connect(period)
         problems = list(drive.problems(bench.limits.torque))
         ask = getattr(drive, "report", None)
@@ -150,6 +178,10 @@ class Steps:
             interruptions=interruptions,
         )
         self.axis = axis
+        if self._options.hand_turn is not None:
+            self._say(f"turn the joint by hand, and leave it: {self._options.hand_turn:g} s")
+            turned = await_hand_turn(axis, self._options.hand_turn)
+            self._say(f"the encoder counts: turned by {turned:.5f} rad")
         reasons = list(problems_at_rest(axis.sample, bench.limits))
         low, high = bench.limits.position
         if not low + self._options.travel <= axis.sample.position <= high - self._options.travel:
@@ -160,6 +192,22 @@ class Steps:
         if reasons:
             raise RefusedBenchError("not_ready", "; ".join(reasons))
         return axis
+
+    def _refuse_period(self, period: float) -> None:
+        """Refuse a period in which the bus has no room, or in which a push goes too far between two samples."""
+        load = self._drive.bus_load(period)
+        if not load <= FULLEST_BUS:
+            raise RefusedBenchError(
+                "not_ready",
+                f"a cycle takes {100.0 * load:.0f} % of the bus, more than {100.0 * FULLEST_BUS:.0f} %; take a "
+                "longer period",
+            )
+        if period > _SLOWEST:
+            raise RefusedBenchError(
+                "not_ready",
+                f"a period of {period:g} s is too long for a first motion: between two samples a push goes too far; "
+                f"at most {_SLOWEST:g} s are expected",
+            )
 
     def _stands(self, axis: Axis, when: str) -> None:
         """See that the joint stands."""
@@ -183,7 +231,7 @@ class Steps:
                 )
         if self._expected.sensor:
             self.found["sensor_zero"] = float(np.mean(readings))
-            if self._options.watch_sensor:
+            if self._watched:
                 self._deviation = float(np.std(readings))
         self._say(f"stands, {when}: {axis.sample.position:+.5f} rad")
 
@@ -295,21 +343,29 @@ class Steps:
     def _judge_inertia(self, inertia: float) -> None:
         """Without a stated friction the inertia alone tells of the torque constant, and nothing of the gear ratio."""
         expected = self._expected
-        if expected.breakaway is not None:
-            return
-        self.unchecked.append("gear_ratio")
+        known = expected.breakaway is not None  # the friction has shown that the scales are right
+        if not known:
+            self.unchecked.append("gear_ratio")
         stated = expected.inertia
         if stated is None or not math.isfinite(inertia):
-            self.unchecked.append("torque_constant")
+            self.unchecked.append("inertia" if known else "torque_constant")
             return
         ratio = inertia / stated
         if 1.0 / _FARTHER <= ratio <= _FARTHER:
             return
+        said = (
+            f"the joint's inertia is {inertia:.3g} kg·m² by the joint file's constants, {ratio:.3g} times the "
+            f"{stated:.3g} kg·m² that it states"
+        )
+        if known:
+            raise RefusedBenchError(
+                "inertia",
+                f"{said}, and its friction is as stated: rotor_inertia or [link] is wrong",
+            )
         # A wrong gear ratio leaves the rotor's inertia as it is, and can only add to it: of the link's.
         raise RefusedBenchError(
             "torque_constant" if ratio < 1.0 else "torque_constant_or_gear_ratio",
-            f"the joint's inertia is {inertia:.3g} kg·m² by the joint file's constants, {ratio:.3g} times the "
-            f"{stated:.3g} kg·m² that it states: one of the constants is wrong, or the stated inertia",
+            f"{said}: one of the constants is wrong, or the stated inertia",
         )
 
     def _judge_response(self, response: SensorResponse) -> None:
@@ -335,6 +391,7 @@ class Steps:
         if inertia is None:
             self.unchecked.append("control")
             return
+        axis.encoder_watch = EncoderWatch(self._sure, inertia, axis.resolution)
         for amplitude in self._options.moves:
             worst = small_move(axis, amplitude, breakaway, inertia, wind_up)
             self._say(

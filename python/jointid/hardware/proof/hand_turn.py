@@ -1,0 +1,51 @@
+"""The joint turned by hand, motor off: the only proof without torque that the encoder counts."""
+
+from __future__ import annotations
+
+from jointid.hardware.proof.axis import Axis
+from jointid.hardware.proof.refusal import RefusedBenchError
+
+_COUNTS = 50.0  # more than jitter and somebody who leans on the joint
+_QUIET = 1.0  # [s] without a count: the hand is off
+
+
+def await_hand_turn(axis: Axis, longest: float) -> float:
+    """Wait until somebody has turned the joint and left it; returns how far it was turned [rad].
+
+    The bounds of the axis begin where the joint is left.
+
+    Parameters
+    ----------
+    axis : Axis
+        Its motor is off.
+    longest : float
+        Time to wait for the turn [s], and once more for the joint to be left.
+
+    Raises
+    ------
+    RefusedBenchError
+        The encoder did not count in that time, or did not stop.
+    """
+    farthest = 0.0
+    with axis.by_hand():
+        start, end = axis.sample.position, axis.now + longest
+        while farthest < _COUNTS * axis.resolution:
+            farthest = max(farthest, abs(axis.read().position - start))
+            if axis.now > end:
+                raise RefusedBenchError(
+                    "encoder_stands",
+                    f"within {longest:g} s of waiting for a turn by hand the encoder counted "
+                    f"{farthest / axis.resolution:.0f}, fewer than {_COUNTS:.0f}: turn the joint; if it was turned, "
+                    "the encoder is not connected, or hangs",
+                )
+        place, since, end = axis.sample.position, axis.now, axis.now + longest
+        while axis.now - since < _QUIET:
+            position = axis.read().position
+            farthest = max(farthest, abs(position - start))
+            if abs(position - place) > 1.5 * axis.resolution:
+                place, since = position, axis.now
+            if axis.now > end:
+                raise RefusedBenchError(
+                    "moving", f"the joint was still turned by hand after {longest:g} s; leave it"
+                )
+    return farthest
