@@ -64,6 +64,8 @@ def session(bus: can.BusABC, duration: float = 1.0, period: float = PERIOD, **mo
 class EchoingBus(EmulatedBus):
     """Gives the host its own frames back, as udp_multicast does."""
 
+    receive_own_messages = True
+
     def _to_devices(self, message: can.Message) -> None:
         super()._to_devices(message)
         self._to_host(message)

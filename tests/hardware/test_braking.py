@@ -15,6 +15,7 @@ from jointid.hardware import EmulatedBus, SessionStoppedError
 from jointid.hardware.elmo import EmulatedElmo
 from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.elmo.emulated_converter import EmulatedConverter
+from jointid.hardware.emulated.faults import BusFault
 from jointid.hardware.session.foresight import Foresight
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.moving_joint import MovingJoint
@@ -23,6 +24,7 @@ from jointid.hardware.session.stop import LimitError
 from jointid.simulation.stepped import stepped_joint
 
 EDGE = 0.5  # rad
+POSITION = 0x4FF  # identifier of the drive's samples
 LIGHT = {"coulomb": 3.0, "static": 0.0, "viscous": 0.1}
 
 
@@ -30,11 +32,12 @@ def pushed(
     friction: dict[str, float], torque: float, **changes: Any
 ) -> tuple[SessionStoppedError, float, float, EmulatedElmo]:
     """A constant torque drives the joint to its window's edge; returns how far it went and where it rests."""
-    true = TRUE.with_parameters(friction)
+    true = changes.pop("true", TRUE).with_parameters(friction)
     elmo = EmulatedElmo(
         stepped_joint(true, sensors=jid.Sensors(torque_noise=0.5), period=PERIOD, seed=0)
     )
-    with EmulatedBus(elmo, EmulatedConverter(elmo)) as bus:
+    faults = changes.pop("faults", ())
+    with EmulatedBus(elmo, EmulatedConverter(elmo), faults=faults) as bus:
         run = Session(
             ElmoDrive(bus, changes.pop("joint", JOINT)),
             jid.OpenLoop(),
@@ -67,6 +70,70 @@ def test_a_fast_approach_ends_inside_the_window(friction: dict[str, float], torq
     assert farthest < EDGE + math.radians(1.0)
     assert rests < EDGE + math.radians(1.0)
     assert farthest > EDGE - math.radians(6.0)  # and not far before it either
+    assert not elmo.motor_on
+
+
+@pytest.mark.parametrize("friction", [{}, LIGHT], ids=["thesis", "light"])
+def test_samples_lost_near_the_edge_move_it_no_farther(friction: dict[str, float]) -> None:
+    """Four in a row are tolerated, five are not; wherever they begin, the joint rests at most 1 degree beyond."""
+    stopped, _, _, elmo = pushed(friction, 159.0)
+    assert stopped.recording is not None
+    at_edge = elmo.switchings[-1][0] - stopped.recording.metadata["braked"]["time"]
+    stops = set()
+    for lost in (4, 5):
+        for cycles in (-7, -5, -4, -3, -2, -1, 0, 1):
+            begin = at_edge + (cycles - 0.5) * PERIOD
+            silent = BusFault(
+                kind="drop", start=begin, stop=begin + lost * PERIOD, identifier=POSITION
+            )
+            stopped, farthest, rests, elmo = pushed(friction, 159.0, faults=(silent,))
+            assert stopped.recording is not None
+            braked = stopped.recording.metadata["braked"]
+            assert braked["velocity"] >= 3.5
+            assert braked["left"] < 0.1
+            assert max(farthest, rests) < EDGE + math.radians(1.0)
+            assert not elmo.motor_on
+            stops.add(stopped.stop.limit)
+    assert "position" in stops
+
+
+@pytest.mark.parametrize("friction", [{}, LIGHT], ids=["thesis", "light"])
+def test_behind_a_burst_of_lost_samples_it_is_braked(friction: dict[str, float]) -> None:
+    _, _, _, elmo = pushed(friction, 159.0)
+    begin = elmo.switchings[-1][0] - 0.15
+    silent = BusFault(kind="drop", start=begin, stop=begin + 5 * PERIOD, identifier=POSITION)
+    stopped, farthest, rests, elmo = pushed(friction, 159.0, faults=(silent,))
+    assert stopped.stop.limit == "late_samples"
+    assert stopped.recording is not None
+    assert stopped.recording.metadata["braked"]["left"] < 0.1
+    assert stopped.recording.metadata["braked"]["velocity"] > 1.0
+    assert stopped.recording.metadata["braked"]["samples"] > 10
+    assert max(farthest, rests) < EDGE
+
+
+def test_a_joint_that_is_no_longer_seen_is_braked_for_some_cycles_only() -> None:
+    _, _, _, elmo = pushed(LIGHT, 159.0)
+    begin = elmo.switchings[-1][0] - 0.15
+    silent = BusFault(kind="drop", start=begin, identifier=POSITION)
+    stopped, _, _, elmo = pushed(LIGHT, 159.0, faults=(silent,))
+    assert stopped.stop.limit == "late_samples"
+    assert stopped.recording is not None
+    braked = stopped.recording.metadata["braked"]
+    assert braked["samples"] == 0
+    assert braked["left"] < braked["velocity"] - 0.5
+    assert braked["time"] < 11 * PERIOD
+    assert elmo.switchings[-1][0] - begin < 18 * PERIOD
+
+
+@pytest.mark.parametrize("factor", [3.0, 10.0])
+def test_a_joint_heavier_than_stated_is_braked_to_rest(factor: float) -> None:
+    assert TRUE.rotor_inertia is not None
+    heavy = TRUE.replace(rotor_inertia=factor * TRUE.rotor_inertia)
+    stopped, _, _, elmo = pushed(LIGHT, 110.0, true=heavy)
+    assert stopped.recording is not None
+    braked = stopped.recording.metadata["braked"]
+    assert braked["velocity"] > 1.0
+    assert braked["left"] < 0.1
     assert not elmo.motor_on
 
 

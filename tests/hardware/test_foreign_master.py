@@ -1,6 +1,7 @@
 """Nobody else may command the drive, or beat as our node: refused at the start, stopped later, marked."""
 
 import math
+import socket
 import sys
 from pathlib import Path
 from typing import Any
@@ -14,8 +15,9 @@ from jointid.hardware import SessionRefusedError, SessionStoppedError
 from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.elmo.emulated_converter import EmulatedConverter
 from jointid.hardware.elmo.emulated_drive import ElmoSettings, EmulatedElmo
-from jointid.hardware.elmo.foreign import ForeignWatch
+from jointid.hardware.elmo.foreign import ForeignWatch, gives_back
 from jointid.hardware.elmo.options import ElmoOptions
+from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.session.drive import DriveFaultError
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
@@ -162,6 +164,59 @@ def test_a_foreign_frame_that_looks_like_our_first_one_blinds_not_for_long() -> 
     assert seen[0]
     assert not seen[-1]
     assert not watch.is_own(5.0, OURS, b"\x05")
+
+
+@pytest.mark.parametrize("every", [0.3, 1.0])
+@pytest.mark.parametrize("begin", [0.26, 0.261])
+def test_a_question_while_ours_is_on_its_way_is_not_taken_for_it(
+    begin: float, every: float
+) -> None:
+    """An emulated bus gives nothing back, so that the first such frame is somebody else's."""
+    bench = EmulatedSession()
+    foreign(COMMAND, b"SR\x00\x00", begin=begin, every=every)(bench)
+    with pytest.raises((SessionRefusedError, SessionStoppedError), match="SR "):
+        bench.session().run()
+    assert bench.bus.now() < 0.5
+    assert not bench.elmo.motor_on
+
+
+def test_whether_an_interface_gives_our_own_frames_back() -> None:
+    elmo = EmulatedElmo(joint(), ElmoSettings())
+    with EmulatedBus(elmo) as quiet, EchoingBus(elmo) as echoing:
+        assert gives_back(quiet) is False
+        assert gives_back(echoing) is True
+    for own in (False, True):
+        with can.Bus(interface="virtual", channel="own", receive_own_messages=own) as bus:
+            assert gives_back(bus) is own
+    assert gives_back(SocketcanBus(0)) is False
+    assert gives_back(SocketcanBus(1)) is True
+    assert gives_back(OtherBus()) is None
+
+
+class OtherBus(can.BusABC):
+    """Of an interface that says nothing."""
+
+    def __init__(self) -> None:
+        super().__init__(channel="other")
+        self.shutdown()
+
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:
+        """Send nothing."""
+
+
+class SocketcanBus(OtherBus):
+    """With the socket's option as the system reports it."""
+
+    __module__ = "can.interfaces.socketcan.socketcan"
+
+    def __init__(self, option: int) -> None:
+        super().__init__()
+        self.socket = self
+        self._option = option
+
+    def getsockopt(self, level: int, option: int) -> int:
+        assert (level, option) == (socket.SOL_CAN_RAW, socket.CAN_RAW_RECV_OWN_MSGS)
+        return self._option
 
 
 def test_a_session_where_our_own_frames_come_back() -> None:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import socket
 import struct
 from collections import deque
+
+import can
 
 from jointid.base.errors import InputError
 from jointid.hardware.can import canopen_frames as canopen
@@ -27,12 +30,15 @@ _NETWORK = {
 class ForeignWatch:
     """Tells our own frames, which some interfaces give back, from another master's.
 
-    Whether the interface gives them back is seen from the first frame that is sent on a bus on which
-    nobody else commands the drive; should most of them then stay away, it was a foreign frame.
+    Where it is not known whether the interface gives them back, it is seen from the first frame that is
+    sent on a bus on which nobody else commands the drive; should most of them then stay away, it was a
+    foreign frame.
 
     Parameters
     ----------
     options : ElmoOptions
+    gives_back : bool, optional
+        Whether the interface does, see `gives_back`; False: each such frame is foreign. Default: not known.
 
     Attributes
     ----------
@@ -40,18 +46,19 @@ class ForeignWatch:
         The first foreign frames: time [s], identifier and bytes in hexadecimal digits.
     """
 
-    def __init__(self, options: ElmoOptions) -> None:
+    def __init__(self, options: ElmoOptions, gives_back: bool | None = None) -> None:
         self._options = options
+        self._known = False if gives_back is False else None  # one that should may fail to
         self._commanding = frozenset(options.commanding)
         self._sent: deque[tuple[float, int, bytes]] = deque(maxlen=_MOST_SENT)
-        self._given_back: bool | None = None
+        self._given_back: bool | None = self._known
         self._balance = 0  # frames that came back, less those that did not
         self.frames: list[str] = []
 
     def begin(self) -> None:
-        """Nothing of ours is on its way, and it is not known yet whether it comes back."""
+        """Nothing of ours is on its way, and it may not be known yet whether it comes back."""
         self._sent.clear()
-        self._given_back, self._balance = None, 0
+        self._given_back, self._balance = self._known, 0
         self.frames = []
 
     def decide(self) -> None:
@@ -118,3 +125,21 @@ class ForeignWatch:
             value = "" if command.value is None else f" = {command.value:g}"
             return f"{command.letters}{place}{value} ({shown})"
         return f"a PDO ({shown})"
+
+
+def gives_back(bus: can.BusABC) -> bool | None:
+    """Return whether a bus gives its own frames back, where that is a matter of its settings; None: not known.
+
+    Known for python-can's SocketCAN and virtual buses and for the emulated one. With SocketCAN a message's
+    `is_rx` does not tell: it is False for the frames of all programs on this host.
+    """
+    told = getattr(bus, "receive_own_messages", None)
+    if isinstance(told, bool):
+        return told
+    if "socketcan" not in type(bus).__module__.split("."):
+        return None
+    try:
+        option = bus.socket.getsockopt(socket.SOL_CAN_RAW, socket.CAN_RAW_RECV_OWN_MSGS)  # type: ignore[attr-defined]
+    except (AttributeError, OSError):  # a system without SocketCAN, or a bus of a like name
+        return None
+    return bool(option)

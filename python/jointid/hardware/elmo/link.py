@@ -16,7 +16,7 @@ from jointid.hardware.elmo.codec import Command, DriveError, Reply
 from jointid.hardware.elmo.decoder import ElmoDecoder
 from jointid.hardware.elmo.echoes import CommandEchoes
 from jointid.hardware.elmo.errors import Emergency
-from jointid.hardware.elmo.foreign import ForeignWatch
+from jointid.hardware.elmo.foreign import ForeignWatch, gives_back
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.elmo.timing import SyncWatch
 from jointid.hardware.session.clock import Clock, MonotonicClock
@@ -62,7 +62,7 @@ class ElmoLink:
         self.stamped = self._virtual or "socketcan" in type(bus).__module__.split(".")
         self.watch = SyncWatch(options.bitrate, stamped=self.stamped)
         self._command_id, self._reply_id = options.command_id, options.reply_id
-        self.foreign = ForeignWatch(options)
+        self.foreign = ForeignWatch(options, gives_back(bus))
         self.echoes = CommandEchoes()
         self._replies: dict[tuple[str, int], Reply | DriveError] = {}
         self._answers: list[bytes] = []

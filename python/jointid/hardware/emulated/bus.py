@@ -42,6 +42,8 @@ class EmulatedBus(can.BusABC):
         `clock_drift` is not within 1 %, or `jitter` not from 0 to 0.1 s.
     """
 
+    receive_own_messages = False
+
     def __init__(
         self,
         *devices: Device,

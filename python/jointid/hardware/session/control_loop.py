@@ -90,6 +90,7 @@ class Follower:
         self.woke: list[float] = []  # the cycles' begins, against when they were due [s]
         self.cycles = self.cycles_before = 0  # in which a torque was commanded; before the run
         self.newest: DriveSample | None = None
+        self.velocity = 0.0  # estimated with it [rad/s]
         self.velocity_measured = False  # by the drive; the controller got it in some cycle
         self._held = 0.0  # of the last command [N·m]: enabling commands zero
         self._first: float | None = (
@@ -192,6 +193,7 @@ class Follower:
         guard, clock, period = self._guard, self._drive.clock, self._options.period
         self.newest = sample
         estimated = self._estimate(sample.time, sample.position)
+        self.velocity = estimated
         measures = not math.isnan(sample.velocity)
         speed = sample.velocity if measures else estimated
         self.velocity_measured = self.velocity_measured or measures
@@ -253,6 +255,8 @@ class Follower:
 
     def _hold(self) -> None:
         """Command the last torque again; this also shows the drive that the host is alive."""
+        if self.newest is not None:
+            self._guard.unseen(self._drive.clock.now() - self.newest.time)
         self._held = self._accepted(self._held)
         self.cycles += 1
 

@@ -44,6 +44,7 @@ class Foresight:
         self._place: float | None = None
         self._against = self._beyond = 0
         self._longest = max(1, round(_BEYOND / period))
+        self._seen: tuple[float, float] | None = None  # position and velocity of the last sample
 
     def moving(self, position: float, velocity: float, accepted: float) -> None:
         """Check where the joint would stop if it were braked now.
@@ -59,6 +60,32 @@ class Foresight:
         ------
         LimitError
         """
+        self._seen = position, velocity
+        self._stops_inside(position, velocity, accepted)
+
+    def unseen(self, age: float, accepted: float) -> None:
+        """Check where the joint would stop, in a cycle without a sample.
+
+        Parameters
+        ----------
+        age : float
+            Since the last sample [s].
+        accepted : float
+            The torque that has held since, and holds until braking acts [N·m].
+
+        Raises
+        ------
+        LimitError
+        """
+        if self._seen is None:
+            return
+        position, velocity = self._seen
+        direction = 1.0 if velocity > 0.0 else -1.0
+        # Only what drives it on: where it has become slower, it has not been seen to.
+        gained = direction * max(0.0, direction * accepted) / self._joint.inertia * age
+        self._stops_inside(position + (velocity + 0.5 * gained) * age, velocity + gained, accepted)
+
+    def _stops_inside(self, position: float, velocity: float, accepted: float) -> None:
         if self._braking is None or velocity == 0.0:
             return
         _, deceleration = self._braking

@@ -120,6 +120,16 @@ class Guard:
         if not math.isnan(sample.torque):
             self._felt(sample.torque)
 
+    def unseen(self, age: float) -> None:
+        """Check a cycle without a sample; the last one is some time ago [s].
+
+        Raises
+        ------
+        LimitError
+        """
+        if self._foresight is not None:
+            self._foresight.unseen(age, self._accepted)
+
     def commanded(
         self,
         torque: float,

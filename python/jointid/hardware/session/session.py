@@ -335,9 +335,8 @@ class Session:
     def _brake(self, cause: BaseException) -> None:
         """Bring the joint to rest, where that is no risk; the motor goes off next in any case."""
         try:
-            sample = None if self._follower is None else self._follower.newest
             self._braked = brake_after(
-                cause, self._drive, self._moved, self._limits, self._options, sample
+                cause, self._drive, self._moved, self._limits, self._options, self._follower
             )
         except (DriveFaultError, OSError, KeyboardInterrupt):
             return  # the drive has failed, or somebody is in a hurry
