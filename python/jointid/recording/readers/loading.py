@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,7 @@ def load(
     columns: Mapping[str, str | int | None] | None = None,
     units: Mapping[str, str] | None = None,
     scale: Mapping[str, float] | None = None,
+    extra: Collection[str] | Mapping[str, str | int] | None = None,
     where: Mapping[str, float | str] | None = None,
     kind: str | None = None,
     torque_hold: str | None = None,
@@ -58,6 +59,11 @@ def load(
         Signal → factor from file units to SI, whatever the header says: for encoder counts
         (``{"position": 2 * math.pi / 4096}``), a voltage that drives a known force, a sign.
         Saved in ``metadata["scale"]``. Default: the factor of the unit.
+    extra : collection of str or mapping of str to str or int, optional
+        Columns to keep as `Recording.extra`: their headers, which are then the names, or name →
+        header or 0-based number. A known unit at the header's end (``_rad_s``, ``[kNm]``, ``_kgm2``)
+        is converted to SI; without one, values stay as they are. Every cell must be a finite
+        number. Default: none, but those of a saved recording.
     where : mapping of str to number or str, optional
         Header → value: only rows with this value are kept. Default: all rows.
     kind : {"revolute", "prismatic"}, optional
@@ -86,10 +92,17 @@ def load(
     --------
     >>> recording = jid.load("run.csv")
     >>> recording = jid.load("log.csv", columns={"position": "enc1"}, units={"position": "deg"})
+    >>> recording = jid.load("robot.csv", extra={"gravity": "model_gravity_torque_1_Nm"})
     """
     file = require_path("path", path)
     contents = read_contents(
-        _table(file), columns=columns, units=units, scale=scale, kind=kind, torque_hold=torque_hold
+        _table(file),
+        columns=columns,
+        units=units,
+        scale=scale,
+        extra=extra,
+        kind=kind,
+        torque_hold=torque_hold,
     )
     if where:
         fields = contents.fields(contents.rows_where(where))
@@ -110,6 +123,7 @@ def load_runs(
     columns: Mapping[str, str | int | None] | None = None,
     units: Mapping[str, str] | None = None,
     scale: Mapping[str, float] | None = None,
+    extra: Collection[str] | Mapping[str, str | int] | None = None,
     kind: str | None = None,
     torque_hold: str | None = None,
     name: str | None = None,
@@ -123,7 +137,7 @@ def load_runs(
     by : str or int
         Header or 0-based number of the column that numbers the runs: rows with the same value
         are one run.
-    columns, units, scale, kind, torque_hold
+    columns, units, scale, extra, kind, torque_hold
         As in `load`.
     name : str, optional
         Beginning of the runs' names. Default: as in `load`.
@@ -144,7 +158,13 @@ def load_runs(
     """
     file = require_path("path", path)
     contents = read_contents(
-        _table(file), columns=columns, units=units, scale=scale, kind=kind, torque_hold=torque_hold
+        _table(file),
+        columns=columns,
+        units=units,
+        scale=scale,
+        extra=extra,
+        kind=kind,
+        torque_hold=torque_hold,
     )
     header = contents.table.headers[column_index(contents.table, by, "by")]
     runs = []
