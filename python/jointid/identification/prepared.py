@@ -36,6 +36,7 @@ from jointid.identification.refinements.sensor_instant import (
 from jointid.identification.refinements.slow_motion import checked_speed
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Outcome
+from jointid.identification.search.own_duplicates import refuse_duplicates
 from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Search
 from jointid.identification.selection.selecting import select_model
@@ -279,6 +280,7 @@ def prepare(
             problem, penalty, parameters, windows, residual is not None
         )
         domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
+        refuse_duplicates(penalty, domain, problem.choice.model.resolved.terms)
     except InputError as error:
         if error.place == "parameters":  # they are not excited
             raise_if_hardly_moving(runs)
