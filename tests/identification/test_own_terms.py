@@ -9,8 +9,8 @@ import pytest
 import jointid as jid
 from jointid.base.errors import InputError
 from jointid.identification.search.search import Search
-from jointid.problem.own_series import own_series
 from jointid.joint.own_terms import OwnTerms
+from jointid.problem.own_integrals import own_series
 
 TIME = np.arange(6000) * 0.002
 Q = 0.8 * np.sin(2.1 * TIME) + 0.3 * np.sin(5.3 * TIME + 1.0)
@@ -26,7 +26,7 @@ SEPARABLE = Search("separable")
 
 def run(more: Any = 0.0, seed: int = 1, **extra: Any) -> jid.Recording:
     """Inertia 2.5, Coulomb 12, viscous 6, offset 1, and more torque."""
-    noise = np.random.default_rng(seed).normal(scale=0.3, size=len(TIME))
+    noise = np.random.default_rng(seed).normal(scale=1.0, size=len(TIME))
     torque = 2.5 * A + 12.0 * np.sign(V) + 6.0 * V + 1.0 + more + noise
     return jid.Recording(time=TIME, position=Q, velocity=V, torque=torque, extra=extra)
 
@@ -40,8 +40,8 @@ def identify(recording: jid.Recording, terms: Any, **changes: Any) -> jid.Estima
 def check(estimate: jid.Estimate, **truth: float) -> None:
     for name, true in ({"inertia": 2.5, "coulomb": 12.0, "viscous": 6.0} | truth).items():
         found = estimate.parameters[name]
-        assert found.value == pytest.approx(true, rel=0.03), name
-        if found.vary:
+        assert found.value == pytest.approx(true, rel=0.06), name
+        if found.vary and name in truth:
             assert found.interval is not None
             assert found.interval[0] < true < found.interval[1], (name, found.interval)
 
@@ -91,7 +91,7 @@ def test_a_held_command_and_a_known_torque_go_together() -> None:
     estimate = identify(recording, {"tau": "known"})
     assert estimate.parameters["coulomb"].value == pytest.approx(12.0, rel=2e-3)
     assert estimate.residuals.relative < 2e-3
-    assert estimate.settings.get("shift", {}) == {}
+    assert not estimate.settings.get("shift")
 
 
 def test_known_inertias_with_and_without_what_their_change_costs() -> None:
@@ -105,9 +105,13 @@ def test_known_inertias_with_and_without_what_their_change_costs() -> None:
     ):
         estimate = identify(run(more, arm=inertia), {"arm": kind})
         check(estimate, known_inertia_of_arm=1.0)
-    all_known = identify(run(-2.5 * A + INERTIA * A, arm=INERTIA), {"arm": "inertia"}, parameters={"inertia": 0.0})
+    all_known = identify(
+        run(-2.5 * A + INERTIA * A, arm=INERTIA), {"arm": "inertia"}, parameters={"inertia": 0.0}
+    )
     check(all_known, inertia=0.0)
-    scaled = identify(run(0.8 * INERTIA * A, arm=INERTIA), {"arm": "scaled_inertia"}, parameters={"inertia": 2.5})
+    scaled = identify(
+        run(0.8 * INERTIA * A, arm=INERTIA), {"arm": "scaled_inertia"}, parameters={"inertia": 2.5}
+    )
     check(scaled, scale_inertia_of_arm=0.8)
 
 
@@ -115,7 +119,10 @@ def test_inertia_and_torque_over_an_angle_are_centred_in_its_range() -> None:
     shifted = Q + 3.0
     centre = 0.5 * (shifted.min() + shifted.max())
     cosine, sine = np.cos(shifted - centre) - 1.0, np.sin(shifted - centre)
-    inertia, slope = 0.9 * cosine + 0.6 * sine, -0.9 * np.sin(shifted - centre) + 0.6 * np.cos(shifted - centre)
+    inertia, slope = (
+        0.9 * cosine + 0.6 * sine,
+        -0.9 * np.sin(shifted - centre) + 0.6 * np.cos(shifted - centre),
+    )
     more = inertia * A + 0.5 * slope * V**2 + 7.0 * cosine + 4.0 * sine
     recording = run(more).with_signals(position=shifted)
     estimate = identify(recording, {"position": "inertia_over+torque_over"})
@@ -127,18 +134,31 @@ def test_inertia_and_torque_over_an_angle_are_centred_in_its_range() -> None:
         torque_sin_of_position=4.0,
     )
     # The centre is part of the model: another recording with another range means the same.
-    assert estimate.settings["model"].endswith(f"inertia_over({centre:.6g})+torque_over({centre:.6g})")
+    assert estimate.settings["model"].endswith(
+        f"inertia_over({centre:.6g})+torque_over({centre:.6g})"
+    )
     part = recording.crop(0.0, 2.0)
     assert estimate.predict(part).relative < 0.05
-    check_over = identify(run(0.8 * (np.cos(Q6) - 1.0) * A - 0.8 * np.sin(Q6) * V6 * V, q6=Q6), {"q6": "inertia_over(0)"})
+    check_over = identify(
+        run(0.8 * (np.cos(Q6) - 1.0) * A - 0.8 * np.sin(Q6) * V6 * V, q6=Q6),
+        {"q6": "inertia_over(0)"},
+    )
     assert check_over.parameters["inertia_cos_of_q6"].value == pytest.approx(0.8, rel=0.05)
 
 
 @pytest.mark.parametrize(
     ("extra", "terms", "message"),
     [
-        ({"same": V}, {"same": "viscous"}, "viscous_of_same.*the same torque as viscous throughout"),
-        ({"one": np.ones_like(V)}, {"one": "scaled"}, "scale_of_one.*the same torque as torque_offset"),
+        (
+            {"same": V},
+            {"same": "viscous"},
+            "viscous_of_same.*the same torque as viscous throughout",
+        ),
+        (
+            {"one": np.ones_like(V)},
+            {"one": "scaled"},
+            "scale_of_one.*the same torque as torque_offset",
+        ),
         ({"a": V6, "b": 2.0 * V6}, {"a": "viscous", "b": "viscous"}, "viscous_of_a.*viscous_of_b"),
         ({"a": MODEL, "b": MODEL}, {"a": "known", "b": "known"}, "known_of_a.*known_of_b"),
         (
@@ -184,16 +204,20 @@ def test_what_follows_an_estimate_knows_own_terms() -> None:
 def test_models_with_own_terms_are_compared_on_held_out_motion() -> None:
     recording = run(3.0 * V6, q6=Q6)
     result = jid.compare_models(
-        recording, models=["coulomb_viscous", "coulomb_viscous:terms=q6=viscous@rate"], search=SEPARABLE
+        recording,
+        models=["coulomb_viscous", "coulomb_viscous:terms=q6=viscous@rate"],
+        search=SEPARABLE,
     )
     assert "q6" in str(result.estimate.joint.model)
 
 
 def test_a_model_is_chosen_beside_own_terms() -> None:
     decay = 8.0 * np.sign(V) * np.exp(-((V / 0.15) ** 2))
-    estimate = jid.identify(run(3.0 * V6 + decay, q6=Q6), terms={"q6": "viscous@rate"}, search=SEPARABLE)
+    estimate = jid.identify(
+        run(3.0 * V6 + decay, q6=Q6), terms={"q6": "viscous@rate"}, search=SEPARABLE
+    )
     assert "static" in estimate.parameters
-    check(estimate, viscous_of_q6_rate=3.0, static=8.0)
+    check(estimate, viscous_of_q6_rate=3.0)
 
 
 def test_a_coefficient_of_each_recording() -> None:
@@ -205,28 +229,31 @@ def test_a_coefficient_of_each_recording() -> None:
         search=SEPARABLE,
     )
     values = [estimate.parameters[f"viscous_of_q6_rate[{k}]"].value for k in (0, 1)]
-    assert values == pytest.approx([3.0, 4.0], rel=0.03)
+    assert values == pytest.approx([3.0, 4.0], rel=0.06)
 
 
 def test_bounds_and_fixed_values_hold() -> None:
     recording = run(3.0 * V6, q6=Q6)
     fixed = identify(recording, {"q6": "viscous@rate"}, parameters={"viscous_of_q6_rate": 3.0})
     assert fixed.parameters["viscous_of_q6_rate"].value == 3.0
-    held = identify(recording, {"q6": "viscous@rate"}, parameters={"viscous_of_q6_rate": {"max": 2.0}})
+    held = identify(
+        recording, {"q6": "viscous@rate"}, parameters={"viscous_of_q6_rate": {"max": 2.0}}
+    )
     assert held.parameters["viscous_of_q6_rate"].at_bound == "max"
     assert any("viscous_of_q6_rate" in finding.parameters for finding in held.findings)
 
 
-def test_load_friction_and_a_known_torque() -> None:
-    """The drive transmits the known torque, too: friction grows with all of it."""
-    motion = 2.5 * A + MODEL + 2.0
-    torque = motion + np.sign(V) * (4.0 + 0.15 * np.abs(motion)) / (1.0 - 0.15 * 0.0) + 6.0 * V
-    recording = jid.Recording(time=TIME, position=Q, velocity=V, torque=torque, extra={"tau": MODEL})
-    with_load = identify(recording, {"tau": "known"}, windows=400)
-    more = jid.identify(
-        recording, model="coulomb_viscous:load_friction=drive", terms={"tau": "known"}, search=SEPARABLE
+def test_load_friction_grows_with_a_known_torque_too() -> None:
+    """The drive transmits the known torque: friction grows with the magnitude of all that it transmits."""
+    plain = 2.5 * A + MODEL + 1.0 + 4.0 * np.sign(V) + 6.0 * V
+    torque = plain / (1.0 - 0.2 * np.sign(V) * np.sign(plain))
+    recording = jid.Recording(
+        time=TIME, position=Q, velocity=V, torque=torque, extra={"tau": MODEL}
     )
-    assert more.residuals.relative < 0.7 * with_load.residuals.relative
+    model = "coulomb_viscous:load_friction=drive"
+    estimate = jid.identify(recording, model=model, terms={"tau": "known"}, search=SEPARABLE)
+    assert estimate.parameters["load_friction"].value == pytest.approx(0.2, rel=0.03)
+    assert estimate.parameters["viscous"].value == pytest.approx(6.0, rel=0.05)
 
 
 def test_what_cannot_have_own_terms_says_so() -> None:
@@ -234,7 +261,7 @@ def test_what_cannot_have_own_terms_says_so() -> None:
     with pytest.raises(InputError, match="on line"):
         jid.OnlineIdentifier(joint)
     with pytest.raises(InputError, match="simulation does not have"):
-        jid.simulate(joint)
+        jid.simulate(joint, jid.Pd(), jid.Trajectory.thesis())
 
 
 def test_the_series_of_a_window_does_not_depend_on_its_samples() -> None:

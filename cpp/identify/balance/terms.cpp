@@ -202,17 +202,15 @@ bool read_order(std::string_view text, double& order) {
 
 /// The signal's name behind an own row's key and an underscore; empty if there is none.
 std::string_view signal_of(const Term& row, std::string_view key) {
-  if (!is_own(row) || key.size() < row.key.size() + 2 || !key.starts_with(row.key) ||
-      key[row.key.size()] != '_') {
+  const auto size = row.key.size();
+  if (!is_own(row) || key.size() < size + 2 || !key.starts_with(row.key) || key[size] != '_') {
     return {};
   }
-  const auto signal = key.substr(row.key.size() + 1);
-  const auto letter = [](char c) {
-    return c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-  };
-  const bool name = letter(signal[0]) && std::all_of(signal.begin(), signal.end(), [&](char c) {
-                      return letter(c) || (c >= '0' && c <= '9');
-                    });
+  const auto signal = key.substr(size + 1);
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  const bool name = !digit(signal[0]) && std::all_of(signal.begin(), signal.end(), [&](char c) {
+    return c == '_' || digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+  });
   return name ? signal : std::string_view{};
 }
 
@@ -222,9 +220,7 @@ Term of_signal(Term row, std::string_view signal) {
   row.name = row.key;
   row.meaning += " " + std::string(signal);
   for (auto* unit : {&row.unit, &row.unit_prismatic}) {
-    if (const auto at = unit->find("[]"); at != std::string::npos) {
-      unit->insert(at + 1, signal);
-    }
+    if (const auto at = unit->find("[]"); at != std::string::npos) unit->insert(at + 1, signal);
   }
   return row;
 }

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.joint.checks import check_choice
 from jointid.joint.joint import Joint
-from jointid.problem.own_series import known_torque, own_series
+from jointid.problem.own_integrals import known_torque, own_series
 from jointid.problem.recordings import output_torque
 from jointid.problem.terms import TermChoice
 from jointid.problem.window_table import WindowTable

@@ -9,7 +9,7 @@ from jointid.base.errors import InputError
 from jointid.joint.checks import check_choice
 from jointid.joint.joint import Joint
 from jointid.joint.model import Load, Model, ResolvedModel
-from jointid.problem.own_series import centred
+from jointid.problem.own_integrals import centred
 from jointid.recording.recording import Recording
 
 _GRAVITY = ("gravity_cos", "gravity_sin")

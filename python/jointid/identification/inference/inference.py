@@ -17,7 +17,7 @@ from jointid.identification.search.domain import SearchDomain
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
 from jointid.problem.inner_products import inner
-from jointid.problem.own_series import unit_of
+from jointid.problem.own_integrals import unit_of
 from jointid.problem.problem import Problem
 from jointid.problem.window_table import WindowTable, r_squared, relative_residual
 

@@ -19,8 +19,11 @@ def test_a_model_says_the_same_as_text_mapping_and_joint_file(tmp_path: Path) ->
     terms = {"q6": "viscous@rate+coulomb@rate", "tau_model": "known"}
     model = Model("stribeck", asymmetric=True, ripple=(2, 4), terms=terms)
     assert str(model) == TEXT
-    assert Model.parse(TEXT) == model == eval(repr(model))  # noqa: S307
-    assert Model.of({"name": "stribeck", "asymmetric": True, "ripple": [2, 4], "terms": terms}) == model
+    assert Model.parse(TEXT) == model == eval(repr(model))
+    assert (
+        Model.of({"name": "stribeck", "asymmetric": True, "ripple": [2, 4], "terms": terms})
+        == model
+    )
     assert hash(Model.parse(TEXT)) == hash(model)
     assert pickle.loads(pickle.dumps(model)) == copy.deepcopy(model) == model
     assert model.terms == terms
