@@ -1,6 +1,6 @@
 """The contents of a table: the signals of a recording in SI units, of all rows or of some."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +12,8 @@ from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
 from jointid.recording.attributes import check_kind, check_torque_hold
 from jointid.recording.column_lookup import column_index
-from jointid.recording.columns import Column, match_columns
+from jointid.recording.columns import Column
+from jointid.recording.matching import match_columns
 from jointid.recording.signals import FloatArray, check_signals
 from jointid.recording.table import Table
 from jointid.recording.truncated import unrecorded
@@ -35,6 +36,8 @@ class Contents:
         Attributes of a saved recording, as arguments of `Recording`.
     kind : str
         ``"revolute"`` or ``"prismatic"``.
+    left_out : sequence of mapping of str to str
+        Columns that a header assigns to a signal and that are not read, as in `Match`. Default: none.
     """
 
     table: Table
@@ -42,6 +45,7 @@ class Contents:
     values: Mapping[str, FloatArray]
     saved: Mapping[str, Any]
     kind: str
+    left_out: Sequence[Mapping[str, str]] = ()
 
     def fields(
         self,
@@ -144,7 +148,8 @@ class Contents:
             if column.unit is None and column.scale is None and signal != "sensor"
         ]
         scaled = {signal: column.scale for signal, column in self.found.items() if column.scale}
-        metadata = {"assumed_units": assumed, "scale": scaled}
+        left_out = [dict(each) for each in self.left_out]
+        metadata = {"assumed_units": assumed, "scale": scaled, "left_out": left_out}
         return {name: value for name, value in metadata.items() if value}
 
 
@@ -177,9 +182,8 @@ def read_contents(
             place=table.source,
             remedy="leave it out",
         )
-    found, kind = match_columns(
-        table, columns=columns, units=units, scale=scale, kind=kind or saved_kind
-    )
+    match = match_columns(table, columns=columns, units=units, scale=scale, kind=kind or saved_kind)
+    found, left_out = match.found, match.left_out
     values = dict(
         zip(found, table.numbers([column.index for column in found.values()]), strict=True)
     )
@@ -195,5 +199,6 @@ def read_contents(
         found=found,
         values=values,
         saved=saved,
-        kind=kind,
+        kind=match.kind,
+        left_out=left_out,
     )
