@@ -257,7 +257,8 @@ def test_shared_recordings(
 def test_several_axes_are_refused_with_a_remedy(shared_data: Path) -> None:
     error_text = refusal(shared_data / "kr300" / "kr300_A.csv.gz")
     assert error_text.count("motor_encoder_pos_") > 6
-    assert f"columns={{'position': '{POSITION}'}}" in error_text
+    columns = {"position": POSITION, "motor_torque": "motor_torque_1_Nm"}
+    assert error_text.endswith(f"; load with columns={columns}")
 
 
 def test_several_runs_are_refused_with_a_remedy(shared_data: Path) -> None:
