@@ -145,6 +145,7 @@ class Contents:
         ]
         scaled = {signal: column.scale for signal, column in self.found.items() if column.scale}
         metadata = {"assumed_units": assumed, "scale": scaled}
+        metadata |= getattr(self.table, "notes", {})  # how a log of messages was read
         return {name: value for name, value in metadata.items() if value}
 
 
