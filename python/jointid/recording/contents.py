@@ -167,6 +167,7 @@ class Contents:
         scaled = {signal: column.scale for signal, column in self.found.items() if column.scale}
         left_out = [dict(each) for each in self.left_out]
         metadata = {"assumed_units": assumed, "scale": scaled, "left_out": left_out}
+        metadata |= getattr(self.table, "notes", {})  # how a log of messages was read
         return {name: value for name, value in metadata.items() if value}
 
 

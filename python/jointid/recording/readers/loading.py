@@ -9,9 +9,11 @@ from typing import Any
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.file_endings import ending_of
+from jointid.recording.attributes import check_kind
 from jointid.recording.column_lookup import column_index
 from jointid.recording.contents import read_contents
 from jointid.recording.copies import without_copies
+from jointid.recording.readers.reader import Reader
 from jointid.recording.readers.registry import endings, reader_of
 from jointid.recording.recording import Recording
 from jointid.recording.runs import one_run
@@ -32,6 +34,8 @@ def load(
     torque_hold: str | None = None,
     drop_copies: bool = False,
     name: str | None = None,
+    topic: str | None = None,
+    group: str | None = None,
 ) -> Recording:
     """Return the recording that a file holds.
 
@@ -47,7 +51,7 @@ def load(
     path : path-like
         A ``.csv``, ``.csv.gz`` or ``.npz`` file, from any program or from `Recording.save`; a
         MATLAB ``.mat`` file up to version 7 (vectors, also in a struct, by their names); a
-        ``.parquet`` file (needs pyarrow). The cells of a text are separated by commas, semicolons
+        ``.parquet`` file (needs pyarrow); an ``.mcap`` file. The cells of a text are separated by commas, semicolons
         or tabs; with the latter two, decimal commas are read as well.
     columns : mapping of str to str, int or None, optional
         Signal → header or 0-based number of its column; None leaves the signal out (a velocity
@@ -77,6 +81,11 @@ def load(
         False.
     name : str, optional
         Default: as saved, else the file's name without its ending.
+    topic : str, optional
+        Of a file of messages: the topic that is the recording. Default: the only one with joints.
+    group : str, optional
+        Of an HDF5 or MATLAB 7.3 file: the group (struct) whose datasets are the recording, as a path.
+        Default: the only one with such datasets.
 
     Returns
     -------
@@ -96,7 +105,7 @@ def load(
     """
     file = require_path("path", path)
     contents = read_contents(
-        _table(file),
+        _table(file, topic=topic, group=group, kind=kind),
         columns=columns,
         units=units,
         scale=scale,
@@ -184,11 +193,23 @@ def load_runs(
     return tuple(runs)
 
 
-def _table(file: Path) -> Table:
+def _table(
+    file: Path, *, topic: str | None = None, group: str | None = None, kind: str | None = None
+) -> Table:
     """Return a file as a table of columns, by the ending of its name."""
     reader = reader_of(file)
+    part: str | None = None
+    for argument, given in (("topic", topic), ("group", group)):
+        if given is None:
+            continue
+        if argument != reader.part or not isinstance(given, str):
+            problem = "a name is expected" if argument == reader.part else _without(file, argument)
+            raise InputError(problem, argument=argument, value=given, place=str(file))
+        part = given
+    if kind is not None:
+        check_kind(kind)
     try:
-        return reader.open(file)
+        return reader.open(file, part=part, kind=kind) if reader.part else reader.open(file)
     except FileNotFoundError:
         raise InputError("there is no such file", place=str(file)) from None
     except IsADirectoryError:
@@ -196,18 +217,26 @@ def _table(file: Path) -> Table:
     except OSError as error:
         raise InputError(f"the file cannot be read ({error.strerror})", place=str(file)) from None
     except ModuleNotFoundError as error:
-        if not reader.package or (error.name or "").partition(".")[0] != reader.package:
+        package = (error.name or "").partition(".")[0]
+        if package not in reader.packages:
             raise
         raise InputError(
-            f"reading {ending_of(file, reader.endings)} files needs {reader.package}, "
-            "which is not installed",
+            f"reading {_form(file, reader)} needs {package}, which is not installed",
             place=str(file),
             remedy=(f"pip install 'jointid[{reader.extra}]'", "save the file as .csv"),
         ) from None
 
 
+def _without(file: Path, argument: str) -> str:
+    return f"{ending_of(file, endings()) if file.is_file() else 'such'} files have no {argument}"
+
+
+def _form(file: Path, reader: Reader) -> str:
+    return "bags" if file.is_dir() else f"{ending_of(file, reader.endings)} files"
+
+
 def _name(file: Path, fields: Mapping[str, Any], name: str | None) -> Any:
-    stem = file.name[: -len(ending_of(file, endings()))]
+    stem = file.resolve().name if file.is_dir() else file.name[: -len(ending_of(file, endings()))]
     # Bytes of a file name that are not UTF-8 reach Python as surrogates, which no file can hold.
     stem = _SURROGATE.sub("\ufffd", stem)
     return fields.get("name", stem) if name is None else name
