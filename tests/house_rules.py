@@ -58,7 +58,10 @@ _SOUGHT = {*_FOUND, "identification", "identification/search"}
 FOLDERS: dict[str, Folder] = {
     "base": Folder(may_use=set()),
     "recording": Folder(may_use={"base"}, packages={"numpy", "pandas"}),
-    "recording/readers": Folder(may_use={"base", "recording"}, packages={"numpy", "pyarrow"}),
+    "recording/wide": Folder(may_use={"base", "recording"}, packages={"numpy"}),
+    "recording/readers": Folder(
+        may_use={"base", "recording", "recording/wide"}, packages={"numpy", "pyarrow"}
+    ),
     "joint": Folder(may_use={"base", "recording"}, packages={"numpy", "tomlkit"}),
     "problem": Folder(may_use=_DATA, packages={"numpy"}),
     "estimate": Folder(may_use={*_DATA, "problem"}, packages={"numpy", "scipy"}),
