@@ -62,8 +62,11 @@ FOLDERS: dict[str, Folder] = {
         may_use={"base", "recording"}, packages={"numpy", "mcap", "rosbags", "lz4", "zstandard"}
     ),
     "recording/hierarchies": Folder(may_use={"base", "recording"}, packages={"numpy", "h5py"}),
+    "recording/wide": Folder(may_use={"base", "recording"}, packages={"numpy"}),
     "recording/readers": Folder(
-        may_use={"base", "recording", "recording/messages", "recording/hierarchies"},
+        may_use={
+            *("base", "recording", "recording/messages", "recording/hierarchies", "recording/wide"),
+        },
         packages={"numpy", "pyarrow"},
     ),
     "joint": Folder(may_use={"base", "recording"}, packages={"numpy", "tomlkit"}),
