@@ -110,6 +110,9 @@ FOLDERS: dict[str, Folder] = {
         may_use={"base", "estimate", "plot", "identification/warnings"},
         packages={"numpy", "matplotlib"},
     ),
+    "exports": Folder(
+        may_use={"base", "joint", "estimate", "simulation"}, packages={"numpy", "scipy"}
+    ),
     "hardware/session": Folder(may_use={*_DATA, "simulation"}, packages={"numpy"}),
     "hardware/can": Folder(may_use={"base"}, packages={"can"}),
     "hardware/live": Folder(may_use={"base", "hardware/session"}, packages={"numpy", "matplotlib"}),
@@ -145,7 +148,15 @@ FOLDERS: dict[str, Folder] = {
     "cli": Folder(
         may_use={
             *(_SOUGHT - {"problem"}),
-            *("recording/readers", "comparison", "simulation", "study", "plot", "report"),
+            *(
+                "recording/readers",
+                "comparison",
+                "simulation",
+                "study",
+                "plot",
+                "report",
+                "exports",
+            ),
             *("hardware/session", "hardware/can", "hardware/live", "hardware/bench"),
             *("hardware/emulated", "hardware/proof", "commissioning", ""),
         },
@@ -156,7 +167,7 @@ FOLDERS: dict[str, Folder] = {
         may_use={
             *(_SOUGHT - {"problem"}),
             *("recording/readers", "comparison", "online", "simulation", "study"),
-            *("plot", "hardware", "commissioning", "cli"),
+            *("plot", "exports", "hardware", "commissioning", "cli"),
         },
     ),
 }
