@@ -1,6 +1,6 @@
 """The contents of a table: the signals of a recording in SI units, of all rows or of some."""
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,8 +12,9 @@ from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
 from jointid.recording.attributes import check_kind, check_torque_hold
 from jointid.recording.column_lookup import column_index
-from jointid.recording.columns import Column, match_columns
+from jointid.recording.columns import Column
 from jointid.recording.extra import UNITS_KEY, ExtraColumn, extra_columns
+from jointid.recording.matching import match_columns
 from jointid.recording.signals import FloatArray, check_signals
 from jointid.recording.table import Table
 from jointid.recording.truncated import unrecorded
@@ -38,6 +39,8 @@ class Contents:
         ``"revolute"`` or ``"prismatic"``.
     extra : mapping of str to (ExtraColumn, ndarray)
         Name of an extra signal → its column, and the values in the column's own unit. Default: none.
+    left_out : sequence of mapping of str to str
+        Columns that a header assigns to a signal and that are not read, as in `Match`. Default: none.
     """
 
     table: Table
@@ -46,6 +49,7 @@ class Contents:
     saved: Mapping[str, Any]
     kind: str
     extra: Mapping[str, tuple[ExtraColumn, FloatArray]] = field(default_factory=dict)
+    left_out: Sequence[Mapping[str, str]] = ()
 
     def fields(
         self,
@@ -161,7 +165,9 @@ class Contents:
             if column.unit is None and column.scale is None and signal != "sensor"
         ]
         scaled = {signal: column.scale for signal, column in self.found.items() if column.scale}
-        metadata = {"assumed_units": assumed, "scale": scaled}
+        left_out = [dict(each) for each in self.left_out]
+        metadata = {"assumed_units": assumed, "scale": scaled, "left_out": left_out}
+        metadata |= getattr(self.table, "notes", {})  # how a log of messages was read
         return {name: value for name, value in metadata.items() if value}
 
 
@@ -202,13 +208,16 @@ def read_contents(
         if given is not None:
             require_mapping(name, given, example)
     own = extra_columns(table, extra, units, scale)
-    found, kind = match_columns(
+    match = match_columns(
         table,
         columns=columns,
         units={name: unit for name, unit in units.items() if name not in own} if units else units,
         scale={name: each for name, each in scale.items() if name not in own} if scale else scale,
         kind=kind or saved_kind,
     )
+    found = match.found
+    read = {table.headers[column.index] for column in own.values()}
+    left_out = [each for each in match.left_out if each["column"] not in read]
     values = dict(
         zip(found, table.numbers([column.index for column in found.values()]), strict=True)
     )
@@ -225,6 +234,7 @@ def read_contents(
         found=found,
         values=values,
         saved=saved,
-        kind=kind,
         extra={name: (own[name], values) for name, values in zip(own, arrays, strict=True)},
+        kind=match.kind,
+        left_out=left_out,
     )

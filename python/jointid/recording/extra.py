@@ -132,7 +132,7 @@ def extra_columns(
                 found[name] = ExtraColumn(
                     index=index, shown=unit_of_extra(table.saved.get("metadata"), name)
                 )
-    for name, column in _named(wanted).items():
+    for name, column in named_extra(wanted).items():
         saved = isinstance(column, str) and column in found and column not in table.headers
         if saved:
             found[name] = found[str(column)]
@@ -165,7 +165,8 @@ def _unit(header: str) -> Unit | None:
     return parsed(header)[1]
 
 
-def _named(wanted: object) -> dict[str, str | int]:
+def named_extra(wanted: object) -> dict[str, str | int]:
+    """Return the columns that a call wants as extra signals, by name; raise `InputError` for something else."""
     if wanted is None:
         return {}
     if isinstance(wanted, Mapping):

@@ -108,4 +108,4 @@ def saved_attributes(text: str, place: str) -> dict[str, object]:
         raise InputError(
             f"{' or '.join(KINDS)} is expected", argument="kind", value=kind, place=place
         )
-    return {key: attributes[key] for key in _ATTRIBUTES if key in attributes}
+    return {key: attributes[key] for key in (*_ATTRIBUTES, "robot") if key in attributes}
