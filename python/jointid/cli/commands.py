@@ -265,6 +265,14 @@ def _facts(recording: Recording) -> dict[str, Any]:
                 "unit": recording.unit(signal),
             }
             for signal in recording.signals
+        }
+        | {
+            name: {
+                "min": float(values.min()),
+                "max": float(values.max()),
+                "unit": recording.unit(name),
+            }
+            for name, values in recording.extra.items()
         },
     }
 
