@@ -53,8 +53,8 @@ def chosen_topic(path: Path, topics: Sequence[Topic], name: str | None) -> Topic
 
 
 def _named(path: Path, topics: Sequence[Topic], name: str) -> Topic:
-    for same in (lambda topic: topic == name, lambda topic: topic.strip("/") == name.strip("/")):
-        found = [topic for topic in topics if same(topic.name)]
+    for slashes in ("", "/"):  # /joint_states is also found as joint_states
+        found = [each for each in topics if _bare(each.name, slashes) == _bare(name, slashes)]
         if found:
             return max(found, key=lambda topic: (is_joint_kind(topic.kind), topic.encoding in READ))
     close = closest(name, [topic.name for topic in topics])
@@ -65,6 +65,10 @@ def _named(path: Path, topics: Sequence[Topic], name: str) -> Topic:
         place=str(path),
         remedy=f"did you mean {close!r}" if close else f"topics are {_listed(topics)}",
     )
+
+
+def _bare(name: str, slashes: str) -> str:
+    return name.strip(slashes) if slashes else name
 
 
 def _load(topic: Topic, text: str = "") -> Action:

@@ -7,7 +7,7 @@ from jointid.recording.messages.topic import DamageError
 Path = tuple[str | int, ...]
 
 # Field that names the joints → where each signal's values stand, the first that has values.
-_SIGNALS = {
+_SIGNALS: dict[str, dict[str, tuple[tuple[str, ...], ...]]] = {
     "JointState": {
         "position": (("position",),),
         "velocity": (("velocity",),),
@@ -70,9 +70,7 @@ def stamp_of(numbers: Sequence[Path]) -> tuple[int, int] | None:
     return None
 
 
-def columns_of(
-    kind: str, numbers: Sequence[Path], names: Mapping[Path, str]
-) -> dict[Column, int]:
+def columns_of(kind: str, numbers: Sequence[Path], names: Mapping[Path, str]) -> dict[Column, int]:
     """Return column → index of its number, for one layout of messages.
 
     Parameters

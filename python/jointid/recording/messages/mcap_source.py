@@ -45,7 +45,9 @@ class McapSource:
     def messages(self, topic: Topic) -> Iterator[Message]:
         """Yield the messages of a topic."""
         wanted = {
-            number for number, channel in self._channels.items() if self._name(channel) == _key(topic)
+            number
+            for number, channel in self._channels.items()
+            if self._name(channel) == _key(topic)
         }
         with self._path.open("rb") as stream:
             if self._chunks:
@@ -138,7 +140,9 @@ class McapSource:
             if isinstance(record, Footer):
                 return
             if record is None:
-                self.incomplete = "the file ends early: it has no end, as after a recorder was killed"
+                self.incomplete = (
+                    "the file ends early: it has no end, as after a recorder was killed"
+                )
                 return
             if isinstance(record, Chunk):
                 yield from self._parts(content)

@@ -65,6 +65,11 @@ class MessageTable:
         """Return columns as arrays of shape (n,).
 
         Where a topic's messages hold different joints, the rows are those that hold any of these columns.
+
+        Raises
+        ------
+        InputError
+            Such a row does not hold all of them.
         """
         kept = self._rows_with([column for column in columns if column > LOG_TIME])
         self._shown = kept
@@ -102,15 +107,28 @@ class MessageTable:
 
     def _rows_with(self, columns: Sequence[int]) -> npt.NDArray[np.intp] | None:
         """Return the rows that hold any of some columns; None for all rows."""
-        wanted = {self._columns[column - 2] for column in columns}
-        if not wanted or all(wanted.intersection(b.columns) for b in self._collected.blocks):
+        wanted = {column: self._columns[column - 2] for column in columns}
+        if all(set(block.columns).issuperset(wanted.values()) for block in self._collected.blocks):
             return None
-        present = np.zeros(self._rows.count, dtype=np.bool_)
+        present = np.zeros((len(wanted), self._rows.count), dtype=np.bool_)
         for block in self._collected.blocks:
-            if wanted.intersection(block.columns):
-                rows = self._rows.row[block.messages]
-                present[rows[rows >= 0]] = True
-        return np.flatnonzero(present)
+            rows = self._rows.row[block.messages]
+            for there, column in zip(present, wanted.values(), strict=True):
+                if column in block.columns:
+                    there[rows[rows >= 0]] = True
+        kept = np.flatnonzero(present.any(axis=0))
+        lacking = ~present[:, kept]
+        if lacking.any():
+            row = int(np.argmax(lacking.any(axis=0)))
+            which, other = int(np.argmax(lacking[:, row])), int(np.argmin(lacking[:, row]))
+            missing, there = (self.headers[list(wanted)[k]] for k in (which, other))
+            self._shown = None
+            raise InputError(
+                f"{there!r} stands here without {missing!r}",
+                place=self.place(list(wanted)[other], int(kept[row])),
+                remedy="load joints that are logged at different times one at a time",
+            )
+        return kept
 
     def _holds_numbers(self, column: Column) -> bool:
         """Whether any value is a number: drivers fill what they do not measure with NaN."""

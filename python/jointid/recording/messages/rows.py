@@ -7,7 +7,9 @@ import numpy.typing as npt
 
 from jointid.recording.messages.collecting import Collected
 
-_LATE = 1_000_000_000  # ns: a message that comes later than this after a younger one begins another run
+_LATE = (
+    1_000_000_000  # ns: a message that comes later than this after a younger one begins another run
+)
 Integers = npt.NDArray[np.int64]
 
 
