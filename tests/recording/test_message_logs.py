@@ -260,9 +260,8 @@ def test_other_formats_have_no_topic(tmp_path: Path) -> None:
 
 
 def test_a_controllers_state(tmp_path: Path) -> None:
-    from rosbags.typesys import get_types_from_msg
-
     from message_files import typestore
+    from rosbags.typesys import get_types_from_msg
 
     store = typestore()
     store.register(
