@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,8 @@ from jointid.recording.readers.registry import endings, reader_of
 from jointid.recording.recording import Recording
 from jointid.recording.runs import one_run
 from jointid.recording.table import Table
+from jointid.recording.wide.one_joint import OneJoint, one_joint
+from jointid.recording.wide.sides import at_joint, checked_ratio
 
 _SURROGATE = re.compile("[\ud800-\udfff]")
 
@@ -25,9 +27,12 @@ _SURROGATE = re.compile("[\ud800-\udfff]")
 def load(
     path: str | os.PathLike[str],
     *,
+    joint: str | int | None = None,
     columns: Mapping[str, str | int | None] | None = None,
     units: Mapping[str, str] | None = None,
     scale: Mapping[str, float] | None = None,
+    extra: Collection[str] | Mapping[str, str | int] | None = None,
+    gear_ratio: float | None = None,
     where: Mapping[str, float | str] | None = None,
     kind: str | None = None,
     torque_hold: str | None = None,
@@ -52,9 +57,15 @@ def load(
         MATLAB ``.mat`` file up to version 7 (vectors, also in a struct, by their names); a
         ``.parquet`` file (needs pyarrow); an ``.mcap`` file. The cells of a text are separated by commas, semicolons
         or tabs; with the latter two, decimal commas are read as well.
+    joint : str or int, optional
+        Of a file with several joints the one to read, by its number or name as the headers have it:
+        ``motor_position_3_rad``, ``joint3_pos``, ``q3``, ``q[2]``, ``position.3``, ``elbow.position [rad]``,
+        ``elbow_position``. Columns without a joint, such as time, belong to all. `docs/several_joints.md` has the
+        rules. Default: the only one.
     columns : mapping of str to str, int or None, optional
         Signal → header or 0-based number of its column; None leaves the signal out (a velocity
-        left out is derived from position). Default: by the headers, also for signals not mapped.
+        left out is derived from position). ``{joint}`` in a header stands for the joint:
+        ``{"position": "enc_{joint}_rad"}``. Default: by the headers, also for signals not mapped.
     units : mapping of str to str, optional
         Signal → unit, e.g. ``{"position": "deg"}``, whatever the header says.
         Default: the header's.
@@ -62,6 +73,15 @@ def load(
         Signal → factor from file units to SI, whatever the header says: for encoder counts
         (``{"position": 2 * math.pi / 4096}``), a voltage that drives a known force, a sign.
         Saved in ``metadata["scale"]``. Default: the factor of the unit.
+    extra : collection of str or mapping of str to str or int, optional
+        Columns to keep as `Recording.extra`: their headers, which are then the names, or name →
+        header or 0-based number. A known unit at the header's end (``_rad_s``, ``[kNm]``, ``_kgm2``)
+        is converted to SI; without one, values stay as they are. Every cell must be a finite
+        number. Default: none, but those of a saved recording.
+    gear_ratio : float, optional
+        Motor's angle per angle of the joint, negative if they turn in opposite directions: columns of the motor
+        (``motor_position_3_rad``, ``motor_torque_3_Nm``) are converted to the joint's side. Default: not known;
+        positions of the motor stay what they are, and ``metadata["side"]`` is "motor".
     where : mapping of str to number or str, optional
         Header → value: only rows with this value are kept. Default: all rows.
     kind : {"revolute", "prismatic"}, optional
@@ -95,13 +115,18 @@ def load(
     --------
     >>> recording = jid.load("run.csv")
     >>> recording = jid.load("log.csv", columns={"position": "enc1"}, units={"position": "deg"})
+    >>> recording = jid.load("robot.csv", extra={"gravity": "model_gravity_torque_1_Nm"})
+    >>> elbow = jid.load("arm.csv", joint=3, gear_ratio=-48)
     """
     file = require_path("path", path)
+    one = one_joint(table_of(file, topic=topic, group=group, kind=kind), joint, columns, extra)
+    ratio = one.gear_ratio if gear_ratio is None else checked_ratio(gear_ratio)
     contents = read_contents(
-        _table(file, topic=topic, group=group, kind=kind),
-        columns=columns,
+        one.table,
+        columns=one.columns,
         units=units,
         scale=scale,
+        extra=one.extra,
         kind=kind,
         torque_hold=torque_hold,
     )
@@ -114,16 +139,19 @@ def load(
             fields = without_copies(fields)
         except InputError as error:
             raise error.at(str(file)) from None
-    return _recording(file, fields, name)
+    return _recording(file, _of_joint(fields, one, ratio), _named(file, fields, name, one))
 
 
 def load_runs(
     path: str | os.PathLike[str],
     *,
     by: str | int,
+    joint: str | int | None = None,
     columns: Mapping[str, str | int | None] | None = None,
     units: Mapping[str, str] | None = None,
     scale: Mapping[str, float] | None = None,
+    extra: Collection[str] | Mapping[str, str | int] | None = None,
+    gear_ratio: float | None = None,
     kind: str | None = None,
     torque_hold: str | None = None,
     name: str | None = None,
@@ -137,7 +165,8 @@ def load_runs(
     by : str or int
         Header or 0-based number of the column that numbers the runs: rows with the same value
         are one run.
-    columns, units, scale, kind, torque_hold
+    columns, units, scale, extra, kind, torque_hold
+    joint, columns, units, scale, gear_ratio, kind, torque_hold
         As in `load`.
     name : str, optional
         Beginning of the runs' names. Default: as in `load`.
@@ -157,16 +186,26 @@ def load_runs(
     >>> slow, fast = jid.load_runs("week.csv", by="run")
     """
     file = require_path("path", path)
+    one = one_joint(table_of(file), joint, columns, extra)
+    ratio = one.gear_ratio if gear_ratio is None else checked_ratio(gear_ratio)
     contents = read_contents(
-        _table(file), columns=columns, units=units, scale=scale, kind=kind, torque_hold=torque_hold
+        one.table,
+        columns=one.columns,
+        units=units,
+        scale=scale,
+        extra=one.extra,
+        kind=kind,
+        torque_hold=torque_hold,
     )
     header = contents.table.headers[column_index(contents.table, by, "by")]
     runs = []
     for value, rows in contents.rows_of(by).items():
         run = f"{header}={value}"
         try:
-            fields = contents.fields(rows)
-            runs.append(_recording(file, fields, f"{_name(file, fields, name)} {run}".lstrip()))
+            fields = _of_joint(contents.fields(rows), one, ratio)
+            runs.append(
+                _recording(file, fields, f"{_named(file, fields, name, one)} {run}".lstrip())
+            )
         except InputError as error:
             raise InputError(
                 error.reason,
@@ -178,7 +217,7 @@ def load_runs(
     return tuple(runs)
 
 
-def _table(
+def table_of(
     file: Path, *, topic: str | None = None, group: str | None = None, kind: str | None = None
 ) -> Table:
     """Return a file as a table of columns, by the ending of its name."""
@@ -220,15 +259,31 @@ def _form(file: Path, reader: Reader) -> str:
     return "bags" if file.is_dir() else f"{ending_of(file, reader.endings)} files"
 
 
-def _name(file: Path, fields: Mapping[str, Any], name: str | None) -> Any:
+def file_name(file: Path, fields: Mapping[str, Any], name: str | None) -> Any:
+    """Return a recording's name: as given, as saved, or the file's without its ending."""
     stem = file.resolve().name if file.is_dir() else file.name[: -len(ending_of(file, endings()))]
     # Bytes of a file name that are not UTF-8 reach Python as surrogates, which no file can hold.
     stem = _SURROGATE.sub("\ufffd", stem)
     return fields.get("name", stem) if name is None else name
 
 
+def _named(file: Path, fields: Mapping[str, Any], name: str | None, one: OneJoint) -> Any:
+    """The name of a recording; of a joint among several with the joint's."""
+    whole = file_name(file, fields, name)
+    return f"{whole} joint {one.joint}".lstrip() if one.joint and name is None else whole
+
+
+def _of_joint(fields: dict[str, Any], one: OneJoint, gear_ratio: float | None) -> dict[str, Any]:
+    if not one.joint and gear_ratio is None:
+        return fields
+    found = at_joint(fields, one.side, gear_ratio)
+    if one.joint:
+        found["metadata"] = {**found["metadata"], "joint": one.joint}
+    return found
+
+
 def _recording(file: Path, fields: Mapping[str, Any], name: str | None) -> Recording:
     try:
-        return Recording(**{**fields, "name": _name(file, fields, name)})
+        return Recording(**{**fields, "name": file_name(file, fields, name)})
     except InputError as error:
         raise error.at(str(file)) from None
