@@ -123,7 +123,7 @@ def mcap(
         writer.add_message(
             channels[key], sent.log_time, encoded(store, sent, encoding), sent.log_time, number
         )
-    writer.finish()
+    writer.finish()  # type: ignore[no-untyped-call]
     return path
 
 
@@ -176,12 +176,15 @@ def ros2_bag(
     return folder
 
 
-def ros1_bag(path: Path, messages: Sequence[Sent], *, compression: str = "") -> Path:
+def ros1_bag(
+    path: Path, messages: Sequence[Sent], *, compression: str = "", chunk: int = 1 << 20
+) -> Path:
     """Write a ROS 1 bag."""
     from rosbags.rosbag1 import Writer
 
     store = typestore(ros1=True)
     writer = Writer(path)
+    writer.chunk_threshold = chunk
     if compression:
         writer.set_compression(Writer.CompressionFormat[compression])
     with writer:

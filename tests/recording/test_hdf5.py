@@ -9,7 +9,8 @@ import pytest
 from recording_files import ROWS, N, assert_one_sentence, column, refusal
 
 from jointid.base.errors import InputError
-from jointid.recording.readers.loading import _table, load
+from jointid.recording.readers.loading import load
+from jointid.recording.readers.loading import table_of as _table
 from jointid.recording.recording import Recording
 
 h5py = pytest.importorskip("h5py")

@@ -20,7 +20,9 @@ from message_files import (
 from recording_files import assert_one_sentence, refusal
 
 from jointid.base.errors import InputError
-from jointid.recording.readers.loading import _table, load
+from jointid.recording.readers.loading import load
+from jointid.recording.readers.loading import table_of as _table
+from jointid.recording.readers.loading_robot import load_robot
 
 pytest.importorskip("mcap")
 pytest.importorskip("rosbags")
@@ -103,8 +105,13 @@ def test_joints_change_places_and_stay_away(encoding: str, tmp_path: Path) -> No
     assert "gripper.effort [Nm]" not in _table(path).headers
     message = refusal(path, columns={"position": "a.position", "reference": "gripper.position"})
     assert_one_sentence(message, path)
-    assert (
-        "message 0, column 'a.position [rad]': 'a.position [rad]' stands here without " in message
+    assert "message 0, column 'gripper.position [rad]': messages at this time do not" in message
+    with pytest.raises(InputError, match="joints: gripper was logged at other times than a"):
+        load_robot(path, ["a", "gripper"])
+    robot = load_robot(path, ["bb", "a"])
+    assert robot.position[:, 0].tolist() == [-1.0 - k for k in range(40)]
+    assert "column 'gripper.position [rad]': messages at this time do not" in refusal(
+        path, joint="a", extra={"g": "gripper.position"}
     )
 
 
@@ -227,7 +234,7 @@ def test_no_topic_with_joints(tmp_path: Path) -> None:
 
 def test_a_topic_without_messages(tmp_path: Path) -> None:
     path = mcap(tmp_path / "run.mcap", [])
-    assert "the file has no topics" in refusal(path)
+    assert "no topics are found" in refusal(path)
 
 
 def test_a_plain_topic_that_was_named(tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ from jointid.recording.signals import closest
 _SHOWN = 12
 
 
-def chosen_topic(path: Path, topics: Sequence[Topic], name: str | None) -> Topic:
+def chosen_topic(path: Path, topics: Sequence[Topic], name: str | None, incomplete: str) -> Topic:
     """Return the topic to read.
 
     Parameters
@@ -23,6 +23,8 @@ def chosen_topic(path: Path, topics: Sequence[Topic], name: str | None) -> Topic
         All topics of the file.
     name : str or None
         The one that was asked for; None for the only one with joints.
+    incomplete : str
+        Why the file ends early; empty if it does not.
 
     Raises
     ------
@@ -30,7 +32,8 @@ def chosen_topic(path: Path, topics: Sequence[Topic], name: str | None) -> Topic
         There is no such topic, none with joints, or several.
     """
     if not topics:
-        raise InputError("the file has no topics", place=str(path))
+        why = f": {incomplete}" if incomplete else ""
+        raise InputError(f"no topics are found{why}", place=str(path))
     if name is not None:
         return _named(path, topics, name)
     filled = [topic for topic in topics if topic.count != 0] or list(topics)
