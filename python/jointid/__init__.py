@@ -44,6 +44,7 @@ from jointid.estimate.bootstrap import Bootstrap
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.selection import Selection
 from jointid.estimate.self_test import SelfTest
+from jointid.exports.exporting import export
 from jointid.identification.identification import identify
 from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
@@ -114,6 +115,7 @@ __all__ = [
     "commissioning",
     "compare_models",
     "control_estimates",
+    "export",
     "hardware",
     "identify",
     "load",

@@ -230,6 +230,17 @@ def _exit_code(refused: str, arguments: argparse.Namespace) -> int:
 
 
 def _contents(recording: Recording) -> dict[str, Any]:
+    contents = _facts(recording)
+    assumed, left_out = (recording.metadata.get(key) for key in ("assumed_units", "left_out"))
+    if assumed and isinstance(assumed, list | tuple):
+        contents["SI units assumed"] = ", ".join(map(str, assumed))
+    if left_out and isinstance(left_out, list | tuple):
+        columns = [each for each in left_out if isinstance(each, Mapping)]
+        contents["not read"] = "; ".join(f"{x.get('column')} ({x.get('reason')})" for x in columns)
+    return contents
+
+
+def _facts(recording: Recording) -> dict[str, Any]:
     return {
         "name": recording.name,
         "kind": recording.kind,

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 from jointid.base.advice import Action
@@ -29,6 +30,8 @@ class JointTable:
         As `joints_of` names it.
     columns : mapping of str to str, int or None
         As given to `load`; ``{joint}`` in a header stands for the joint.
+    extra : mapping of str to str or int
+        Name → column of the whole table, also one of another joint. Default: none.
 
     Attributes
     ----------
@@ -36,6 +39,8 @@ class JointTable:
         Signal → column of this table; what the headers do not say otherwise.
     side : str
         "motor" if position, velocity and torque are those of the motor, else "joint".
+    extra : dict of str to int
+        Name → column of this table.
 
     Raises
     ------
@@ -43,14 +48,21 @@ class JointTable:
         Two columns could be the same signal, or a header in `columns` does not exist.
     """
 
-    def __init__(self, table: Table, joint: str, columns: Columns) -> None:
+    def __init__(
+        self,
+        table: Table,
+        joint: str,
+        columns: Columns,
+        extra: Mapping[str, str | int] = MappingProxyType({}),
+    ) -> None:
         self._table = table
         joints = joint_headers(table.headers)
         owned = {each.index for found in joints.values() for each in found}
         mine = joints.get(joint, [])
         given = {signal: _index(table, column, joint, signal) for signal, column in columns.items()}
         chosen, self.side = _chosen(table, mine, given)
-        wanted = {index for index in chosen.values() if index is not None}
+        own = {name: _extra_index(table, column, joint, name) for name, column in extra.items()}
+        wanted = {index for index in (*chosen.values(), *own.values()) if index is not None}
         shared = set(range(len(table.headers))) - owned
         self._indices = sorted(shared | {each.index for each in mine} | wanted)
         place = {index: number for number, index in enumerate(self._indices)}
@@ -61,6 +73,7 @@ class JointTable:
         self.columns = {
             signal: None if index is None else place[index] for signal, index in chosen.items()
         }
+        self.extra = {name: place[index] for name, index in own.items()}
         self.other_names = {table.headers[index]: place[index] for index in self._indices} | {
             name: place[index] for name, index in table.other_names.items() if index in place
         }
@@ -163,6 +176,11 @@ def _index(table: Table, column: object, joint: str, signal: str) -> int | None:
     if isinstance(column, str) and _MARK in column:
         column = column.replace(_MARK, joint)
     return column_index(table, column, f"columns.{signal}")
+
+
+def _extra_index(table: Table, column: str | int, joint: str, name: str) -> int:
+    header = column.replace(_MARK, joint) if isinstance(column, str) else column
+    return column_index(table, header, f"extra.{name}")
 
 
 def _chosen(

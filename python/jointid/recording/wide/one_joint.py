@@ -1,8 +1,9 @@
 """One joint of any table: what `load` reads."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
+from jointid.recording.extra import named_extra
 from jointid.recording.table import Table
 from jointid.recording.wide.joint_table import (
     JointTable,
@@ -25,6 +26,8 @@ class OneJoint:
     table : Table
     columns : mapping of str to str, int or None, or None
         As `read_contents` takes them.
+    extra : collection, mapping or None
+        As `read_contents` takes it.
     side : str
         Of the gear: "joint" or "motor".
     joint : str
@@ -35,13 +38,17 @@ class OneJoint:
 
     table: Table
     columns: Mapping[str, str | int | None] | None
+    extra: Collection[str] | Mapping[str, str | int] | None = None
     side: str = JOINT
     joint: str = ""
     gear_ratio: float | None = None
 
 
 def one_joint(
-    table: Table, joint: str | int | None, columns: Mapping[str, str | int | None] | None
+    table: Table,
+    joint: str | int | None,
+    columns: Mapping[str, str | int | None] | None,
+    extra: Collection[str] | Mapping[str, str | int] | None = None,
 ) -> OneJoint:
     """Return one joint of a table; the table itself if it is of one joint.
 
@@ -52,6 +59,8 @@ def one_joint(
         None: the only one.
     columns : mapping or None
         As given to `load`.
+    extra : collection, mapping or None
+        As given to `load`; also columns of other joints.
 
     Raises
     ------
@@ -61,7 +70,7 @@ def one_joint(
     if joint is None:
         several = several_joints(table, columns) if isinstance(columns or {}, Mapping) else ()
         if not several:
-            return OneJoint(table=table, columns=columns)
+            return OneJoint(table=table, columns=columns, extra=extra)
         if len(several) > 1:
             raise which_joint(table, several)
         joint = several[0]
@@ -69,8 +78,10 @@ def one_joint(
     if not joints:
         raise nothing_named(table, joint)
     name = joint_named(joint, joints, table.header_place)
-    found = JointTable(table, name, columns or {})
-    one = OneJoint(table=found, columns=found.columns, side=found.side, joint=name)
+    found = JointTable(table, name, columns or {}, named_extra(extra))
+    one = OneJoint(
+        table=found, columns=found.columns, extra=found.extra, side=found.side, joint=name
+    )
     saved = saved_robot(table)
     if saved is None or name not in saved.names:
         return one
