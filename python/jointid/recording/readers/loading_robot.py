@@ -120,7 +120,7 @@ def load_robot(
     first = fields[0]
     return RobotRecording(
         time=first["time"],
-        **_stacked(fields),
+        **_stacked(fields),  # type: ignore[arg-type]
         side=sides.pop(),
         gear_ratio=gear_ratio,
         names=names,
