@@ -56,6 +56,16 @@ def reading_arguments(command: argparse.ArgumentParser) -> None:
             name, action="append", type=pair, default=[], metavar=shown, help=explanation
         )
     command.add_argument(
+        "--topic",
+        metavar="TOPIC",
+        help="topic of a log of messages (.mcap, .bag, .db3) that is the recording (default: the only one with joints)",
+    )
+    command.add_argument(
+        "--group",
+        metavar="PATH",
+        help="group of an HDF5 or MATLAB 7.3 file that is the recording (default: the only one)",
+    )
+    command.add_argument(
         "--drop-copies",
         action="store_true",
         help="leave out rows that repeat the one before, as a logger makes them that is faster than the bus",
@@ -202,6 +212,8 @@ def load_all(
             extra=extra or None,
             where=where or None,
             drop_copies=arguments.drop_copies,
+            topic=arguments.topic,
+            group=arguments.group,
         )
         for path in paths
     ]

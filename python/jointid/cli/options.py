@@ -9,6 +9,8 @@ _READING = {
     "units": "--unit",
     "scale": "--scale",
     "where": "--where",
+    "topic": "--topic",
+    "group": "--group",
     "drop_copies": "--drop-copies",
     "extra": "--extra",
 }

@@ -97,6 +97,7 @@ class Prepared:
         estimate = self._inferred(search, outcome, started)
         steady = without_drift(self.problem, self.penalty, estimate)
         fitted = self
+        known: tuple[Cause, ...] = ()
         if steady is not None:
             problem, drift = steady
             penalty = penalty_as_fitted(problem, self.windows, self.domain)
@@ -104,10 +105,10 @@ class Prepared:
             found = run_search(search, other.penalty, other.domain)
             again = other._inferred(search, found, started, (drift,))
             if again.residuals.rms < _STEADIER * estimate.residuals.rms:
-                estimate, fitted = again, other
+                estimate, fitted, known = again, other, (drift,)
         source = EstimateSource(
             problem=fitted.problem,
-            measured=self.problem,
+            known=known,
             domain=self.domain,
             windows=self.windows,
             search=search,

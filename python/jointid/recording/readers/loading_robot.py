@@ -37,6 +37,8 @@ def load_robot(
     torque_hold: str | None = None,
     extra: Mapping[str, str] | None = None,
     name: str | None = None,
+    topic: str | None = None,
+    group: str | None = None,
 ) -> RobotRecording:
     """Return the recording of several joints that a file holds.
 
@@ -59,6 +61,8 @@ def load_robot(
         Name → header of further columns; with ``{joint}`` in the header one of each joint. Default: none.
     name : str, optional
         Default: as saved, else the file's name without its ending.
+    topic, group : str, optional
+        As in `load`.
 
     Returns
     -------
@@ -76,7 +80,7 @@ def load_robot(
     >>> elbow = robot.joint(3)
     """
     file = require_path("path", path)
-    table = table_of(file)
+    table = table_of(file, topic=topic, group=group, kind=kind)
     whole = saved_robot(table)
     if whole is not None and not (
         columns or units or scale or where or kind or torque_hold or extra
@@ -103,6 +107,7 @@ def load_robot(
         except InputError as error:
             raise error.at(f"joint {each}") from None
         contents.append(held)
+    _check_times(names, fields, table.source)
     sides = {one.side for one in tables}
     if len(sides) > 1:
         shown = ", ".join(f"{each}: {one.side}" for each, one in zip(names, tables, strict=True))
@@ -115,7 +120,7 @@ def load_robot(
     first = fields[0]
     return RobotRecording(
         time=first["time"],
-        **_stacked(fields),
+        **_stacked(fields),  # type: ignore[arg-type]
         side=sides.pop(),
         gear_ratio=gear_ratio,
         names=names,
@@ -125,6 +130,18 @@ def load_robot(
         name=file_name(file, first, name),
         metadata=first.get("metadata"),
     )
+
+
+def _check_times(names: Sequence[str], fields: Sequence[Mapping[str, Any]], place: str) -> None:
+    """Refuse joints that were logged at different times, as by two publishers on one topic."""
+    for each, held in zip(names, fields, strict=True):
+        if not np.array_equal(held["time"], fields[0]["time"]):
+            raise InputError(
+                f"{each} was logged at other times than {names[0]}",
+                argument="joints",
+                place=place,
+                remedy="load those that were logged together",
+            )
 
 
 def _wanted(
