@@ -165,8 +165,7 @@ def load_runs(
     by : str or int
         Header or 0-based number of the column that numbers the runs: rows with the same value
         are one run.
-    columns, units, scale, extra, kind, torque_hold
-    joint, columns, units, scale, gear_ratio, kind, torque_hold
+    joint, columns, units, scale, extra, gear_ratio, kind, torque_hold
         As in `load`.
     name : str, optional
         Beginning of the runs' names. Default: as in `load`.
