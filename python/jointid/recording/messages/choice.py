@@ -13,7 +13,7 @@ from jointid.recording.signals import closest
 _SHOWN = 12
 
 
-def chosen_topic(path: Path, topics: Sequence[Topic], name: str | None) -> Topic:
+def chosen_topic(path: Path, topics: Sequence[Topic], name: str | None, incomplete: str) -> Topic:
     """Return the topic to read.
 
     Parameters
@@ -23,6 +23,8 @@ def chosen_topic(path: Path, topics: Sequence[Topic], name: str | None) -> Topic
         All topics of the file.
     name : str or None
         The one that was asked for; None for the only one with joints.
+    incomplete : str
+        Why the file ends early; empty if it does not.
 
     Raises
     ------
@@ -30,7 +32,8 @@ def chosen_topic(path: Path, topics: Sequence[Topic], name: str | None) -> Topic
         There is no such topic, none with joints, or several.
     """
     if not topics:
-        raise InputError("the file has no topics", place=str(path))
+        why = f": {incomplete}" if incomplete else ""
+        raise InputError(f"no topics are found{why}", place=str(path))
     if name is not None:
         return _named(path, topics, name)
     filled = [topic for topic in topics if topic.count != 0] or list(topics)
@@ -53,8 +56,8 @@ def chosen_topic(path: Path, topics: Sequence[Topic], name: str | None) -> Topic
 
 
 def _named(path: Path, topics: Sequence[Topic], name: str) -> Topic:
-    for same in (lambda topic: topic == name, lambda topic: topic.strip("/") == name.strip("/")):
-        found = [topic for topic in topics if same(topic.name)]
+    for slashes in ("", "/"):  # /joint_states is also found as joint_states
+        found = [each for each in topics if _bare(each.name, slashes) == _bare(name, slashes)]
         if found:
             return max(found, key=lambda topic: (is_joint_kind(topic.kind), topic.encoding in READ))
     close = closest(name, [topic.name for topic in topics])
@@ -65,6 +68,10 @@ def _named(path: Path, topics: Sequence[Topic], name: str) -> Topic:
         place=str(path),
         remedy=f"did you mean {close!r}" if close else f"topics are {_listed(topics)}",
     )
+
+
+def _bare(name: str, slashes: str) -> str:
+    return name.strip(slashes) if slashes else name
 
 
 def _load(topic: Topic, text: str = "") -> Action:

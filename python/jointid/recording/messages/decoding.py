@@ -21,6 +21,7 @@ from jointid.recording.signals import FloatArray
 
 _NANO = 1_000_000_000
 _MOST_LAYOUTS = 64  # that are tried on a message before it is walked by itself
+_Key = tuple[tuple[Path, ...], tuple[tuple[Path, str], ...]]  # places of the numbers, and names
 Integers = npt.NDArray[np.int64]
 
 
@@ -151,13 +152,13 @@ class JsonDecoder:
 
     def __init__(self, topic: Topic) -> None:
         self._kind = topic.kind
-        self._known: dict[object, tuple[dict[Column, int], tuple[int, int] | None]] = {}
+        self._known: dict[_Key, tuple[dict[Column, int], tuple[int, int] | None]] = {}
 
     def decode(self, batch: Sequence[bytes], first: int) -> tuple[list[Block], Integers | None]:
         """As `BinaryDecoder.decode`."""
         stamps = np.zeros(len(batch), dtype=np.int64)
         stamped = True
-        groups: dict[object, tuple[list[int], list[tuple[float, ...]]]] = {}
+        groups: dict[_Key, tuple[list[int], list[tuple[float, ...]]]] = {}
         for k, message in enumerate(batch):
             try:
                 paths, numbers, names = flattened(message)

@@ -43,10 +43,8 @@ def _types(kind: str, definition: str, form: str) -> Types:
     known = dict(_common())
     if definition:
         try:
-            if form == "ros2idl":
-                found = get_types_from_idl(definition)
-            else:
-                found = get_types_from_msg(definition, kind)
+            idl = form == "ros2idl"
+            found = get_types_from_idl(definition) if idl else get_types_from_msg(definition, kind)
         # The parser documents no other error, and definitions come from anybody.
         except Exception as error:
             raise DamageError(

@@ -7,7 +7,7 @@ from jointid.recording.messages.topic import DamageError
 Path = tuple[str | int, ...]
 
 # Field that names the joints → where each signal's values stand, the first that has values.
-_SIGNALS = {
+_SIGNALS: dict[str, dict[str, tuple[tuple[str, ...], ...]]] = {
     "JointState": {
         "position": (("position",),),
         "velocity": (("velocity",),),

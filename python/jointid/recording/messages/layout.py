@@ -19,9 +19,19 @@ from jointid.recording.messages.topic import DamageError
 Bytes = npt.NDArray[np.uint8]
 
 _CODES = {
-    "bool": "u1", "byte": "u1", "char": "u1", "int8": "i1", "uint8": "u1",
-    "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4",
-    "int64": "i8", "uint64": "u8", "float32": "f4", "float64": "f8",
+    "bool": "u1",
+    "byte": "u1",
+    "char": "u1",
+    "int8": "i1",
+    "uint8": "u1",
+    "int16": "i2",
+    "uint16": "u2",
+    "int32": "i4",
+    "uint32": "u4",
+    "int64": "i8",
+    "uint64": "u8",
+    "float32": "f4",
+    "float64": "f8",
 }
 _BASE, _NAME, _ARRAY, _SEQUENCE = 1, 2, 3, 4  # kinds of a field's description in rosbags
 _LONGEST = 1024  # numbers of a sequence that become columns: a longer one is an image or a scan

@@ -58,15 +58,22 @@ class MessageTable:
             f"{joint}.{signal}" if joint else signal: k
             for k, (joint, signal) in enumerate(self._columns, start=2)
         }
+        self._time = _seconds(self._rows.time)  # once: each joint of a robot asks for it
         self._shown: npt.NDArray[np.intp] | None = None  # rows of the last numbers
         self.notes = _notes(topic, collected, self._rows, incomplete)
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
         """Return columns as arrays of shape (n,).
 
-        Where a topic's messages hold different joints, the rows are those that hold any of these columns.
+        Where a topic's messages hold different joints, the rows are those that hold any of these columns;
+        without a time among them, those of the last call with one.
+
+        Raises
+        ------
+        InputError
+            Such a row does not hold all of them.
         """
-        kept = self._rows_with([column for column in columns if column > LOG_TIME])
+        kept = self._rows_with(columns)
         self._shown = kept
         found = []
         for column in columns:
@@ -77,8 +84,10 @@ class MessageTable:
         return found
 
     def text(self, column: int) -> list[str]:
-        """Return the values of a column as text."""
-        return [f"{value:g}" for value in self._values(column).tolist()]
+        """Return the values of a column as text, of the same rows as the last numbers."""
+        values = self._values(column)
+        values = values if self._shown is None else values[self._shown]
+        return [f"{value:g}" for value in values.tolist()]
 
     def place(self, column: int, row: int) -> str:
         """Return file, topic, message and column of a value."""
@@ -89,8 +98,7 @@ class MessageTable:
 
     def _values(self, column: int) -> FloatArray:
         if column in (TIME, LOG_TIME):
-            times = self._rows.time if column == TIME else self._rows.log_time
-            return np.asarray((times - times.min()) / _NANO)
+            return self._time if column == TIME else _seconds(self._rows.log_time)
         values = np.full(self._rows.count, np.nan)
         wanted = self._columns[column - 2]
         for block in self._collected.blocks:
@@ -102,15 +110,40 @@ class MessageTable:
 
     def _rows_with(self, columns: Sequence[int]) -> npt.NDArray[np.intp] | None:
         """Return the rows that hold any of some columns; None for all rows."""
-        wanted = {self._columns[column - 2] for column in columns}
-        if not wanted or all(wanted.intersection(b.columns) for b in self._collected.blocks):
-            return None
+        numbers = [column for column in columns if column > LOG_TIME]
+        wanted = {self._columns[column - 2] for column in numbers}
+        blocks = self._collected.blocks
+        if all(wanted.issubset(block.columns) for block in blocks):
+            return None if len(numbers) < len(columns) else self._shown
+        there = np.array([self._present(column) for column in numbers])
+        alone = len(numbers) == len(columns)  # their time was asked for before
+        if not alone:
+            kept = np.flatnonzero(there.any(axis=0))
+        else:
+            kept = np.arange(self._rows.count) if self._shown is None else self._shown
+        lacking = ~there[:, kept]
+        if lacking.any():
+            row = int(np.argmax(lacking.any(axis=0)))
+            missing = numbers[int(np.argmax(lacking[:, row]))]
+            raise self._without(missing, int(kept[row]))
+        return kept
+
+    def _present(self, column: int) -> npt.NDArray[np.bool_]:
+        """Whether each row's messages hold a column."""
         present = np.zeros(self._rows.count, dtype=np.bool_)
         for block in self._collected.blocks:
-            if wanted.intersection(block.columns):
+            if self._columns[column - 2] in block.columns:
                 rows = self._rows.row[block.messages]
                 present[rows[rows >= 0]] = True
-        return np.flatnonzero(present)
+        return present
+
+    def _without(self, missing: int, row: int) -> InputError:
+        self._shown = None
+        return InputError(
+            "messages at this time do not hold it",
+            place=self.place(missing, row),
+            remedy="load joints that are logged at different times one at a time",
+        )
 
     def _holds_numbers(self, column: Column) -> bool:
         """Whether any value is a number: drivers fill what they do not measure with NaN."""
@@ -119,6 +152,11 @@ class MessageTable:
             for block in self._collected.blocks
             if column in block.columns
         )
+
+
+def _seconds(times: npt.NDArray[np.int64]) -> FloatArray:
+    """Return seconds since the first; exact to a nanosecond over 100 days."""
+    return np.asarray((times - times.min()) / _NANO)
 
 
 def _header(column: Column, kind: str, *, alone: bool, named: bool) -> str:

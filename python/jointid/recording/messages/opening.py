@@ -33,7 +33,7 @@ def opened(
     place = str(path)
     try:
         messages = source(path)
-        chosen = chosen_topic(path, messages.topics, topic)
+        chosen = chosen_topic(path, messages.topics, topic, messages.incomplete)
         place = f"{path}, topic {chosen.name}"
         collected = collect(messages, chosen)
     except DamageError as error:

@@ -54,8 +54,10 @@ def load(
     ----------
     path : path-like
         A ``.csv``, ``.csv.gz`` or ``.npz`` file, from any program or from `Recording.save`; a
-        MATLAB ``.mat`` file up to version 7 (vectors, also in a struct, by their names); a
-        ``.parquet`` file (needs pyarrow); an ``.mcap`` file. The cells of a text are separated by commas, semicolons
+        MATLAB ``.mat`` file (vectors, also in a struct, by their names; version 7.3 needs h5py); a
+        ``.parquet`` file (needs pyarrow); an HDF5 file, ``.h5`` or ``.hdf5`` (needs h5py); a log of ROS messages
+        (the extra ``ros``): ``.mcap``, a ROS 2 bag (its folder, or one ``.db3`` of it), a ROS 1 ``.bag``.
+        The cells of a text are separated by commas, semicolons
         or tabs; with the latter two, decimal commas are read as well.
     joint : str or int, optional
         Of a file with several joints the one to read, by its number or name as the headers have it:
@@ -117,6 +119,7 @@ def load(
     >>> recording = jid.load("log.csv", columns={"position": "enc1"}, units={"position": "deg"})
     >>> recording = jid.load("robot.csv", extra={"gravity": "model_gravity_torque_1_Nm"})
     >>> elbow = jid.load("arm.csv", joint=3, gear_ratio=-48)
+    >>> elbow = jid.load("arm.mcap", joint="elbow", topic="/joint_states")
     """
     file = require_path("path", path)
     one = one_joint(table_of(file, topic=topic, group=group, kind=kind), joint, columns, extra)
@@ -155,6 +158,8 @@ def load_runs(
     kind: str | None = None,
     torque_hold: str | None = None,
     name: str | None = None,
+    topic: str | None = None,
+    group: str | None = None,
 ) -> tuple[Recording, ...]:
     """Return the recordings of a file that holds several runs, one after the other.
 
@@ -165,7 +170,7 @@ def load_runs(
     by : str or int
         Header or 0-based number of the column that numbers the runs: rows with the same value
         are one run.
-    joint, columns, units, scale, extra, gear_ratio, kind, torque_hold
+    joint, columns, units, scale, extra, gear_ratio, kind, torque_hold, topic, group
         As in `load`.
     name : str, optional
         Beginning of the runs' names. Default: as in `load`.
@@ -185,7 +190,7 @@ def load_runs(
     >>> slow, fast = jid.load_runs("week.csv", by="run")
     """
     file = require_path("path", path)
-    one = one_joint(table_of(file), joint, columns, extra)
+    one = one_joint(table_of(file, topic=topic, group=group, kind=kind), joint, columns, extra)
     ratio = one.gear_ratio if gear_ratio is None else checked_ratio(gear_ratio)
     contents = read_contents(
         one.table,

@@ -107,6 +107,7 @@ def load_robot(
             fields.append(held.fields(held.rows_where(where) if where else None))
         except InputError as error:
             raise error.at(f"joint {each}") from None
+    _check_times(names, fields, table.source)
     sides = {one.side for one in tables}
     if len(sides) > 1:
         shown = ", ".join(f"{each}: {one.side}" for each, one in zip(names, tables, strict=True))
@@ -129,6 +130,18 @@ def load_robot(
         name=file_name(file, first, name),
         metadata=first.get("metadata"),
     )
+
+
+def _check_times(names: Sequence[str], fields: Sequence[Mapping[str, Any]], place: str) -> None:
+    """Refuse joints that were logged at different times, as by two publishers on one topic."""
+    for each, held in zip(names, fields, strict=True):
+        if not np.array_equal(held["time"], fields[0]["time"]):
+            raise InputError(
+                f"{each} was logged at other times than {names[0]}",
+                argument="joints",
+                place=place,
+                remedy="load those that were logged together",
+            )
 
 
 def _wanted(

@@ -24,8 +24,8 @@ class Reader:
         Extra of jointid that installs these packages. Default: none.
     part : str
         The argument of `load` that names a part of such a file: ``"topic"`` or ``"group"``. Default: none.
-    folder : bool
-        Whether a folder with files of these endings is read as one file. Default False.
+    folder : tuple of str
+        A folder with files of these endings is read as one file. Default: no folder is.
     """
 
     endings: tuple[str, ...]
@@ -33,7 +33,7 @@ class Reader:
     package: str | tuple[str, ...] = ""
     extra: str = ""
     part: str = ""
-    folder: bool = False
+    folder: tuple[str, ...] = ()
 
     @property
     def packages(self) -> tuple[str, ...]:

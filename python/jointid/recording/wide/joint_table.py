@@ -77,6 +77,7 @@ class JointTable:
         self.other_names = {table.headers[index]: place[index] for index in self._indices} | {
             name: place[index] for name, index in table.other_names.items() if index in place
         }
+        self.notes: Mapping[str, Any] = getattr(table, "notes", {})
         saved = table.saved
         self.saved: Mapping[str, Any] | None = (
             None if saved is None else {key: saved[key] for key in saved if key != "robot"}
