@@ -165,7 +165,7 @@ def test_a_joint_of_a_model_is_edited_in_place(tmp_path: Path, newline: str) -> 
     path = tmp_path / "arm.xml"
     before = ARM.replace("\n", newline).encode()
     path.write_bytes(before)
-    jid.export(LOADED, path, into=path, joint="shoulder")
+    jid.export(LOADED, path, into=path, joint_name="shoulder")
     after = path.read_bytes()
     model = model_of(path)
     assert model.dof_damping.tolist() == [1.7, 0.5]
@@ -179,7 +179,7 @@ def test_a_joint_of_a_model_is_edited_in_place(tmp_path: Path, newline: str) -> 
     assert (newline == "\r\n") == (b"\r\n" in after)
     assert after.count(b"\n") == after.count(newline.encode())
     # Once more changes nothing: the old comment is replaced.
-    jid.export(LOADED, path, into=path, joint="shoulder")
+    jid.export(LOADED, path, into=path, joint_name="shoulder")
     assert path.read_bytes() == after
 
 
@@ -189,7 +189,7 @@ def test_the_armature_is_kept_where_the_links_inertia_is_in_it(tmp_path: Path) -
     joint = jid.Joint(name="elbow", model="coulomb_viscous").with_parameters(
         {"inertia": 3.0, "coulomb": 1.0, "viscous": 2.0}
     )
-    text = jid.export(joint, tmp_path / "new.xml", into=source, joint="shoulder").read_text("utf-8")
+    text = jid.export(joint, tmp_path / "new.xml", into=source, joint_name="shoulder").read_text("utf-8")
     assert model_of(tmp_path / "new.xml").dof_armature[0] == 0.07
     assert "armature is left as it was" in text
     assert "new.xml" not in source.read_text(encoding="utf-8")
