@@ -58,7 +58,17 @@ _SOUGHT = {*_FOUND, "identification", "identification/search"}
 FOLDERS: dict[str, Folder] = {
     "base": Folder(may_use=set()),
     "recording": Folder(may_use={"base"}, packages={"numpy", "pandas"}),
-    "recording/readers": Folder(may_use={"base", "recording"}, packages={"numpy", "pyarrow"}),
+    "recording/messages": Folder(
+        may_use={"base", "recording"}, packages={"numpy", "mcap", "rosbags", "lz4", "zstandard"}
+    ),
+    "recording/hierarchies": Folder(may_use={"base", "recording"}, packages={"numpy", "h5py"}),
+    "recording/wide": Folder(may_use={"base", "recording"}, packages={"numpy"}),
+    "recording/readers": Folder(
+        may_use={
+            *("base", "recording", "recording/messages", "recording/hierarchies", "recording/wide"),
+        },
+        packages={"numpy", "pyarrow"},
+    ),
     "joint": Folder(may_use={"base", "recording"}, packages={"numpy", "tomlkit"}),
     "problem": Folder(may_use=_DATA, packages={"numpy"}),
     "estimate": Folder(may_use={*_DATA, "problem"}, packages={"numpy", "scipy"}),

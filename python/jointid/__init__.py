@@ -55,7 +55,9 @@ from jointid.joint.thesis import thesis_joint
 from jointid.online.online_estimate import OnlineEstimate
 from jointid.online.online_identifier import OnlineIdentifier
 from jointid.recording.readers.loading import load, load_runs
+from jointid.recording.readers.loading_robot import load_robot
 from jointid.recording.recording import Recording
+from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.simulation.batch import SimulatedBatch, simulate_batch
 from jointid.simulation.plant import Bristle, control_estimates
 from jointid.simulation.scenario import Scenario
@@ -94,6 +96,7 @@ __all__ = [
     "Pd",
     "Pid",
     "Recording",
+    "RobotRecording",
     "Scenario",
     "Search",
     "Selection",
@@ -116,6 +119,7 @@ __all__ = [
     "hardware",
     "identify",
     "load",
+    "load_robot",
     "load_runs",
     "plot",
     "simulate",

@@ -128,7 +128,12 @@ def test_foreign_units(header: str, signal: str, factor: float | None, tmp_path:
         path = written(tmp_path / "a.csv", rewritten(lines("t_s,q_rad,X"), ";"))
         path.write_text(path.read_text().replace("X", header))
     if factor is None:
-        assert "is in rev (angle); angular velocity is expected" in refusal(path)
+        loaded = load(path)
+        assert loaded.velocity_derived
+        (left_out,) = loaded.metadata["left_out"]
+        assert left_out["reason"] == "velocity is in rev (angle)"
+        message = "is in rev (angle); angular velocity is expected"
+        assert message in refusal(path, columns={"velocity": header})
         return
     np.testing.assert_allclose(getattr(load(path), signal), np.array(column(2)) * factor, 1e-14)
 

@@ -69,10 +69,8 @@ def test_parts(
         "t,axis_angle,v,x",
         "t,q_Nm,v,x",
         "t,q [furlong],v,x",
-        "t,q,vel_A,x",
         "t,q_counts,v,x",
         "t,q,tau_V,x",
-        "t,q,vel [furlong],x",
     ],
 )
 def test_every_call_that_is_advised_loads_the_file(header: str, tmp_path: Path) -> None:

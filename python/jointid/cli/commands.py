@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointid.cli.arguments import fixed_values, load_all, refinements
+from jointid.cli.arguments import fixed_values, load_all, refinements, with_terms
 from jointid.cli.export import export
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
 from jointid.cli.parser import BAD_USAGE
@@ -71,13 +71,15 @@ def identify(arguments: argparse.Namespace) -> int:
     }
     options = GaOptions(**budget)
     joint = _joint(arguments)
-    recordings = load_all(arguments.recordings, arguments)
+    model = with_terms(arguments.model, arguments)
+    merged = model if joint is None else model.over(joint.model)
+    recordings = load_all(arguments.recordings, arguments, [merged])
     with Progress(total=options.generations, enabled=not arguments.quiet) as progress:
         estimate = identification.identify(
             recordings,
             joint,
             parameters=changes or None,
-            model=arguments.model,
+            model=model,
             search=Search(
                 arguments.method,
                 ga=options,
@@ -126,16 +128,22 @@ def compare(arguments: argparse.Namespace) -> int:
     from jointid.cli.progress import ComparisonProgress
     from jointid.comparison.comparison import compare_models
     from jointid.identification.search.search import Search
+    from jointid.joint.model import Model
 
     changes = fixed_values(arguments)
     check_outputs(arguments)
     joint = _joint(arguments)
-    recordings = load_all(arguments.recordings, arguments)
+    models = arguments.models
+    if arguments.term:
+        models = [with_terms(text, arguments) for text in models or ("coulomb_viscous", "stribeck")]
+    merged = [Model.of(each) for each in models or (None,)]
+    merged = [each if joint is None else each.over(joint.model) for each in merged]
+    recordings = load_all(arguments.recordings, arguments, merged)
     with ComparisonProgress(enabled=not arguments.quiet) as progress:
         comparison = compare_models(
             recordings,
             joint,
-            models=arguments.models,
+            models=models,
             folds=arguments.folds,
             parameters=changes or None,
             search=Search(arguments.method, seed=arguments.seed, threads=arguments.threads),
@@ -231,6 +239,17 @@ def _exit_code(refused: str, arguments: argparse.Namespace) -> int:
 
 
 def _contents(recording: Recording) -> dict[str, Any]:
+    contents = _facts(recording)
+    assumed, left_out = (recording.metadata.get(key) for key in ("assumed_units", "left_out"))
+    if assumed and isinstance(assumed, list | tuple):
+        contents["SI units assumed"] = ", ".join(map(str, assumed))
+    if left_out and isinstance(left_out, list | tuple):
+        columns = [each for each in left_out if isinstance(each, Mapping)]
+        contents["not read"] = "; ".join(f"{x.get('column')} ({x.get('reason')})" for x in columns)
+    return contents
+
+
+def _facts(recording: Recording) -> dict[str, Any]:
     return {
         "name": recording.name,
         "kind": recording.kind,
@@ -247,6 +266,14 @@ def _contents(recording: Recording) -> dict[str, Any]:
                 "unit": recording.unit(signal),
             }
             for signal in recording.signals
+        }
+        | {
+            name: {
+                "min": float(values.min()),
+                "max": float(values.max()),
+                "unit": recording.unit(name),
+            }
+            for name, values in recording.extra.items()
         },
     }
 

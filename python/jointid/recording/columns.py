@@ -2,22 +2,18 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from jointid.base.advice import Action
 from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
-from jointid.recording.column_lookup import column_index, listed
-from jointid.recording.headers import ALIASES, parsed, plain
-from jointid.recording.signals import SIGNALS, FloatArray, check_signal_name, dimensions
+from jointid.recording.column_lookup import column_index
+from jointid.recording.header_words import OF_A_JOINT, PLAIN
+from jointid.recording.headers import understood
+from jointid.recording.signals import FloatArray, check_signal_name, dimensions
 from jointid.recording.table import Table
-from jointid.recording.units import Unit, unit_named, unit_names
-
-# Signals whose dimension shows the kind of joint, the clearest first.
-_SHOWING_KIND = ("position", "link_position", "reference", "velocity", "torque")
-_LIKELY = {"time": ("time", "stamp", "clock"), "position": ("pos", "ang", "travel")}
+from jointid.recording.units import Unit, unit_named
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,12 +30,21 @@ class Column:
         Text in the unit's place of the header that is no known unit. Default: none.
     scale : float, optional
         Factor from file units to SI; replaces the unit. Default: the unit's factor.
+    chosen : bool
+        Whether `columns` named it. Default: its header did.
+    rank : int
+        How directly its header names the signal, as in `Meaning`. Default: the clearest.
+    joint : str
+        Number or name of the joint in its header. Default: none.
     """
 
     index: int
     unit: Unit | None
     unknown: str = ""
     scale: float | None = None
+    chosen: bool = False
+    rank: int = PLAIN
+    joint: str = ""
 
     def to_si(self, values: FloatArray) -> FloatArray:
         """Return the column's values in SI units."""
@@ -48,16 +53,38 @@ class Column:
         with np.errstate(over="ignore", under="ignore"):  # inf is refused later, by signal
             return values * self.scale
 
+    def fits(self, signal: str, kind: str) -> bool:
+        """Whether its unit is one of the signal's, or none is named."""
+        return not self.unknown and (
+            self.unit is None or self.unit.dimension in dimensions(signal, kind)
+        )
 
-def match_columns(
+
+@dataclass(frozen=True, kw_only=True)
+class Candidates:
+    """The columns that may hold each signal.
+
+    Attributes
+    ----------
+    of : dict of str to list of Column
+        Signal → columns.
+    of_joints : dict of str to list of Column
+        Signal → columns of several joints, of which none is taken.
+    """
+
+    of: dict[str, list[Column]] = field(default_factory=dict)
+    of_joints: dict[str, list[Column]] = field(default_factory=dict)
+
+
+def candidates_of(
     table: Table,
     *,
     columns: Mapping[str, str | int | None] | None,
     units: Mapping[str, str] | None,
     scale: Mapping[str, float] | None,
     kind: str | None,
-) -> tuple[dict[str, Column], str]:
-    """Return the column of each signal present, and the kind of joint that their units show.
+) -> Candidates:
+    """Return the columns that `columns` or a header assigns to each signal, with units and scales.
 
     Parameters
     ----------
@@ -68,8 +95,7 @@ def match_columns(
     Raises
     ------
     InputError
-        A signal without a column that needs one, with two, or with a unit of another dimension;
-        a header, signal or unit that does not exist.
+        A header, signal or unit does not exist, or one column is given for two signals.
     """
     for name, mapping, example in (
         ("columns", columns, "{'position': 'enc1'}"),
@@ -78,33 +104,32 @@ def match_columns(
     ):
         if mapping is not None:
             require_mapping(name, mapping, example)
-    candidates = _candidates(table, columns or {})
-    for signal in ("time", "position"):
-        if not candidates.get(signal):
-            raise _missing(table, signal, candidates, kind)
+    found = _of_one_joint(_candidates(table, columns or {}))
+    candidates = found.of
+    complete = all(candidates.get(signal) for signal in ("time", "position"))
     for signal, text in (units or {}).items():
         check_signal_name(signal, "units")
-        _check_recognised(table, signal, candidates, f"units.{signal}")
+        if complete:
+            _check_recognised(table, signal, candidates, f"units.{signal}")
         unit = unit_named(
             text,
             dimensions=dimensions(signal, kind),
             argument=f"units.{signal}",
             place=table.source,
         )
-        candidates[signal] = [Column(index=c.index, unit=unit) for c in candidates[signal]]
+        candidates[signal] = [
+            replace(column, unit=unit, unknown="") for column in candidates.get(signal, [])
+        ]
     for signal, factor in (scale or {}).items():
         check_signal_name(signal, "scale")
-        _check_scale(table, signal, factor, units or {})
-        _check_recognised(table, signal, candidates, f"scale.{signal}")
+        check_scale(table, signal, factor, units or {})
+        if complete:
+            _check_recognised(table, signal, candidates, f"scale.{signal}")
         candidates[signal] = [
-            Column(index=c.index, unit=None, scale=float(factor)) for c in candidates[signal]
+            replace(column, unit=None, unknown="", scale=float(factor))
+            for column in candidates.get(signal, [])
         ]
-    kind = kind or _kind(table, candidates)
-    return {
-        signal: _only_fitting(table, signal, candidates[signal], kind)
-        for signal in SIGNALS
-        if candidates.get(signal)
-    }, kind
+    return found
 
 
 def _check_recognised(
@@ -116,7 +141,8 @@ def _check_recognised(
         )
 
 
-def _check_scale(table: Table, signal: str, factor: object, units: Mapping[str, str]) -> None:
+def check_scale(table: Table, signal: str, factor: object, units: Mapping[str, str]) -> None:
+    """Refuse a factor that is no finite number other than 0, or beside a unit."""
     number = isinstance(factor, int | float | np.number) and not isinstance(factor, bool)
     if not number or factor == 0 or not math.isfinite(factor):  # type: ignore[arg-type]
         raise InputError(
@@ -135,7 +161,6 @@ def _check_scale(table: Table, signal: str, factor: object, units: Mapping[str, 
 
 
 def _candidates(table: Table, columns: Mapping[str, str | int | None]) -> dict[str, list[Column]]:
-    """Return the columns that `columns` or a header assigns to each signal."""
     chosen: dict[int, str] = {}
     for signal, column in columns.items():
         check_signal_name(signal, "columns")
@@ -152,122 +177,44 @@ def _candidates(table: Table, columns: Mapping[str, str | int | None]) -> dict[s
         chosen[index] = signal
     candidates: dict[str, list[Column]] = {}
     for index, header in enumerate(table.headers):
-        name, unit, unknown = parsed(header)
-        signal_here = chosen.get(index) or ALIASES.get(name)
-        if signal_here == "late" and index not in chosen and table.saved is None:
-            continue  # elsewhere a column of this name may be anything
-        if signal_here and (index in chosen or signal_here not in columns):
-            column_here = Column(index=index, unit=unit, unknown=unknown)
-            candidates.setdefault(signal_here, []).append(column_here)
+        read = understood(header)
+        meaning = read.meaning
+        if index in chosen:
+            column_here = Column(index=index, unit=read.unit, unknown=read.unknown, chosen=True)
+            candidates.setdefault(chosen[index], []).append(column_here)
+        elif meaning is not None and meaning.signal not in columns:
+            if table.saved is None:
+                if meaning.signal == "late":
+                    continue  # elsewhere a column of this name may be anything
+            elif meaning.rank != PLAIN:
+                continue  # whoever saved the recording wrote the signals' own names
+            column_here = Column(
+                index=index,
+                unit=read.unit,
+                unknown=read.unknown,
+                rank=meaning.rank,
+                joint=meaning.joint,
+            )
+            candidates.setdefault(meaning.signal, []).append(column_here)
     return candidates
 
 
-def _kind(table: Table, candidates: Mapping[str, list[Column]]) -> str:
-    for signal in _SHOWING_KIND:
-        kinds = {
-            kind: column
-            for kind in ("revolute", "prismatic")
-            for column in candidates.get(signal, [])
-            if column.unit and column.unit.dimension in dimensions(signal, kind)
-        }
-        if len(kinds) == 2:
-            first, second = (table.headers[column.index] for column in kinds.values())
-            raise InputError(
-                f"{first!r} and {second!r} are both recognised as {signal}, of a revolute and of a "
-                "prismatic joint",
-                place=table.header_place,
-                remedy=tuple(_chosen(signal, column) for column in kinds.values()),
-            )
-        if kinds:
-            return next(iter(kinds))
-    return "revolute"
+def _of_one_joint(candidates: dict[str, list[Column]]) -> Candidates:
+    """Keep the columns of one joint; those of several are nobody's until a joint is chosen."""
 
+    def clearest(signal: str) -> list[Column]:
+        found = candidates.get(signal, [])
+        return [column for column in found if column.rank == min(each.rank for each in found)]
 
-def _only_fitting(table: Table, signal: str, candidates: list[Column], kind: str) -> Column:
-    """Return the only candidate whose unit fits the signal, or raise `InputError`."""
-    fitting = [
-        column
-        for column in candidates
-        if not column.unknown
-        and (column.unit is None or column.unit.dimension in dimensions(signal, kind))
-    ]
-    if len(fitting) == 1:
-        return fitting[0]
-    if fitting:
-        names = " and ".join(
-            f"{table.headers[column.index]!r} (column {column.index})" for column in fitting
-        )
-        raise InputError(
-            f"{names} are both recognised as {signal}",
-            place=table.header_place,
-            remedy=tuple(_chosen(signal, column) for column in fitting[:2]),
-        )
-    raise _wrong_unit(table, signal, candidates[0], kind)
-
-
-def _wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputError:
-    known = unit_names(dimensions(signal, kind))
-    if column.unit is None:
-        problem = f"has the unknown unit {column.unknown!r}"
-    elif column.unit.dimension == "raw reading":
-        problem = "is a raw reading"
-    else:
-        problem = f"is in {column.unit.name} ({column.unit.dimension})"
-    if column.unit and column.unit.dimension in ("raw reading", "voltage"):
-        remedy = Action(
-            "call",
-            {"scale": {signal: 1.0}},
-            function="load",
-            text="with the factor from file units to SI instead of 1.0",
-        )
-    else:
-        remedy = Action(
-            "call", {"units": {signal: known[0]}}, function="load", text="if this is its unit"
-        )
-    other: str | Action = "choose another column"
-    if signal not in _LIKELY:  # it may be left out
-        other = Action("call", {"columns": {signal: None}}, function="load")
-    return InputError(
-        f"{signal} of a {kind} joint {problem}; {' or '.join(dimensions(signal, kind))} is "
-        f"expected, in {', '.join(known)}",
-        place=f"{table.header_place}, column {table.headers[column.index]!r}",
-        remedy=(remedy, other),
-    )
-
-
-def _chosen(signal: str, column: Column) -> Action:
-    return Action("call", {"columns": {signal: column.index}}, function="load")
-
-
-def _missing(
-    table: Table, signal: str, candidates: Mapping[str, list[Column]], kind: str | None
-) -> InputError:
-    """Return the error for a signal without a column; its remedy is a column that may hold it."""
-    owners = {column.index: other for other, found in candidates.items() for column in found}
-    possible = []
-    for index, header in enumerate(table.headers):
-        name, unit, _ = parsed(header)
-        if index in owners:
-            if ALIASES.get(name) == signal:
-                return InputError(
-                    f"no column is left for {signal}: {header!r} is chosen as {owners[index]}",
-                    argument=f"columns.{owners[index]}",
-                    place=table.header_place,
-                )
-        elif unit is None or unit.dimension in dimensions(signal, kind):
-            possible.append(header)
-    if not possible:
-        return InputError(
-            f"the file has no {signal} column; headers are {listed(table.headers) or 'none'}",
-            place=table.header_place,
-        )
-    likely = [
-        header for header in possible if any(part in plain(header) for part in _LIKELY[signal])
-    ]
-    unrecognised = [header for header in possible if parsed(header)[0] not in ALIASES]
-    shown = likely or unrecognised or possible
-    return InputError(
-        f"no column is recognised as {signal}; candidates are {listed(shown)}",
-        place=table.header_place,
-        remedy=Action("call", {"columns": {signal: shown[0]}}, function="load"),
-    )
+    numbered = {c.joint for c in clearest("position") if c.rank == OF_A_JOINT}
+    kept, left = Candidates(), {}
+    for signal in candidates:
+        found = candidates[signal]
+        if len(numbered) == 1 and any(column.joint in numbered for column in found):
+            found = [column for column in found if column.joint in ("", *numbered)]
+        several = {column.joint for column in found if column.rank == OF_A_JOINT}
+        if len(several) > 1 or (several and len(numbered) > 1) or (several - numbered and numbered):
+            left[signal] = [column for column in found if column.rank == OF_A_JOINT]
+            found = [column for column in found if column.rank != OF_A_JOINT]
+        kept.of[signal] = found
+    return Candidates(of=kept.of, of_joints=left)

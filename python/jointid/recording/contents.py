@@ -1,7 +1,7 @@
 """The contents of a table: the signals of a recording in SI units, of all rows or of some."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,9 @@ from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
 from jointid.recording.attributes import check_kind, check_torque_hold
 from jointid.recording.column_lookup import column_index
-from jointid.recording.columns import Column, match_columns
+from jointid.recording.columns import Column
+from jointid.recording.extra import UNITS_KEY, ExtraColumn, extra_columns
+from jointid.recording.matching import match_columns
 from jointid.recording.signals import FloatArray, check_signals
 from jointid.recording.table import Table
 from jointid.recording.truncated import unrecorded
@@ -35,6 +37,10 @@ class Contents:
         Attributes of a saved recording, as arguments of `Recording`.
     kind : str
         ``"revolute"`` or ``"prismatic"``.
+    extra : mapping of str to (ExtraColumn, ndarray)
+        Name of an extra signal → its column, and the values in the column's own unit. Default: none.
+    left_out : sequence of mapping of str to str
+        Columns that a header assigns to a signal and that are not read, as in `Match`. Default: none.
     """
 
     table: Table
@@ -42,6 +48,8 @@ class Contents:
     values: Mapping[str, FloatArray]
     saved: Mapping[str, Any]
     kind: str
+    extra: Mapping[str, tuple[ExtraColumn, FloatArray]] = field(default_factory=dict)
+    left_out: Sequence[Mapping[str, str]] = ()
 
     def fields(
         self,
@@ -70,14 +78,27 @@ class Contents:
             )
         }
 
+        extra = {
+            name: column.to_si(values if rows is None else values[rows])
+            for name, (column, values) in self.extra.items()
+        }
+
         def place(signal: str, index: int) -> str:
             row = index if rows is None else int(rows[index])
-            return self.table.place(self.found[signal].index, row)
+            own = signal.removeprefix("extra.")
+            column = self.found[signal] if own == signal else self.extra[own][0]
+            return self.table.place(column.index, row)
 
-        check_signals(signals, place=place, source=self.table.source, time_remedy=time_remedy)
+        every = signals | {f"extra.{name}": values for name, values in extra.items()}
+        check_signals(every, place=place, source=self.table.source, time_remedy=time_remedy)
         fields = {**self.saved, **signals, "kind": self.kind}
+        if extra:
+            fields["extra"] = extra
         if self.table.saved is None:
             fields["metadata"] = self._metadata()
+        units = {name: column.shown for name, (column, _) in self.extra.items() if column.shown}
+        if units and isinstance(fields.get("metadata", {}), Mapping):
+            fields["metadata"] = {**fields.get("metadata", {}), UNITS_KEY: units}
         return fields
 
     def rows_of(self, by: str | int) -> dict[str, Rows]:
@@ -144,7 +165,9 @@ class Contents:
             if column.unit is None and column.scale is None and signal != "sensor"
         ]
         scaled = {signal: column.scale for signal, column in self.found.items() if column.scale}
-        metadata = {"assumed_units": assumed, "scale": scaled}
+        left_out = [dict(each) for each in self.left_out]
+        metadata = {"assumed_units": assumed, "scale": scaled, "left_out": left_out}
+        metadata |= getattr(self.table, "notes", {})  # how a log of messages was read
         return {name: value for name, value in metadata.items() if value}
 
 
@@ -154,6 +177,7 @@ def read_contents(
     columns: Mapping[str, str | int | None] | None = None,
     units: Mapping[str, str] | None = None,
     scale: Mapping[str, float] | None = None,
+    extra: Collection[str] | Mapping[str, str | int] | None = None,
     kind: str | None = None,
     torque_hold: str | None = None,
 ) -> Contents:
@@ -177,15 +201,30 @@ def read_contents(
             place=table.source,
             remedy="leave it out",
         )
-    found, kind = match_columns(
-        table, columns=columns, units=units, scale=scale, kind=kind or saved_kind
+    for name, given, example in (
+        ("units", units, "{'position': 'deg'}"),
+        ("scale", scale, "{'position': 0.001}"),
+    ):
+        if given is not None:
+            require_mapping(name, given, example)
+    own = extra_columns(table, extra, units, scale)
+    match = match_columns(
+        table,
+        columns=columns,
+        units={name: unit for name, unit in units.items() if name not in own} if units else units,
+        scale={name: each for name, each in scale.items() if name not in own} if scale else scale,
+        kind=kind or saved_kind,
     )
+    found = match.found
+    read = {table.headers[column.index] for column in own.values()}
+    left_out = [each for each in match.left_out if each["column"] not in read]
     values = dict(
         zip(found, table.numbers([column.index for column in found.values()]), strict=True)
     )
     for missing in unrecorded(saved, values):
         found = {signal: column for signal, column in found.items() if signal != missing}
         del values[missing]
+    arrays = table.numbers([column.index for column in own.values()]) if own else []
     if columns and "velocity" in columns:
         saved.pop("velocity_derived", None)
     if torque_hold is not None:
@@ -195,5 +234,7 @@ def read_contents(
         found=found,
         values=values,
         saved=saved,
-        kind=kind,
+        extra={name: (own[name], values) for name, values in zip(own, arrays, strict=True)},
+        kind=match.kind,
+        left_out=left_out,
     )

@@ -1,7 +1,11 @@
 """Headers: which signal and which unit they name."""
 
 import re
+from dataclasses import dataclass
+from functools import lru_cache
 
+from jointid.recording.header_words import PLAIN, Meaning, meaning_of
+from jointid.recording.signals import dimensions
 from jointid.recording.units import Unit, find_unit
 
 ALIASES: dict[str, str] = {
@@ -10,7 +14,7 @@ ALIASES: dict[str, str] = {
         "time": "time t",
         "position": "position pos angle q",
         "velocity": "velocity vel speed",
-        "torque": "torque tau force motor_force motor_torque_output output_torque",
+        "torque": "torque tau effort force motor_force motor_torque_output output_torque",
         "sensor": "sensor sensor_raw torque_sensor",
         "reference": "reference position_ref position_reference goal_position",
         "link_position": "link_position",
@@ -23,21 +27,72 @@ ALIASES: dict[str, str] = {
 }
 
 
+_INDEX = re.compile(r"(?<=[\w\]])\[(\d+)\]")
+
+
+@dataclass(frozen=True, slots=True)
+class Header:
+    """A header as it was understood.
+
+    Attributes
+    ----------
+    name : str
+        In lower case, without unit.
+    unit : Unit or None
+    unknown : str
+        Text in the unit's place that is no known unit. Default: none.
+    meaning : Meaning or None
+        The signal that it names. Default: none is recognised.
+    """
+
+    name: str
+    unit: Unit | None
+    unknown: str = ""
+    meaning: Meaning | None = None
+
+
+@lru_cache(maxsize=4096)
+def understood(header: str) -> Header:
+    """Return what a header says."""
+    text, unit, unknown = _divided(header)
+    meaning = _meaning(text)
+    whole = re.sub(r"\s*[\[(][^\[\]()]*[\])]\s*$", "", header)
+    if meaning is None or (unit and unit.dimension not in dimensions(meaning.signal, None)):
+        # tau_m is no torque in metres: the last word belongs to the name.
+        other = None if text == whole or unit is None else _meaning(whole)
+        if other is not None:
+            return Header(plain(whole), None, "", other)
+    return Header(plain(text), unit, unknown, meaning)
+
+
+def _meaning(text: str) -> Meaning | None:
+    name = plain(text)
+    return Meaning(ALIASES[name], PLAIN) if name in ALIASES else meaning_of(text.lstrip("%#"))
+
+
 def parsed(header: str) -> tuple[str, Unit | None, str]:
     """Return a header's plain name, its unit, and the text in the unit's place that is no unit."""
+    text, unit, unknown = _divided(header)
+    return plain(text), unit, unknown
+
+
+def _divided(header: str) -> tuple[str, Unit | None, str]:
+    """Return name, unit and what is in the unit's place but no unit."""
     if re.search(r"\((\d+,:|:,\d+)\)$", header):  # a part of a matrix: no unit in the brackets
-        return plain(header), None, ""
+        return header, None, ""
+    header = _INDEX.sub(r"_\1", header)  # position[0] is a number, not a unit
     bracketed = re.fullmatch(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*", header)
     if bracketed and bracketed[2].strip():
         unit = find_unit(bracketed[2])
-        return plain(bracketed[1]), unit, "" if unit else bracketed[2].strip()
-    parts = re.split(r"[_\s,]+", (bracketed[1] if bracketed else header).strip())
-    for first in range(1, len(parts)):  # the longest unit: rad_s before s
-        suffix = "_".join(parts[first:])
+        return bracketed[1], unit, "" if unit else bracketed[2].strip()
+    text = (bracketed[1] if bracketed else header).strip()
+    parts = re.split(r"([_\s,]+)", text)
+    for first in range(2, len(parts), 2):  # the longest unit: rad_s before s
+        suffix = "_".join(parts[first::2])
         unit = find_unit(suffix) if suffix and not suffix[0].isdigit() else None
         if unit:
-            return plain("_".join(parts[:first])), unit, ""
-    return plain("_".join(parts)), None, ""
+            return "".join(parts[: first - 1]), unit, ""
+    return text, None, ""
 
 
 def plain(name: str) -> str:

@@ -33,6 +33,7 @@ FILES = (
     "gaps",
     "late",
     "assumed_units",
+    "left_out",
 )
 
 

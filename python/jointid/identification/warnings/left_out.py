@@ -1,0 +1,41 @@
+"""Columns of the file that a header assigns to a signal and that were not read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding
+from jointid.identification.warnings.check import Check, FindingType
+from jointid.identification.warnings.evidence import Evidence
+
+LEFT_OUT = FindingType(
+    code="left_out",
+    severity="info",
+    meaning="a column has the name of a signal, but another unit, cells that are no numbers, or stands beside a "
+    "column that is read: it is not read",
+    advice="nothing, if the signal is not needed; else name the column, its unit or its scale when loading",
+)
+_SHOWN = 6
+
+
+def _find(evidence: Evidence) -> Iterator[Finding]:
+    columns: dict[str, str] = {}
+    for recording in evidence.recordings:
+        left_out = recording.metadata.get("left_out")
+        for each in left_out if isinstance(left_out, list | tuple) else ():
+            if isinstance(each, Mapping):
+                columns[str(each.get("column"))] = str(each.get("reason"))
+    if columns:
+        shown = [f"{column} ({reason})" for column, reason in list(columns.items())[:_SHOWN]]
+        more = f" and {len(columns) - _SHOWN} more" if len(columns) > _SHOWN else ""
+        yield LEFT_OUT.finding(
+            f"not read from the file: {', '.join(shown)}{more}",
+            Action(
+                "inspect",
+                text="the headers, and name the column or its unit if the signal is needed",
+            ),
+        )
+
+
+CHECK = Check(_find, (LEFT_OUT,))

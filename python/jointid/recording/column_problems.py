@@ -1,0 +1,232 @@
+"""What is wrong with the columns of a table, each as an error with what to do, and all of them as one."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
+from jointid.recording.column_lookup import listed
+from jointid.recording.columns import Candidates, Column
+from jointid.recording.headers import plain, understood
+from jointid.recording.signals import dimensions, header_unit
+from jointid.recording.table import Table
+from jointid.recording.units import unit_names
+
+_LIKELY = {
+    "time": ("time", "stamp", "clock", "zeit"),
+    "position": ("pos", "ang", "travel", "enc", "winkel"),
+    "torque": ("torq", "tau", "moment", "effort", "force", "trq"),
+    "current": ("curr", "amp", "strom", "iq"),
+}
+_UNLIKELY = ("target", "cmd", "command", "des", "ref", "set", "err", "lim", "max", "min")
+NEEDED = ("time", "position")
+TORQUES = ("torque", "motor_torque", "current")
+
+
+def of_both_kinds(table: Table, signal: str, columns: Sequence[Column]) -> InputError:
+    """Return the error for a signal in units of both kinds of joint."""
+    first, second = (table.headers[column.index] for column in columns)
+    return InputError(
+        f"{first!r} and {second!r} are both recognised as {signal}, of a revolute and of a "
+        "prismatic joint",
+        place=table.header_place,
+        remedy=tuple(_chosen(signal, column) for column in columns),
+    )
+
+
+def ambiguous(table: Table, signal: str, columns: Sequence[Column]) -> InputError:
+    """Return the error for a signal with several columns that fit."""
+    names = " and ".join(
+        f"{table.headers[column.index]!r} (column {column.index})" for column in columns
+    )
+    return InputError(
+        f"{names} are both recognised as {signal}",
+        place=table.header_place,
+        remedy=tuple(_chosen(signal, column) for column in columns[:2]),
+    )
+
+
+def in_other_unit(column: Column) -> str:
+    """Return what is wrong with a column's unit, in words."""
+    if column.unit is None:
+        return f"has the unknown unit {column.unknown!r}"
+    if column.unit.dimension == "raw reading":
+        return "is a raw reading"
+    return f"is in {column.unit.name} ({column.unit.dimension})"
+
+
+def wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputError:
+    """Return the error for a column whose unit is not one of the signal's."""
+    known = unit_names(dimensions(signal, kind))
+    if column.unit and column.unit.dimension in ("raw reading", "voltage"):
+        remedy = Action(
+            "call",
+            {"scale": {signal: 1.0}},
+            function="load",
+            text="with the factor from file units to SI instead of 1.0",
+        )
+    else:
+        remedy = Action(
+            "call", {"units": {signal: known[0]}}, function="load", text="if this is its unit"
+        )
+    other: str | Action = "choose another column"
+    if signal not in NEEDED:  # it may be left out
+        other = Action("call", {"columns": {signal: None}}, function="load")
+    return InputError(
+        f"{signal} of a {kind} joint {in_other_unit(column)}; "
+        f"{' or '.join(dimensions(signal, kind))} is expected, in {', '.join(known)}",
+        place=f"{table.header_place}, column {table.headers[column.index]!r}",
+        remedy=(remedy, other),
+    )
+
+
+def missing(
+    table: Table, signals: Sequence[str], found: Candidates, kind: str | None
+) -> InputError:
+    """Return the error for signals without a column; its remedy names columns that may hold them.
+
+    Parameters
+    ----------
+    table : Table
+    signals : sequence of str
+        Of time and position those without a column.
+    found : Candidates
+    kind : str, optional
+        Of joint, where it is known.
+
+    Raises
+    ------
+    InputError
+        The column that a header names is chosen as another signal: no other column is proposed.
+    """
+    owners = {column.index: other for other, each in found.of.items() for column in each}
+    for signal in signals:
+        for index, owner in owners.items():
+            meaning = understood(table.headers[index]).meaning
+            if meaning is not None and meaning.signal == signal:
+                raise InputError(
+                    f"no column is left for {signal}: {table.headers[index]!r} is chosen as {owner}",
+                    argument=f"columns.{owner}",
+                    place=table.header_place,
+                )
+    proposed: dict[str, int] = {}
+    shown: list[str] = []
+    for signal in signals:
+        possible = _possible(table, signal, {*owners, *proposed.values()}, kind)
+        if not possible and proposed:
+            break
+        if not possible:
+            return InputError(
+                f"the file has no {signal} column; headers are {listed(table.headers) or 'none'}",
+                place=table.header_place,
+            )
+        best = _best(table, signal, possible, found)
+        proposed[signal] = best[0]
+        shown += [table.headers[index] for index in best if table.headers[index] not in shown]
+    if not any(found.of.get(signal) for signal in TORQUES):
+        proposed |= _torque(table, found, {*owners, *proposed.values()}, proposed, kind)
+    names = " or ".join(signal for signal in signals if signal in proposed)
+    return InputError(
+        f"no column is recognised as {names}; candidates are {listed(shown)}",
+        place=table.header_place,
+        remedy=_proposal(table, proposed, kind),
+    )
+
+
+def together(table: Table, problems: Sequence[InputError]) -> InputError:
+    """Return several errors as one, whose remedy removes them all."""
+    if len(problems) == 1:
+        return problems[0]
+    arguments: dict[str, dict[str, Any]] = {}
+    purposes = []
+    for problem in problems:
+        action = next((each for each in problem.remedy if isinstance(each, Action)), None)
+        if action is not None:
+            for name, mapping in action.arguments.items():
+                arguments.setdefault(name, {}).update(mapping)
+            purposes += [action.text] if action.text else []
+    reasons = []
+    for problem in problems:
+        column = problem.place.removeprefix(table.header_place).lstrip(", ")
+        reasons.append(f"{column}: {problem.reason}" if column else problem.reason)
+    return InputError(
+        "; ".join(reasons),
+        place=table.header_place,
+        remedy=Action(
+            "call", arguments, function="load", text=" and ".join(dict.fromkeys(purposes))
+        )
+        if arguments
+        else (),
+    )
+
+
+def _possible(table: Table, signal: str, taken: set[int], kind: str | None) -> list[int]:
+    """Return the columns whose unit may be the signal's."""
+    found = []
+    for index, header in enumerate(table.headers):
+        unit = understood(header).unit
+        if index not in taken and (unit is None or unit.dimension in dimensions(signal, kind)):
+            found.append(index)
+    return found
+
+
+def _best(table: Table, signal: str, possible: list[int], found: Candidates) -> list[int]:
+    """Return those of the possible columns that a header speaks for, the likeliest first."""
+    of_joints = [column.index for column in found.of_joints.get(signal, ())]
+    likely = _likely(table, signal, possible)
+    unrecognised = [k for k in possible if understood(table.headers[k]).meaning is None]
+    best = [k for k in of_joints if k in possible] or likely or unrecognised or possible
+    return sorted(best, key=lambda k: any(part in plain(table.headers[k]) for part in _UNLIKELY))
+
+
+def _likely(table: Table, signal: str, possible: list[int]) -> list[int]:
+    return [k for k in possible if any(part in plain(table.headers[k]) for part in _LIKELY[signal])]
+
+
+def _torque(
+    table: Table, found: Candidates, taken: set[int], proposed: Mapping[str, int], kind: str | None
+) -> dict[str, int]:
+    """Return a column that may hold the torque, of the joint whose position is proposed."""
+    of_joints = {column.index: column for each in found.of_joints.values() for column in each}
+    position = of_joints.get(proposed.get("position", -1))
+    number = position.joint if position else _number(table, proposed.get("position"))
+    for signal in TORQUES:
+        same = [c.index for c in found.of_joints.get(signal, ()) if c.joint == number]
+        if same:
+            return {signal: same[0]}
+    for signal in ("torque", "current"):
+        possible = _possible(table, signal, taken, kind)
+        unit_stated = [k for k in possible if understood(table.headers[k]).unit is not None]
+        likely = _likely(table, signal, possible) or unit_stated
+        if likely:
+            return {signal: _best(table, signal, likely, Candidates())[0]}
+    return {}
+
+
+def _number(table: Table, index: int | None) -> str:
+    words = [] if index is None else plain(table.headers[index]).split("_")
+    return next((word for word in words if word.isdigit()), "")
+
+
+def _proposal(table: Table, proposed: Mapping[str, int], kind: str | None) -> Action:
+    """Return the call with these columns; where it is more than one, also with the units to check."""
+    columns: dict[str, Any] = {}
+    units: dict[str, str] = {}
+    for signal, index in proposed.items():
+        header = table.headers[index]
+        columns[signal] = header if table.headers.count(header) == 1 else index
+        if understood(header).unit is None:
+            units[signal] = header_unit(signal, kind or "revolute")
+    arguments: dict[str, Any] = {"columns": columns}
+    if len(columns) > 1 and units:
+        return Action(
+            "call",
+            {**arguments, "units": units},
+            function="load",
+            text="with the units that they have",
+        )
+    return Action("call", arguments, function="load")
+
+
+def _chosen(signal: str, column: Column) -> Action:
+    return Action("call", {"columns": {signal: column.index}}, function="load")

@@ -1,0 +1,171 @@
+"""Headers word by word: which signal names like `joint1_pos`, `actual_q_0` or `Axis 1.ActPos` mean."""
+
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+
+
+def _words_of(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+_QUANTITIES: dict[str, str] = {
+    word: quantity
+    for quantity, words in {
+        "position": "position positions pos angle angles q theta winkel",
+        "velocity": "velocity velocities vel velo speed omega dq qd qdot dtheta",
+        "torque": "torque torques tau effort efforts moment drehmoment",
+        "current": "current currents iq",
+        "temperature": "temperature temperatures temp temperatur",
+    }.items()
+    for word in words.split()
+}
+_MEASURED = _words_of("actual act measured meas measurement feedback fbk")
+_COMMANDED = _words_of(
+    "desired des d target cmd command commanded set setpoint setpoints ref reference goal soll"
+)
+# Words that say nothing about which signal it is.
+_PLAIN = _words_of("joint joints jnt j state states msg msgs data field value main nc to plc")
+# A column of these is not the signal itself, whatever else the header says.
+_OTHER = _words_of(
+    "error err errors limit limits min max offset std sigma raw_offset gain ext "
+    "filtered friction gravity inertia model enabled valid flag status count"
+)
+_NUMBERED = frozenset(["axis", "achse"])  # say nothing where a number follows
+_ROLES: dict[str, str] = {
+    **dict.fromkeys(("motor", "mot"), "motor"),
+    **dict.fromkeys(("link", "load"), "link"),
+    "sensor": "sensor",
+}
+_SIGNALS: dict[tuple[str, str], str] = {
+    **{("", quantity): quantity for quantity in _QUANTITIES.values()},
+    ("motor", "torque"): "motor_torque",
+    ("motor", "current"): "current",
+    ("motor", "temperature"): "temperature",
+    ("link", "position"): "link_position",
+    ("sensor", "torque"): "sensor",
+}
+_TIMES = frozenset(
+    {
+        *(
+            "time",
+            "t",
+            "timestamp",
+            "timestamps",
+            "time stamp",
+            "stamp",
+            "header stamp",
+            "header timestamp",
+        ),
+        *(
+            "secs",
+            "seconds",
+            "sec",
+            "header stamp secs",
+            "header stamp sec",
+            "stamp secs",
+            "stamp sec",
+        ),
+        *("elapsed", "elapsed time", "time elapsed", "ros time", "robot time", "controller time"),
+        *("unix time", "epoch", "epoch time", "rosbag timestamp", "date time", "datetime", "zeit"),
+    }
+)
+# Two words that are one: q_dot is a velocity, i_q a current, time_stamp a stamp.
+_JOINED = {("q", "dot"): "qdot", ("theta", "dot"): "dtheta", ("i", "q"): "iq", ("d", "q"): "dq"}
+_WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+|[^\W\d_]+")
+PLAIN, WORDS, OF_A_JOINT = range(3)  # how directly a header names its signal, the clearest first
+
+
+@dataclass(frozen=True, slots=True)
+class Meaning:
+    """What a header names.
+
+    Attributes
+    ----------
+    signal : str
+        ``"position"``, ...
+    rank : int
+        `PLAIN`: the signal's own name; `WORDS`: with words around it, such as actual or measured;
+        `OF_A_JOINT`: with a number or the name of a joint.
+    joint : str
+        That number or name. Default: none.
+    """
+
+    signal: str
+    rank: int
+    joint: str = ""
+
+
+@lru_cache(maxsize=4096)
+def meaning_of(name: str) -> Meaning | None:
+    """Return what a header without its unit means, or None where a word of it is not understood.
+
+    What was commanded is never taken for what was measured: a commanded position is the
+    reference, a commanded torque or velocity no signal at all.
+
+    Parameters
+    ----------
+    name : str
+        E.g. ``"actual_q_0"``.
+
+    Examples
+    --------
+    >>> meaning_of("actual_q_0")
+    Meaning(signal='position', rank=2, joint='0')
+    >>> meaning_of("target_q").signal
+    'reference'
+    >>> meaning_of("tau_cmd") is None
+    True
+    """
+    *path, last = re.split(r"[./:]+", re.sub(r"\[(\d+)\]", r" \1 ", name).strip("./: ") or " ")
+    prefix = [word for part in path for word in _words(part)]
+    words = _words(last)
+    if " ".join(word for word in (*prefix, *words) if word not in _PLAIN - {"stamp"}) in _TIMES:
+        return Meaning("time", WORDS)
+    found = _understood(prefix + words, "")
+    if found is None and prefix and not _OTHER.intersection(prefix):
+        known = [word for word in prefix if word in (*_COMMANDED, *_ROLES, *_MEASURED)]
+        named = " ".join(word for word in prefix if word not in (*known, *_PLAIN))
+        found = _understood(known + words, named)
+    return found
+
+
+def _understood(words: list[str], joint: str) -> Meaning | None:
+    quantity = role = ""
+    commanded = measured = False
+    numbers: list[str] = []
+    for k, word in enumerate(words):
+        after = words[k + 1] if k + 1 < len(words) else ""
+        if word == "current" and _QUANTITIES.get(after) in ("position", "velocity"):
+            measured = True  # the current position is the actual one
+        elif (word == "m" and quantity == "torque") or word in _ROLES:
+            if role:
+                return None
+            role = _ROLES.get(word, "motor")
+        elif word in _QUANTITIES:
+            if quantity:
+                return None
+            quantity = _QUANTITIES[word]
+        elif word in _MEASURED:
+            measured = True
+        elif word in _COMMANDED:
+            commanded = True
+        elif word.isdigit():
+            numbers.append(word)
+        elif not (word in _PLAIN or (word in _NUMBERED and after.isdigit())):
+            return None
+    if commanded and (measured or role or quantity != "position"):
+        return None
+    signal = "reference" if commanded else _SIGNALS.get((role, quantity))
+    if signal is None or len(numbers) > 1:
+        return None
+    joint = " ".join([*([joint] if joint else []), *numbers])
+    return Meaning(signal, OF_A_JOINT if joint else WORDS, joint)
+
+
+def _words(text: str) -> list[str]:
+    words = [word.casefold() for word in _WORD.findall(text)]
+    for k in reversed(range(len(words) - 1)):
+        if joined := _JOINED.get((words[k], words[k + 1])):
+            words[k : k + 2] = [joined]
+    return words

@@ -1,0 +1,143 @@
+"""The one column of each signal: chosen among its candidates, left out and said, or refused."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from jointid.base.errors import InputError
+from jointid.recording.column_problems import (
+    NEEDED,
+    TORQUES,
+    ambiguous,
+    in_other_unit,
+    missing,
+    of_both_kinds,
+    together,
+    wrong_unit,
+)
+from jointid.recording.columns import Column, candidates_of
+from jointid.recording.signals import SIGNALS, dimensions
+from jointid.recording.table import Table
+
+# Signals whose dimension shows the kind of joint, the clearest first.
+_SHOWING_KIND = ("position", "link_position", "reference", "velocity", "torque")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Match:
+    """Which column holds each signal.
+
+    Attributes
+    ----------
+    found : dict of str to Column
+        Signal → its column, in the order of `SIGNALS`.
+    kind : str
+        Of joint, as given or as the units show.
+    left_out : list of dict
+        Columns that a header assigns to a signal and that are not read: ``"column"`` (the header),
+        ``"signal"`` and ``"reason"``.
+    """
+
+    found: dict[str, Column]
+    kind: str
+    left_out: list[dict[str, str]] = field(default_factory=list)
+
+
+def match_columns(
+    table: Table,
+    *,
+    columns: Mapping[str, str | int | None] | None,
+    units: Mapping[str, str] | None,
+    scale: Mapping[str, float] | None,
+    kind: str | None,
+) -> Match:
+    """Return the column of each signal present.
+
+    Time and position are needed; of the torque, the motor's torque and the current one. A column of
+    another signal with a foreign unit, or beside another one that fits as well, is left out.
+
+    Parameters
+    ----------
+    table : Table
+    columns, units, scale, kind
+        As in `load`.
+
+    Raises
+    ------
+    InputError
+        A signal that is needed has no column, two, or one with a unit of another dimension, all of
+        them at once; a header, signal or unit that does not exist.
+    """
+    found = candidates_of(table, columns=columns, units=units, scale=scale, kind=kind)
+    absent = [signal for signal in NEEDED if not found.of.get(signal)]
+    problems = [missing(table, absent, found, kind)] if absent else []
+    match = Match(found={}, kind=kind or _kind_shown(table, found.of))
+    refused = {
+        signal: problem
+        for signal in SIGNALS
+        if found.of.get(signal)
+        and (problem := _take(table, signal, found.of[signal], match)) is not None
+    }
+    other_torque = any(signal in match.found for signal in TORQUES)
+    for signal, problem in refused.items():
+        if signal in NEEDED or not other_torque or found.of[signal][0].chosen:
+            problems.append(problem)
+        else:
+            _leave_out(table, signal, found.of[signal], problem.reason, match)
+    if problems:
+        raise together(table, problems)
+    return match
+
+
+def _take(table: Table, signal: str, candidates: list[Column], match: Match) -> InputError | None:
+    """Enter the column of a signal, or what is left out; return the error of one that is needed."""
+    fitting = [column for column in candidates if column.fits(signal, match.kind)]
+    clearest = [c for c in fitting if c.rank == min(each.rank for each in fitting)]
+    strict = table.saved is not None or candidates[0].chosen
+    if len(clearest) == 1:
+        match.found[signal] = clearest[0]
+        others = [column for column in fitting if column is not clearest[0]]
+        reason = f"{signal} is read from {table.headers[clearest[0].index]!r}"
+        _leave_out(table, signal, others, reason, match)
+        return None
+    if clearest:
+        if strict or signal in (*NEEDED, *TORQUES):
+            return ambiguous(table, signal, clearest)
+        _leave_out(table, signal, clearest, f"several columns are recognised as {signal}", match)
+        return None
+    if strict or signal in (*NEEDED, "torque"):
+        return wrong_unit(table, signal, candidates[0], match.kind)
+    for column in candidates:
+        _leave_out(table, signal, [column], f"{signal} {in_other_unit(column)}", match)
+    return None
+
+
+def _leave_out(table: Table, signal: str, columns: list[Column], reason: str, match: Match) -> None:
+    match.left_out.extend(
+        {"column": table.headers[column.index], "signal": signal, "reason": reason}
+        for column in columns
+    )
+
+
+def _kind_shown(table: Table, candidates: Mapping[str, list[Column]]) -> str:
+    """Return the kind of joint that the units show.
+
+    Raises
+    ------
+    InputError
+        The columns of one signal are of a revolute and of a prismatic joint.
+    """
+    for signal in _SHOWING_KIND:
+        kinds = {
+            kind: column
+            for kind in ("revolute", "prismatic")
+            for column in candidates.get(signal, [])
+            if column.unit and column.unit.dimension in dimensions(signal, kind)
+        }
+        if len(kinds) == 2:
+            clear = [c for c in kinds.values() if c.rank == min(k.rank for k in kinds.values())]
+            if len(clear) == 1:
+                return next(kind for kind, column in kinds.items() if column is clear[0])
+            raise of_both_kinds(table, signal, tuple(kinds.values()))
+        if kinds:
+            return next(iter(kinds))
+    return "revolute"

@@ -1,0 +1,160 @@
+"""Columns that nobody maps: they never block a file whose needed ones are understood."""
+
+from pathlib import Path
+
+import pytest
+from recording_files import ROWS, column, headed, lines, refusal, written
+
+from jointid.recording.header_words import meaning_of
+from jointid.recording.headers import understood
+from jointid.recording.readers.loading import load
+from jointid.recording.recording import Recording
+
+
+def left_out(recording: Recording) -> dict[str, str]:
+    return {each["column"]: each["reason"] for each in recording.metadata.get("left_out", [])}
+
+
+@pytest.mark.parametrize(
+    ("header", "reason"),
+    [
+        ("motor_current_raw", "current is a raw reading"),
+        ("current [raw]", "current is a raw reading"),
+        ("velocity [counts/100ms]", "velocity has the unknown unit 'counts/100ms'"),
+        ("sensor [degC]", "sensor is in degC (temperature)"),
+        ("temperature [V]", "temperature is in V (voltage)"),
+    ],
+)
+def test_a_foreign_unit_of_what_is_not_needed_blocks_nothing(
+    header: str, reason: str, tmp_path: Path
+) -> None:
+    path = written(tmp_path / "a.csv", lines(f"t_s,q_rad,tau_Nm,{header}"))
+    loaded = load(path)
+    assert set(loaded.signals) == {"time", "position", "velocity", "torque"}
+    assert left_out(loaded) == {header: reason}
+
+
+@pytest.mark.parametrize(
+    ("headers", "signal", "read", "said"),
+    [
+        ("vel,speed", "velocity", None, {"vel", "speed"}),
+        ("velocity,omega", "velocity", 2, {"omega"}),
+        ("omega,velocity", "velocity", 3, {"omega"}),
+        ("dq,qd", "velocity", None, {"dq", "qd"}),
+        ("temp_motor,temperature", "temperature", 3, {"temp_motor"}),
+    ],
+)
+def test_two_columns_of_one_signal(
+    headers: str, signal: str, read: int | None, said: set[str], tmp_path: Path
+) -> None:
+    loaded = load(written(tmp_path / "a.csv", lines(f"t_s,q_rad,{headers}")))
+    assert set(left_out(loaded)) == said
+    if read is None:
+        assert loaded.velocity_derived
+    else:
+        assert getattr(loaded, signal).tolist() == column(read)
+
+
+def test_a_torque_that_may_be_either_of_two_is_asked_for(tmp_path: Path) -> None:
+    message = refusal(written(tmp_path / "a.csv", lines("t_s,q_rad,current_A,motor_current_A")))
+    assert "are both recognised as current" in message
+
+
+def test_text_and_empty_cells_beside_the_signals(tmp_path: Path) -> None:
+    states = ["OK", "", "nan", "RUN; fast", "-"] * 2
+    rows = [
+        ",".join([*map(repr, row[:2]), f'"{state}"', "", repr(row[3])])
+        for row, state in zip(ROWS, states, strict=True)
+    ]
+    path = written(
+        tmp_path / "a.csv", ["t_s,q_rad,drive state,setpoint_nobody_knows,tau_Nm", *rows]
+    )
+    loaded = load(path)
+    assert loaded.torque is not None
+    assert loaded.torque.tolist() == column(3)
+    assert left_out(loaded) == {}
+
+
+def test_it_is_said_where_values_are_shown(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from jointid.cli.command_line import main
+
+    path = tmp_path / "a.csv"
+    written(path, lines("t_s,q,tau_Nm,motor_current_raw"))
+    assert main(["info", str(path)]) == 0
+    shown = capsys.readouterr().out
+    assert "not read: motor_current_raw (current is a raw reading)" in shown
+    assert "SI units assumed: position" in shown
+
+
+@pytest.mark.parametrize(
+    ("header", "signal"),
+    [
+        *(
+            (name, "time")
+            for name in ("timestamp", "time_stamp", "stamp", "secs", "%time", "Time(s)")
+        ),
+        *((name, "time") for name in ("header.stamp.secs", "field.header.stamp", "robot_time")),
+        *((name, "position") for name in ("q_meas", "actual_position", "position_actual", "theta")),
+        *((name, "position") for name in ("joint1_pos", "Axis 1.ActPos", "actual_q_0", "q1")),
+        *((name, "position") for name in ("actual.positions[0]", "/joint_states/elbow/position")),
+        *((name, "position") for name in ("current_position", "feedback.position", "q[3]")),
+        *((name, "velocity") for name in ("omega", "dq", "qd", "q_dot", "actual_qd_0", "ActVelo")),
+        *((name, "torque") for name in ("effort", "tau_J", "torque_measured", "ActTorque")),
+        *((name, "motor_torque") for name in ("tau_m", "motor torque [Nm]", "motor_torque_actual")),
+        *((name, "current") for name in ("actual_current_0", "i_q_A", "Iq", "motor current")),
+        *((name, "reference") for name in ("target_q_0", "q_d", "q_des", "desired.positions[0]")),
+    ],
+)
+def test_names_of_other_programs(header: str, signal: str) -> None:
+    meaning = understood(header).meaning
+    assert meaning is not None
+    assert meaning.signal == signal
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        *(
+            "target_moment_0",
+            "tau_J_d",
+            "tau_cmd",
+            "commanded_torque",
+            "target_qd_0",
+            "velocity_setpoint",
+        ),
+        *("torque_limit", "position_error", "error.positions[0]", "max_torque", "torque_enabled"),
+        *(
+            "motor_position",
+            "encoder_counts",
+            "time_to_target",
+            "time_offset",
+            "tau_ext_hat_filtered",
+        ),
+        *("link_velocity", "q_std", "gravity_torque", "axis_angle", "drive state", "column 0", ""),
+    ],
+)
+def test_what_is_no_measured_signal(header: str) -> None:
+    meaning = understood(header).meaning
+    assert meaning is None
+    assert meaning_of(header) is None
+
+
+def test_one_numbered_joint_loads_as_it_is(tmp_path: Path) -> None:
+    loaded = load(
+        written(tmp_path / "a.csv", headed("timestamp,joint1_pos,joint1_vel,joint1_effort"))
+    )
+    assert loaded.position.tolist() == column(1)
+    assert loaded.velocity.tolist() == column(2)
+    assert loaded.torque is not None
+
+
+def test_several_joints_are_nobodys(tmp_path: Path) -> None:
+    path = written(tmp_path / "a.csv", headed("timestamp,joint1_pos,joint2_pos,joint2_effort"))
+    message = refusal(path)
+    assert (
+        "no column is recognised as position; candidates are 'joint1_pos', 'joint2_pos'" in message
+    )
+    loaded = load(path, columns={"position": "joint2_pos"})
+    assert loaded.position.tolist() == column(2)
