@@ -1,4 +1,4 @@
-"""What the noise of the velocity does to each parameter, found by adding as much again."""
+"""What the noise of the velocity does to each parameter, found by measuring it once more."""
 
 from __future__ import annotations
 
