@@ -12,6 +12,7 @@ import struct
 import tempfile
 import time
 import tracemalloc
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -63,7 +64,9 @@ def main() -> None:
         path = written(Path(folder, "run.mcap"), arguments.messages, arguments.joints)
         few = written(Path(folder, "few.mcap"), 20, arguments.joints)
         jid.load(few, joint=1 if arguments.joints > 1 else None)  # imports are not counted
-        ways = {"one joint": lambda: jid.load(path, joint=1 if arguments.joints > 1 else None)}
+        ways: dict[str, Callable[[], object]] = {
+            "one joint": lambda: jid.load(path, joint=1 if arguments.joints > 1 else None)
+        }
         if arguments.joints > 1:
             ways["all joints"] = lambda: jid.load_robot(path)
         for name, load in ways.items():

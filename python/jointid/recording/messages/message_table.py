@@ -48,12 +48,12 @@ class MessageTable:
         self._time = _seconds(stamps)  # once: each joint of a robot asks for it
         columns = list(dict.fromkeys(c for block in self._blocks for c in block.columns))
         self._columns = [column for column in columns if self._holds_numbers(column)]
-        joints = dict.fromkeys(joint for joint, _ in self._columns)
+        joints = dict.fromkeys(joint for joint, _ in self._columns if joint)
         named = is_joint_kind(topic.kind)
         self.headers = (
             "time [s]",
             "log_time [s]",
-            *(_header(c, kind, alone=len(joints) == 1, named=named) for c in self._columns),
+            *(_header(c, kind, alone=len(joints) < 2, named=named) for c in self._columns),
         )
         self.other_names = {
             f"{joint}.{signal}" if joint else signal: k
@@ -162,10 +162,10 @@ def _seconds(times: npt.NDArray[np.int64]) -> FloatArray:
 
 def _header(column: Column, kind: str, *, alone: bool, named: bool) -> str:
     joint, signal = column
-    if not named:
+    if not named or not joint:
         return signal
     unit = unit_of(signal, kind)
-    name = signal if alone or not joint else f"{joint}.{signal}"
+    name = signal if alone else f"{joint}.{signal}"
     return f"{name} [{unit}]" if unit else name
 
 
