@@ -10,6 +10,7 @@ import jointid as jid
 Array = NDArray[np.float64]
 
 NORMAL = 1.96  # standard errors of half a 95 % interval
+_REFUTED = 3.0  # standard errors: then the other reading is 20 times less likely, with its whole sample to choose from
 _STEP = 1e-6  # [s]
 _JUMP = 6.0  # medians of the size of the reading's rate
 
@@ -50,7 +51,7 @@ def determinable(quiet: jid.Recording, noise: float, delay: float, near: float) 
     apart = abs(delay - quiet.sample_period * round(delay / quiet.sample_period))
     if NORMAL * smooth <= near:
         return True
-    return NORMAL * whole <= min(near, apart)
+    return NORMAL * whole <= near and _REFUTED * whole <= apart
 
 
 def late(recording: jid.Recording, signal: str, delay: float) -> Array:

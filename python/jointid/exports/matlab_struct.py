@@ -62,7 +62,12 @@ def _write(subject: Subject, order: Order) -> bytes:
         struct["sensor"] = {"gain": law.sensor[0], "offset": law.sensor[1]}
     content = io.BytesIO()
     name = identifier(order.name)[:_LONGEST]
-    savemat(content, {name: struct}, long_field_names=True, oned_as="column")
+    savemat(
+        content,  # type: ignore[arg-type]  # the stubs know names of files alone
+        {name: struct},
+        long_field_names=True,
+        oned_as="column",
+    )
     return content.getvalue()
 
 

@@ -12,13 +12,13 @@ from jointid.exports.expressions import (
     upper,
 )
 from jointid.exports.identifiers import identifier
+from jointid.exports.law import Over
 from jointid.exports.provenance import plain, statements, value_line
 from jointid.exports.subject import Subject
 from jointid.exports.tables import reference_values, smooth_width, torque_scale
 from jointid.exports.target import Order, Target
 
 _TOLERANCE = 1e-9
-_COLUMNS = 9
 
 
 def _write(subject: Subject, order: Order) -> bytes:
@@ -74,7 +74,7 @@ def _block(subject: Subject, name: str) -> list[str]:
     law = subject.law
     position, torque = subject.position_unit, plain(subject.torque_unit)
     language = Language(name=_constant, number=literal, exp="EXP", log="LN", sin="SIN", cos="COS")
-    periods = {
+    periods: dict[Over, str] = {
         kind: total(periodic(law, kind, angle, language), "0.0")
         for kind, angle in (
             ("gravity", "position"),
@@ -137,7 +137,8 @@ def _block(subject: Subject, name: str) -> list[str]:
         f"gravity := {periods['gravity']};",
         f"harmonics := {periods['harmonics']};",
         f"ripple := {periods['ripple']};",
-        "torque := (P_INERTIA + P_LINK_INERTIA) * acceleration + friction + gravity + harmonics + ripple + P_TORQUE_OFFSET;",
+        "torque := (P_INERTIA + P_LINK_INERTIA) * acceleration + P_TORQUE_OFFSET",
+        "    + friction + gravity + harmonics + ripple;",
         "motor_torque := torque / P_GEAR_RATIO;",
         f"sensor_torque := {sensor};",
         "END_FUNCTION_BLOCK",
@@ -171,18 +172,23 @@ def _constants(subject: Subject) -> list[str]:
 
 
 def _check(subject: Subject, name: str) -> list[str]:
-    rows = reference_values(subject)
-    numbers = [
-        value
-        for row in rows
-        for value in (
-            *(row.position, row.velocity, row.acceleration, row.load, row.width, row.reading),
-            *(row.friction, row.torque, row.sensor_torque),
-        )
+    rows = reference_values(subject)[::3]  # arrays that are long take some systems long to read
+    inputs = ("position", "velocity", "acceleration", "load", "width", "reading")
+    outputs = ("friction", "torque", "sensor_torque")
+    columns = [
+        f"    {column}_at : ARRAY [0..{len(rows) - 1}] OF LREAL := "
+        f"[{', '.join(literal(getattr(row, column)) for row in rows)}];"
+        for column in (*inputs, *outputs)
     ]
-    text = [
-        ", ".join(literal(value) for value in numbers[at : at + _COLUMNS])
-        for at in range(0, len(numbers), _COLUMNS)
+    given = ", ".join(f"{column} := {column}_at[number]" for column in inputs)
+    compared = [
+        line
+        for column in outputs
+        for line in (
+            f"    IF ABS(joint.{column} - {column}_at[number]) > ALLOWED THEN",
+            "        wrong := wrong + 1;",
+            "    END_IF",
+        )
     ]
     return [
         "(* Compares the block with jointid's own values: wrong counts the values that differ, 0 if all agree. *)",
@@ -196,27 +202,13 @@ def _check(subject: Subject, name: str) -> list[str]:
         "VAR",
         f"    joint : FB_{name}_Friction;",
         "    number : INT;",
-        "    first : INT;",
-        "    (* position, velocity, acceleration, load, width, reading; friction, torque, sensor torque *)",
-        f"    values : ARRAY [0..{len(numbers) - 1}] OF LREAL := [",
-        *(f"        {row}{',' * (number < len(text) - 1)}" for number, row in enumerate(text)),
-        "    ];",
+        *columns,
         "END_VAR",
         "",
         "wrong := 0;",
         f"FOR number := 0 TO {len(rows) - 1} DO",
-        f"    first := {_COLUMNS} * number;",
-        "    joint(position := values[first], velocity := values[first + 1], acceleration := values[first + 2],"
-        " load := values[first + 3], width := values[first + 4], reading := values[first + 5]);",
-        "    IF ABS(joint.friction - values[first + 6]) > ALLOWED THEN",
-        "        wrong := wrong + 1;",
-        "    END_IF",
-        "    IF ABS(joint.torque - values[first + 7]) > ALLOWED THEN",
-        "        wrong := wrong + 1;",
-        "    END_IF",
-        "    IF ABS(joint.sensor_torque - values[first + 8]) > ALLOWED THEN",
-        "        wrong := wrong + 1;",
-        "    END_IF",
+        f"    joint({given});",
+        *compared,
         "END_FOR",
         "END_FUNCTION_BLOCK",
     ]

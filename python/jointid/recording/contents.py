@@ -201,15 +201,29 @@ def read_contents(
             place=table.source,
             remedy="leave it out",
         )
-    match = match_columns(table, columns=columns, units=units, scale=scale, kind=kind or saved_kind)
-    found, left_out = match.found, match.left_out
+    for name, given, example in (
+        ("units", units, "{'position': 'deg'}"),
+        ("scale", scale, "{'position': 0.001}"),
+    ):
+        if given is not None:
+            require_mapping(name, given, example)
+    own = extra_columns(table, extra, units, scale)
+    match = match_columns(
+        table,
+        columns=columns,
+        units={name: unit for name, unit in units.items() if name not in own} if units else units,
+        scale={name: each for name, each in scale.items() if name not in own} if scale else scale,
+        kind=kind or saved_kind,
+    )
+    found = match.found
+    read = {table.headers[column.index] for column in own.values()}
+    left_out = [each for each in match.left_out if each["column"] not in read]
     values = dict(
         zip(found, table.numbers([column.index for column in found.values()]), strict=True)
     )
     for missing in unrecorded(saved, values):
         found = {signal: column for signal, column in found.items() if signal != missing}
         del values[missing]
-    own = extra_columns(table, extra)
     arrays = table.numbers([column.index for column in own.values()]) if own else []
     if columns and "velocity" in columns:
         saved.pop("velocity_derived", None)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -12,10 +12,11 @@ import numpy.typing as npt
 
 from jointid.base.errors import InputError
 from jointid.recording.column_lookup import column_index
+from jointid.recording.columns import check_scale
 from jointid.recording.headers import parsed
 from jointid.recording.signals import SIGNALS, FloatArray, shown_dimension, signal_array
 from jointid.recording.table import Table
-from jointid.recording.units import Unit
+from jointid.recording.units import Unit, unit_named
 
 PREFIX = "extra_"
 """Begins the header of an extra signal in a saved recording."""
@@ -85,18 +86,29 @@ class ExtraColumn:
         None: its header names no known unit, and the values stay as they are.
     shown : str
         Text of the unit after conversion, e.g. "rad/s"; empty if it is not known.
+    scale : float, optional
+        Factor from file units to SI; replaces the unit's. Default: the unit's factor.
     """
 
     index: int
     unit: Unit | None = None
     shown: str = ""
+    scale: float | None = None
 
     def to_si(self, values: FloatArray) -> FloatArray:
         """Return the column's values in SI units."""
+        if self.scale is not None:
+            with np.errstate(over="ignore", under="ignore"):  # inf is refused later, by signal
+                return values * self.scale
         return self.unit.to_si(values) if self.unit else values
 
 
-def extra_columns(table: Table, wanted: object) -> dict[str, ExtraColumn]:
+def extra_columns(
+    table: Table,
+    wanted: object,
+    units: Mapping[str, str] | None = None,
+    scale: Mapping[str, float] | None = None,
+) -> dict[str, ExtraColumn]:
     """Return the columns of the extra signals that a call wants, and of those that were saved.
 
     Parameters
@@ -104,6 +116,8 @@ def extra_columns(table: Table, wanted: object) -> dict[str, ExtraColumn]:
     table : Table
     wanted : collection of str, mapping of str to str or int, or None
         Headers, which are then the names; or name → header or 0-based number.
+    units, scale : mapping, optional
+        As in `load`; entries of other signals are ignored.
 
     Raises
     ------
@@ -128,6 +142,13 @@ def extra_columns(table: Table, wanted: object) -> dict[str, ExtraColumn]:
         unit = _unit(table.headers[index])
         shown = "" if unit is None else shown_dimension(unit.dimension)
         found[name] = ExtraColumn(index=index, unit=unit, shown=shown)
+    for name in found.keys() & (units or {}).keys():
+        unit = unit_named((units or {})[name], argument=f"units.{name}", place=table.source)
+        found[name] = replace(found[name], unit=unit, shown=shown_dimension(unit.dimension))
+    for name in found.keys() & (scale or {}).keys():
+        factor = (scale or {})[name]
+        check_scale(table, name, factor, units or {})
+        found[name] = replace(found[name], scale=float(factor))
     return found
 
 
