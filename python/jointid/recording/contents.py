@@ -1,7 +1,7 @@
 """The contents of a table: the signals of a recording in SI units, of all rows or of some."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -12,11 +12,18 @@ from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
 from jointid.recording.attributes import check_kind, check_torque_hold
 from jointid.recording.column_lookup import column_index
+from jointid.recording.column_problems import TORQUES
 from jointid.recording.columns import Column
+from jointid.recording.exact_time import exact_time, stamps_note
 from jointid.recording.matching import match_columns
+from jointid.recording.plausibility import too_large, unit_of_steps
 from jointid.recording.signals import FloatArray, check_signals
 from jointid.recording.table import Table
 from jointid.recording.truncated import unrecorded
+from jointid.recording.units import UNITS
+
+_NEEDED = ("time", "position", "torque")
+_MOTION = ("velocity", "sensor")  # without them the estimate is another: the user decides
 
 Rows = npt.NDArray[np.intp]
 
@@ -38,6 +45,8 @@ class Contents:
         ``"revolute"`` or ``"prismatic"``.
     left_out : sequence of mapping of str to str
         Columns that a header assigns to a signal and that are not read, as in `Match`. Default: none.
+    notes : mapping of str to object
+        Further entries of the recording's metadata. Default: none.
     """
 
     table: Table
@@ -46,6 +55,7 @@ class Contents:
     saved: Mapping[str, Any]
     kind: str
     left_out: Sequence[Mapping[str, str]] = ()
+    notes: Mapping[str, Any] = field(default_factory=dict)
 
     def fields(
         self,
@@ -78,7 +88,21 @@ class Contents:
             row = index if rows is None else int(rows[index])
             return self.table.place(self.found[signal].index, row)
 
-        check_signals(signals, place=place, source=self.table.source, time_remedy=time_remedy)
+        try:
+            check_signals(signals, place=place, source=self.table.source, time_remedy=time_remedy)
+        except InputError as error:
+            if error.argument in _MOTION and self.table.saved is None:
+                raise with_remedy(error, error.argument) from None
+            raise
+        if self.table.saved is None and (large := too_large(signals)) is not None:
+            signal, index = large
+            raise InputError(
+                "no joint has such a value; it is damaged, or stands for a value that is missing",
+                argument=signal,
+                value=float(signals[signal][index]),
+                place=place(signal, index),
+                remedy="leave such rows out",
+            )
         fields = {**self.saved, **signals, "kind": self.kind}
         if self.table.saved is None:
             fields["metadata"] = self._metadata()
@@ -149,7 +173,7 @@ class Contents:
         ]
         scaled = {signal: column.scale for signal, column in self.found.items() if column.scale}
         left_out = [dict(each) for each in self.left_out]
-        metadata = {"assumed_units": assumed, "scale": scaled, "left_out": left_out}
+        metadata = {"assumed_units": assumed, "scale": scaled, "left_out": left_out, **self.notes}
         return {name: value for name, value in metadata.items() if value}
 
 
@@ -184,9 +208,8 @@ def read_contents(
         )
     match = match_columns(table, columns=columns, units=units, scale=scale, kind=kind or saved_kind)
     found, left_out = match.found, match.left_out
-    values = dict(
-        zip(found, table.numbers([column.index for column in found.values()]), strict=True)
-    )
+    notes: dict[str, Any] = {}
+    values = _values(table, found, left_out, notes)
     for missing in unrecorded(saved, values):
         found = {signal: column for signal, column in found.items() if signal != missing}
         del values[missing]
@@ -201,4 +224,71 @@ def read_contents(
         saved=saved,
         kind=match.kind,
         left_out=left_out,
+        notes=notes,
+    )
+
+
+def _values(
+    table: Table, found: dict[str, Column], left_out: list[dict[str, str]], notes: dict[str, Any]
+) -> dict[str, FloatArray]:
+    """Read the columns; `found`, `left_out` and `notes` are brought up to date."""
+    values: dict[str, FloatArray] = {}
+    if table.saved is None and found["time"].scale is None:
+        stamps = exact_time(table, found["time"])
+        if stamps is not None:
+            values["time"] = stamps.seconds
+            found["time"] = replace(found["time"], unit=UNITS["s"], unknown="")
+            notes |= stamps_note(stamps)
+    numbers = {signal: column.index for signal, column in found.items() if signal not in values}
+    try:
+        values |= dict(zip(numbers, table.numbers(list(numbers.values())), strict=True))
+    except InputError:
+        values |= _readable(table, found, numbers, left_out)
+    time = found["time"]
+    if table.saved is None and time.unit is None and time.scale is None:
+        unit = unit_of_steps(
+            values["time"], f"{table.header_place}, column {table.headers[time.index]!r}"
+        )
+        if unit != "s":
+            found["time"] = replace(time, unit=UNITS[unit])
+            notes["recognised_units"] = {"time": unit}
+    return {signal: values[signal] for signal in found}
+
+
+def _readable(
+    table: Table,
+    found: dict[str, Column],
+    numbers: Mapping[str, int],
+    left_out: list[dict[str, str]],
+) -> dict[str, FloatArray]:
+    """Read columns of which one holds no numbers: one that is not needed is left out."""
+    for signal, index in numbers.items():
+        column = found[signal]
+        if table.saved is not None or column.chosen or signal in _NEEDED:
+            continue
+        try:
+            table.numbers([index])
+        except InputError as error:
+            if signal in _MOTION or (signal in TORQUES and not _other_torque(signal, found)):
+                raise with_remedy(error, signal) from None
+            left_out.append(
+                {"column": table.headers[index], "signal": signal, "reason": error.reason}
+            )
+            del found[signal]
+    left = {signal: index for signal, index in numbers.items() if signal in found}
+    return dict(zip(left, table.numbers(list(left.values())), strict=True))
+
+
+def _other_torque(signal: str, found: Mapping[str, Column]) -> bool:
+    return any(other in found for other in TORQUES if other != signal)
+
+
+def with_remedy(error: InputError, signal: str) -> InputError:
+    """Return the error with the advice to leave the signal out."""
+    return InputError(
+        error.reason,
+        argument=error.argument,
+        value=error.value,
+        place=error.place,
+        remedy=(*error.remedy, Action("call", {"columns": {signal: None}}, function="load")),
     )

@@ -115,6 +115,13 @@ class CsvTable:
         """Return the cells of a column, without blanks around them."""
         return self._columns([column])[0]
 
+    def first_cell(self, column: int) -> str:
+        """Return the first cell of a column."""
+        lines = _lines(self._content[:_LONG])[self._below :]
+        first = next((line for line in lines if line.strip()), "")
+        cells = self._cells(first, self._below + 1)
+        return cells[column] if column < len(cells) else ""
+
     def place(self, column: int, row: int) -> str:
         """Return file, line and column of a cell."""
         line = self._line_numbers[row]
