@@ -130,7 +130,7 @@ def with_fraction(whole: FloatArray, fraction: FloatArray, parts: float) -> Floa
         plain_parts = (fraction >= 0.0) & (fraction < parts) & (whole == np.floor(whole))
     if len(whole) != len(fraction) or not len(whole) or not plain_parts.all():
         return None
-    return (whole - whole[0]) + (fraction - fraction[0]) / parts
+    return np.asarray((whole - whole[0]) + (fraction - fraction[0]) / parts)
 
 
 def _of_dates(cells: Sequence[str]) -> list[int] | None:
