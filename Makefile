@@ -84,11 +84,18 @@ sdist: .venv/.test-tools  ## dist/jointid-VERSION.tar.gz
 	@rm -f dist/jointid-*.tar.gz
 	@$(BIN)/python -m build -qq --sdist --outdir dist .
 
-check-sdist: sdist  ## the sdist installs, imports and runs in an environment of its own
-	@echo "Installing $$(ls dist/jointid-*.tar.gz) into a fresh environment"
+# In an environment that holds nothing but what pyproject.toml asks for.
+dist/.wheel: .venv/.test-tools $(SOURCES)
+	@echo "Building the sdist and a wheel from it, warnings are errors (a minute or two)"
+	@rm -f dist/jointid-*
+	@$(BIN)/python -m build -qq $(STRICT) --outdir dist .
+	@touch $@
+
+check-sdist: dist/.wheel  ## a wheel from the sdist installs, imports and runs in an environment of its own
+	@echo "Installing $$(ls dist/jointid-*.whl) into a fresh environment"
 	@rm -rf build/sdist-venv
 	@$(BIN)/python -m venv build/sdist-venv
-	@build/sdist-venv/bin/python -m pip install --quiet --no-input --disable-pip-version-check dist/jointid-*.tar.gz
+	@build/sdist-venv/bin/python -m pip install --quiet --no-input --disable-pip-version-check dist/jointid-*.whl
 	@sdist="$$PWD/build/sdist-venv/bin"; cd / && "$$sdist/python" -c 'import jointid' && "$$sdist/jointid" --help >/dev/null
 	@echo "The sdist works."
 
@@ -144,10 +151,17 @@ ifeq ($(IN_PLACE),)
 	@$(INSTALL) .
 	@touch $@
 
+ifeq ($(CI),true)  # what CI tests is the wheel that comes out of the sdist, so it is built once
+.venv/.strict: .venv/.created dist/.wheel
+	@$(PIP) uninstall -qq --yes jointid  # the version of a wheel does not tell that it is another
+	@$(INSTALL) dist/jointid-*.whl
+	@touch .venv/.installed $@
+else
 .venv/.strict: .venv/.created $(SOURCES)
 	@echo "Building and installing jointid, warnings are errors (a minute or two)"
 	@$(INSTALL) $(STRICT) .
 	@touch .venv/.installed $@
+endif
 else
 .venv/.installed: .venv/.created $(filter-out $(MODULES) README.md LICENSE,$(SOURCES)) $(MOVED)
 	$(INSTALL_IN_PLACE)

@@ -58,7 +58,17 @@ _SOUGHT = {*_FOUND, "identification", "identification/search"}
 FOLDERS: dict[str, Folder] = {
     "base": Folder(may_use=set()),
     "recording": Folder(may_use={"base"}, packages={"numpy", "pandas"}),
-    "recording/readers": Folder(may_use={"base", "recording"}, packages={"numpy", "pyarrow"}),
+    "recording/messages": Folder(
+        may_use={"base", "recording"}, packages={"numpy", "mcap", "rosbags", "lz4", "zstandard"}
+    ),
+    "recording/hierarchies": Folder(may_use={"base", "recording"}, packages={"numpy", "h5py"}),
+    "recording/wide": Folder(may_use={"base", "recording"}, packages={"numpy"}),
+    "recording/readers": Folder(
+        may_use={
+            *("base", "recording", "recording/messages", "recording/hierarchies", "recording/wide"),
+        },
+        packages={"numpy", "pyarrow"},
+    ),
     "joint": Folder(may_use={"base", "recording"}, packages={"numpy", "tomlkit"}),
     "problem": Folder(may_use=_DATA, packages={"numpy"}),
     "estimate": Folder(may_use={*_DATA, "problem"}, packages={"numpy", "scipy"}),
@@ -100,6 +110,9 @@ FOLDERS: dict[str, Folder] = {
         may_use={"base", "estimate", "plot", "identification/warnings"},
         packages={"numpy", "matplotlib"},
     ),
+    "exports": Folder(
+        may_use={"base", "joint", "estimate", "simulation"}, packages={"numpy", "scipy"}
+    ),
     "hardware/session": Folder(may_use={*_DATA, "simulation"}, packages={"numpy"}),
     "hardware/can": Folder(may_use={"base"}, packages={"can"}),
     "hardware/live": Folder(may_use={"base", "hardware/session"}, packages={"numpy", "matplotlib"}),
@@ -135,7 +148,15 @@ FOLDERS: dict[str, Folder] = {
     "cli": Folder(
         may_use={
             *(_SOUGHT - {"problem"}),
-            *("recording/readers", "comparison", "simulation", "study", "plot", "report"),
+            *(
+                "recording/readers",
+                "comparison",
+                "simulation",
+                "study",
+                "plot",
+                "report",
+                "exports",
+            ),
             *("hardware/session", "hardware/can", "hardware/live", "hardware/bench"),
             *("hardware/emulated", "hardware/proof", "commissioning", ""),
         },
@@ -146,7 +167,7 @@ FOLDERS: dict[str, Folder] = {
         may_use={
             *(_SOUGHT - {"problem"}),
             *("recording/readers", "comparison", "online", "simulation", "study"),
-            *("plot", "hardware", "commissioning", "cli"),
+            *("plot", "exports", "hardware", "commissioning", "cli"),
         },
     ),
 }

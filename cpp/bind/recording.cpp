@@ -37,9 +37,12 @@ RecordingView view_of(const std::vector<SharedRecording::Array>& s, Hold hold,
 
 SharedRecording::SharedRecording(std::vector<Array> signals, Hold hold,
                                  std::vector<std::int64_t> gaps, double min_speed,
-                                 std::vector<std::int64_t> doubtful)
+                                 std::vector<std::int64_t> doubtful,
+                                 std::vector<std::pair<std::string, Array>> own)
     : signals_(std::move(signals)),
+      own_(std::move(own)),
       view_(view_of(signals_, hold, std::move(gaps), min_speed, std::move(doubtful))) {
+  for (const auto& [name, series] : own_) view_.own.push_back({name, signal(series)});
   view_.validate();
 }
 
@@ -71,17 +74,20 @@ void bind_recording(py::module_& m) {
       .def(py::init([](Array time, Array position, Array velocity, Array torque,
                        std::optional<Array> sensor, Hold torque_hold,
                        std::vector<std::int64_t> gap_after, double min_speed,
-                       std::vector<std::int64_t> doubtful) {
+                       std::vector<std::int64_t> doubtful,
+                       std::vector<std::pair<std::string, Array>> own) {
              std::vector<Array> signals{std::move(time), std::move(position), std::move(velocity),
                                         std::move(torque)};
              if (sensor) signals.push_back(std::move(*sensor));
              return std::make_shared<SharedRecording>(std::move(signals), torque_hold,
                                                       std::move(gap_after), min_speed,
-                                                      std::move(doubtful));
+                                                      std::move(doubtful), std::move(own));
            }),
            py::kw_only(), py::arg("time"), py::arg("position"), py::arg("velocity"),
            py::arg("torque"), py::arg("sensor"), py::arg("torque_hold"), py::arg("gap_after"),
-           py::arg("min_speed") = 0.0, py::arg("doubtful") = std::vector<std::int64_t>{})
+           py::arg("min_speed") = 0.0, py::arg("doubtful") = std::vector<std::int64_t>{},
+           py::arg("own") = std::vector<std::pair<std::string, Array>>{},
+           "own: key of an own term and its integral from the first sample to each.")
       .def_property_readonly("samples", &SharedRecording::samples);
   m.def(
       "usable_intervals",

@@ -7,6 +7,8 @@
 #include <array>
 #include <memory>
 #include <mutex>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/pool.hpp"
@@ -31,7 +33,8 @@ class SharedRecording {
   using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
   SharedRecording(std::vector<Array> signals, identify::Hold hold, std::vector<std::int64_t> gaps,
-                  double min_speed = 0.0, std::vector<std::int64_t> doubtful = {});
+                  double min_speed = 0.0, std::vector<std::int64_t> doubtful = {},
+                  std::vector<std::pair<std::string, Array>> own = {});
   [[nodiscard]] const identify::RecordingView& view() const { return view_; }
   [[nodiscard]] std::int64_t samples() const { return view_.samples(); }
   /// Found once for each choice; called without the GIL.
@@ -40,6 +43,7 @@ class SharedRecording {
 
  private:
   std::vector<Array> signals_;
+  std::vector<std::pair<std::string, Array>> own_;
   identify::RecordingView view_;
   std::mutex mutex_;
   std::array<std::shared_ptr<const identify::MaskedRecording>, 2> masked_;

@@ -30,8 +30,13 @@ void bind_terms(py::module_& m) {
           "decay", [](const Term& t) { return std::string(base::word(identify::decay_of(t))); },
           "How its friction fades with speed: the simulated joint's field of that name.")
       .def_property_readonly(
-          "family", [](const Term& t) { return t.harmonic != identify::Harmonic::none; },
-          "True if the row stands for a term an order, as in ripple_sin_2.")
+          "family",
+          [](const Term& t) {
+            return t.harmonic != identify::Harmonic::none || identify::is_own(t);
+          },
+          "True if the row stands for a term an order, as in ripple_sin_2, or a signal.")
+      .def_property_readonly("own", &identify::is_own,
+                             "True for a term of a named signal, as viscous_of_q6.")
       .def_readonly("unit", &Term::unit)
       .def_readonly("unit_prismatic", &Term::unit_prismatic)
       .def_readonly("meaning", &Term::meaning)
@@ -59,7 +64,8 @@ void bind_terms(py::module_& m) {
   m.def("shapes", &identify::shape_table, "All shape parameters.");
   m.def("models", &identify::model_table, "All friction models.");
   m.def("term", &identify::find_term, py::arg("key"),
-        "The term of that key; \"ripple_sin_2\" is order 2 of its family.");
+        "The term of that key; \"ripple_sin_2\" is order 2 of its family, viscous_of_q6 the signal "
+        "q6's.");
   m.def("shape", &identify::find_shape, py::arg("name"), "The shape parameter of that name.");
   m.def("model_terms", &identify::model_terms, py::arg("name"), py::kw_only(),
         py::arg("asymmetric") = false,
@@ -88,7 +94,7 @@ void bind_terms(py::module_& m) {
           if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
         };
         for (const auto& term : identify::term_table()) {
-          if (term.harmonic != identify::Harmonic::none) continue;
+          if (term.harmonic != identify::Harmonic::none || identify::is_own(term)) continue;
           add(term.name);
           for (const auto& shape : term.shapes) add(shape);
         }

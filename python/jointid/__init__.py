@@ -44,6 +44,7 @@ from jointid.estimate.bootstrap import Bootstrap
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.selection import Selection
 from jointid.estimate.self_test import SelfTest
+from jointid.exports.exporting import export
 from jointid.identification.identification import identify
 from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
@@ -54,7 +55,9 @@ from jointid.joint.thesis import thesis_joint
 from jointid.online.online_estimate import OnlineEstimate
 from jointid.online.online_identifier import OnlineIdentifier
 from jointid.recording.readers.loading import load, load_runs
+from jointid.recording.readers.loading_robot import load_robot
 from jointid.recording.recording import Recording
+from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.simulation.batch import SimulatedBatch, simulate_batch
 from jointid.simulation.plant import Bristle, control_estimates
 from jointid.simulation.scenario import Scenario
@@ -93,6 +96,7 @@ __all__ = [
     "Pd",
     "Pid",
     "Recording",
+    "RobotRecording",
     "Scenario",
     "Search",
     "Selection",
@@ -111,9 +115,11 @@ __all__ = [
     "commissioning",
     "compare_models",
     "control_estimates",
+    "export",
     "hardware",
     "identify",
     "load",
+    "load_robot",
     "load_runs",
     "plot",
     "simulate",

@@ -112,7 +112,7 @@ class Term:
     @property
     def family(self) -> bool:
         """
-        True if the row stands for a term an order, as in ripple_sin_2.
+        True if the row stands for a term an order, as in ripple_sin_2, or a signal.
         """
     @property
     def friction(self) -> bool:
@@ -142,6 +142,11 @@ class Term:
     def option(self) -> str:
         """
         What adds it: "name" is a friction model, else an option of the model; empty: always there.
+        """
+    @property
+    def own(self) -> bool:
+        """
+        True for a term of a named signal, as viscous_of_q6.
         """
     @property
     def shapes(self) -> list[str]:
@@ -226,7 +231,13 @@ class Recording:
         gap_after: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
         min_speed: typing.SupportsFloat | typing.SupportsIndex = 0.0,
         doubtful: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] = [],
-    ) -> None: ...
+        own: collections.abc.Sequence[
+            tuple[str, typing.Annotated[numpy.typing.ArrayLike, numpy.float64]]
+        ] = [],
+    ) -> None:
+        """
+        own: key of an own term and its integral from the first sample to each.
+        """
     @property
     def samples(self) -> int: ...
 
@@ -2950,7 +2961,7 @@ def simulate_runs(
 
 def term(key: str) -> Term:
     """
-    The term of that key; "ripple_sin_2" is order 2 of its family.
+    The term of that key; "ripple_sin_2" is order 2 of its family, viscous_of_q6 the signal q6's.
     """
 
 def terms() -> list[Term]:

@@ -50,6 +50,27 @@ def test_steady_friction_is_left_as_it_is(found: list[jid.Estimate]) -> None:
 def test_what_is_asked_later_knows_of_the_drift(found: list[jid.Estimate]) -> None:
     estimate = found[0]
     assert [each.name for each in estimate.causes().found] == ["drift"]
+    assert "taken away" in estimate.causes().found[0].size
     gain = estimate.bootstrap(n=50).parameters["sensor_gain"]
     assert gain.interval[0] == pytest.approx(2.4, rel=0.01)
     assert pickle.loads(pickle.dumps(estimate)).findings == estimate.findings
+
+
+def test_causes_are_those_of_the_data_that_were_fitted() -> None:
+    count = 1
+    bench = Bench(
+        motion=thesis(np.full(count, np.radians(60.0)), np.full(count, 3.0)),
+        plant=Plant(viscous_drift=-0.3, coupling=1.5, coupling_rate=5.0),
+        law=Law(inertia=2.5, stiffness=60.0, on_reference=1.0, coulomb=20.0, feedback=2.0),
+        log=Log(),
+    )
+    (run,) = simulate(bench, duration=9.0, seed=1)
+    joint = jid.Joint(inertia=2.5, sensor=True, model=jid.Model("stribeck"))
+    estimate = jid.identify(run, joint, search="separable")
+    assert estimate.settings["drift_removed"] == "viscous"
+    other = np.sin(5.0 * run.time + run.metadata["plant"]["coupling_phase"])
+    drift, coupling = estimate.causes({"other axis": other}).found
+    assert (drift.name, drift.detail) == ("drift", "viscous")
+    # Of the misfit that the fit left: beside the drift it would be a small part.
+    assert (coupling.name, coupling.detail) == ("other_signal", "other axis")
+    assert coupling.share > 0.8

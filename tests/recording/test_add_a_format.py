@@ -61,7 +61,8 @@ def test_one_file_and_one_line_add_a_format(tmp_path: Path) -> None:
         shutil.copy(core, package)
     (package / REGISTRY.parent / "bar_reader.py").write_text(BAR_READER, encoding="utf-8")
     before = (package / REGISTRY).read_text(encoding="utf-8")
-    after = before.replace('    "parquet_reader",\n', '    "parquet_reader",\n    "bar_reader",\n')
+    last = f'    "{registry.MODULES[-1]}",\n'
+    after = before.replace(last, f'{last}    "bar_reader",\n')
     assert len(after.splitlines()) == len(before.splitlines()) + 1
     (package / REGISTRY).write_text(after, encoding="utf-8")
     for name in ("run.bar", "run.pipe"):
@@ -71,7 +72,7 @@ def test_one_file_and_one_line_add_a_format(tmp_path: Path) -> None:
     script = "import jointid, sys; print(jointid.__file__); print(len(jointid.load(sys.argv[1])))"
     for name in ("run.bar", "run.pipe"):
         assert run(package, "-c", script, name).split() == [str(package / "__init__.py"), "10"]
-    listed = ".csv, .csv.gz, .npz, .mat, .parquet, .bar or .pipe"
+    listed = f"{', '.join([*registry.endings(), '.bar'])} or .pipe"
     assert listed in run(package, "-c", script, "run.xyz")
     for command in ("identify", "info", "compare", "sweep"):
         assert listed in run(package, "-m", "jointid", command, "--help"), command
@@ -105,7 +106,8 @@ def test_an_ending_without_a_reader_is_refused(
     left = tuple(each for each in registry.READERS if ".parquet" not in each.endings)
     monkeypatch.setattr(registry, "READERS", left)
     assert refusal(path) == (
-        f"{path}: a file name that ends in .csv, .csv.gz, .npz or .mat is expected"
+        f"{path}: a file name that ends in .csv, .csv.gz, .npz, .mat, .mcap, .bag, .db3, .h5 or .hdf5 "
+        "is expected"
     )
 
 

@@ -244,7 +244,7 @@ def recordings(draw: st.DrawFn) -> Recording:
     steps = draw(st.lists(st.floats(1e-6, 1e3), min_size=8, max_size=20))
     time = draw(st.floats(-1e6, 1e6)) + np.cumsum(steps)
     names = draw(st.sets(st.sampled_from(SIGNALS[3:])))
-    columns = {
+    columns: dict[str, Any] = {
         name: draw(st.lists(number, min_size=len(time), max_size=len(time)))
         for name in sorted({"position", "velocity"} | names)
     }

@@ -110,7 +110,9 @@ def test_steps_that_may_be_either_are_asked_for(
     message = refusal(path)
     advice = " or ".join(f"load with units={{'time': '{unit}'}}" for unit in units)
     assert message.endswith(advice), message
-    assert load(path, units={"time": units[0]}).time[1] == pytest.approx(UNITS[units[0]].factor * step)
+    assert load(path, units={"time": units[0]}).time[1] == pytest.approx(
+        UNITS[units[0]].factor * step
+    )
 
 
 def test_a_date_that_is_none_names_the_cell(tmp_path: Path) -> None:

@@ -9,7 +9,14 @@ import pytest
 from documents import ROOT
 
 pytestmark = pytest.mark.skipif(shutil.which("make") is None, reason="make is not installed")
-STAMPS = ("created", "test-tools", "lint-tools", "installed", "strict")
+STAMPS = (
+    ".venv/.created",
+    ".venv/.test-tools",
+    ".venv/.lint-tools",
+    ".venv/.installed",
+    ".venv/.strict",
+    "dist/.wheel",
+)
 OLD, NEW = 1_000_000_000, 2_000_000_000  # seconds; younger than any file here, older than any
 
 
@@ -22,9 +29,9 @@ def tree(tmp_path: Path) -> Path:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.touch()
         os.utime(path, (OLD, OLD))
-    (tmp_path / ".venv").mkdir()
     for stamp in STAMPS:
-        (tmp_path / ".venv" / f".{stamp}").touch()
+        (tmp_path / stamp).parent.mkdir(exist_ok=True)
+        (tmp_path / stamp).touch()
     return tmp_path
 
 
@@ -33,12 +40,17 @@ def develop(tree: Path) -> None:
     (tree / ".venv" / ".editable").write_text("python/jointid/joint.py\n", encoding="utf-8")
 
 
-def installations(tree: Path, target: str, **environment: str) -> list[str]:
-    """The installations of the package that make would run for a target."""
+def installations(tree: Path, *targets: str, **environment: str) -> list[str]:
+    """The installations of the package that make would run for targets."""
+    return [line for line in commands(tree, *targets, **environment) if "pip install" in line]
+
+
+def commands(tree: Path, *targets: str, **environment: str) -> list[str]:
+    """What make would run for targets."""
     inherited = {name: text for name, text in os.environ.items() if not name.startswith("MAKE")}
     inherited.pop("CI", None)
     run = subprocess.run(
-        ["make", "--dry-run", target],
+        ["make", "--dry-run", *targets],
         cwd=tree,
         env={**inherited, **environment},
         capture_output=True,
@@ -46,7 +58,7 @@ def installations(tree: Path, target: str, **environment: str) -> list[str]:
         timeout=60,
         check=True,
     )
-    return [line for line in run.stdout.splitlines() if "pip install" in line]
+    return run.stdout.splitlines()
 
 
 def change(tree: Path, name: str) -> None:
@@ -88,3 +100,15 @@ def test_a_removed_module_is_installed_in_place_again(tree: Path) -> None:
     (tree / "python/jointid/joint.py").unlink()
     (line,) = installations(tree, "lint")
     assert line.endswith(" -e .")
+
+
+def test_ci_builds_once_what_it_tests_and_ships(tree: Path) -> None:
+    change(tree, "cpp/base/pool.cpp")
+    ran = commands(tree, "lint", "check-sdist", "pytest", CI="true")
+    (built,) = [line for line in ran if " -m build " in line]
+    assert "JOINTID_WARNINGS_AS_ERRORS=ON" in built
+    assert "--sdist" not in built  # both, the wheel from the sdist
+    tested, proven = [line for line in ran if "pip install" in line]
+    assert tested.endswith(" dist/jointid-*.whl")
+    assert proven.endswith(" dist/jointid-*.whl")
+    assert "sdist-venv" in proven

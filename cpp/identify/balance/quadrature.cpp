@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "base/clones.hpp"
 
@@ -64,6 +65,14 @@ double common_sign(const RecordingView::Signal& velocity, const Window& window) 
   }
   const Eigen::Index all = window.end - window.begin + 1;
   return positive == all ? 1.0 : (negative == all ? -1.0 : 0.0);
+}
+
+/// The series of that name.
+const RecordingView::Signal& own_series(const RecordingView& r, const std::string& name) {
+  for (const auto& own : r.own) {
+    if (own.name == name) return own.series;
+  }
+  throw std::invalid_argument("the term '" + name + "' needs a recording with its series");
 }
 
 template <class Sample>
@@ -137,6 +146,9 @@ void integrate(const Term& term, double gear_ratio, const RecordingView& r,
       return;
     case Integral::sensor:
       trapezoid(r, usable, windows, result, [&](Eigen::Index k) { return r.sensor[k]; });
+      return;
+    case Integral::own:
+      sum_changes(own_series(r, term.name), usable, windows, result);
       return;
     case Integral::load_friction:
     case Integral::link_friction:

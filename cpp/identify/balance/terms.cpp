@@ -55,6 +55,15 @@ Term harmonic(std::string key, std::string option, Integral integral, Harmonic c
   return term;
 }
 
+/// A term of a signal that the recording brings along; its name follows the key.
+Term own(std::string key, std::string unit, std::string unit_prismatic, std::string meaning) {
+  Term term = torque(std::move(key), "terms", Integral::own, std::move(meaning),
+                     "motion in which this signal changes apart from the others");
+  term.unit = std::move(unit);
+  term.unit_prismatic = std::move(unit_prismatic);
+  return term;
+}
+
 Term simulated(Term term, Control control) {
   term.simulated = true;
   term.control = control;
@@ -159,6 +168,17 @@ std::vector<Term> base_rows() {
       simulated(torque("sensor_offset", "sensor", Integral::duration, "offset of the torque sensor",
                        link),
                 Control::compensated),
+      own("viscous_of", "N·m/[]", "N/[]", "torque in proportion to"),
+      own("coulomb_of", "N·m", "N", "torque by the sign of"),
+      own("coupling_of", "N·m·s/[]", "N·s/[]", "torque in proportion to the change of"),
+      own("known_of", "1", "1", "known torque"),
+      own("scale_of", "1", "1", "gain of the torque"),
+      own("known_inertia_of", "1", "1", "known inertia"),
+      own("scale_inertia_of", "1", "1", "gain of the inertia"),
+      own("inertia_cos_of", "kg·m²", "kg", "inertia, cosine over"),
+      own("inertia_sin_of", "kg·m²", "kg", "inertia, sine over"),
+      own("torque_cos_of", "N·m", "N", "torque, cosine over"),
+      own("torque_sin_of", "N·m", "N", "torque, sine over"),
   };
 }
 
@@ -178,6 +198,31 @@ std::vector<Term> make_terms() {
 bool read_order(std::string_view text, double& order) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), order);
   return error == std::errc{} && end == text.data() + text.size() && order > 0.0 && order < 1e6;
+}
+
+/// The signal's name behind an own row's key and an underscore; empty if there is none.
+std::string_view signal_of(const Term& row, std::string_view key) {
+  const auto size = row.key.size();
+  if (!is_own(row) || key.size() < size + 2 || !key.starts_with(row.key) || key[size] != '_') {
+    return {};
+  }
+  const auto signal = key.substr(size + 1);
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  const bool name = !digit(signal[0]) && std::all_of(signal.begin(), signal.end(), [&](char c) {
+    return c == '_' || digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+  });
+  return name ? signal : std::string_view{};
+}
+
+/// The term of one signal.
+Term of_signal(Term row, std::string_view signal) {
+  row.key += "_" + std::string(signal);
+  row.name = row.key;
+  row.meaning += " " + std::string(signal);
+  for (auto* unit : {&row.unit, &row.unit_prismatic}) {
+    if (const auto at = unit->find("[]"); at != std::string::npos) unit->insert(at + 1, signal);
+  }
+  return row;
 }
 
 }  // namespace
@@ -237,6 +282,10 @@ const std::vector<Model>& model_table() {
   return table;
 }
 
+bool is_own(const Term& term) {
+  return term.integral == Integral::own;
+}
+
 bool is_friction(const Term& term) {
   return term.integral == Integral::friction || term.integral == Integral::displacement ||
          needs_load(term);
@@ -277,7 +326,8 @@ Eigen::VectorXd friction_basis(const Term& term, const Eigen::VectorXd& velocity
 Term find_term(std::string_view key) {
   std::string known;
   for (const auto& row : term_table()) {
-    if (row.harmonic == Harmonic::none && row.key == key) return row;
+    if (row.harmonic == Harmonic::none && !is_own(row) && row.key == key) return row;
+    if (const auto signal = signal_of(row, key); !signal.empty()) return of_signal(row, signal);
     Term term = row;
     if (row.harmonic != Harmonic::none && key.size() > row.key.size() + 1 &&
         key.starts_with(row.key) && key[row.key.size()] == '_' &&
@@ -287,6 +337,7 @@ Term find_term(std::string_view key) {
     }
     known += (known.empty() ? "" : ", ") + row.key;
     if (row.harmonic != Harmonic::none) known += "_<order>";
+    if (is_own(row)) known += "_<signal>";
   }
   throw base::InputError("known are " + known, "term", std::string(key));
 }
@@ -336,6 +387,7 @@ bool is_parameter(std::string_view name) {
   }
   const auto& terms = term_table();
   return std::any_of(terms.begin(), terms.end(), [&](const Term& term) {
+    if (is_own(term)) return !signal_of(term, name).empty();
     if (term.harmonic == Harmonic::none) return term.name == name;
     double order = 0.0;
     return name.size() > term.key.size() + 1 && name.starts_with(term.key) &&

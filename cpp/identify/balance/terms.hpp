@@ -26,6 +26,7 @@ enum class Integral {
   cosine,           ///< integral of cos(frequency q)
   sine,             ///< integral of sin(frequency q)
   sensor,           ///< integral of the raw sensor reading
+  own,              ///< how far a series of the recording rises, see OwnSeries
 };
 
 /// What the order of a harmonic counts: turns of the joint, or of the motor in front of the gear.
@@ -40,7 +41,7 @@ enum class Control {
 };
 
 /// One row: a coefficient and its basis. Rows with a Harmonic stand for a family, one term an
-/// order.
+/// order; rows with Integral::own for a family, too, one term a named signal.
 struct Term {
   std::string key;   ///< unique: what a model lists
   std::string name;  ///< the parameter's name; two bases of the same quantity share it
@@ -86,6 +87,8 @@ const std::vector<Term>& term_table();
 const std::vector<Shape>& shape_table();
 const std::vector<Model>& model_table();
 
+/// Whether a row stands for a term a named signal, as "viscous_of" for "viscous_of_q6".
+bool is_own(const Term& term);
 /// Whether a term opposes motion, and so belongs to the friction map f(v, load).
 bool is_friction(const Term& term);
 /// Whether the friction depends on the torque that the drive transmits, too.
@@ -98,7 +101,8 @@ model::Decay decay_of(const Term& term);
 Eigen::VectorXd friction_basis(const Term& term, const Eigen::VectorXd& velocity,
                                const Eigen::VectorXd& shapes, double load = 0.0);
 
-/// The term of that key; "ripple_sin_2" is order 2 of the family "ripple_sin". Throws
+/// The term of that key; "ripple_sin_2" is order 2 of the family "ripple_sin", "viscous_of_q6" the
+/// term of the signal q6. Throws
 /// std::invalid_argument that lists the known keys.
 Term find_term(std::string_view key);
 const Shape& find_shape(std::string_view name);

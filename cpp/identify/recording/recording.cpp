@@ -54,6 +54,7 @@ void RecordingView::validate() const {
   check_signal(velocity, "velocity", n);
   check_signal(torque, "torque", n);
   if (has_sensor()) check_signal(sensor, "sensor", n);
+  for (const auto& each : own) check_signal(each.series, each.name.c_str(), n);
   for (Eigen::Index k = 1; k < n; ++k) {
     if (!(time[k] > time[k - 1])) {
       throw std::invalid_argument("time must increase, it does not at sample " + std::to_string(k));

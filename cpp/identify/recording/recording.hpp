@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,12 @@ struct RecordingView {
   std::vector<std::int64_t> gap_after;
   double min_speed = 0.0;              ///< [rad/s or m/s]; what is slower is left out
   std::vector<std::int64_t> doubtful;  ///< first sample of each interval that must not be used
+  /// What an own term, of that name, integrates to from the first sample to each.
+  struct OwnSeries {
+    std::string name;
+    Signal series;
+  };
+  std::vector<OwnSeries> own{};
 
   RecordingView(const Recording& r);  // implicit: a recording is its own view
   RecordingView(Signal time_, Signal position_, Signal velocity_, Signal torque_, Signal sensor_,

@@ -13,7 +13,7 @@ from jointid.cli.values import behind_option, in_joint_file
 
 MODEL_FIELDS = frozenset(
     {"name", "friction", "gravity", "asymmetric", "ripple", "harmonics", "load_friction"}
-    | {"per_recording"}
+    | {"per_recording", "terms"}
 )
 _TABLES = {
     **dict.fromkeys((*MODEL_FIELDS, "torque_offset"), "model"),

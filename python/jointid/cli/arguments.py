@@ -11,6 +11,7 @@ from jointid.base.argument_checks import number_in
 from jointid.base.errors import InputError
 
 if TYPE_CHECKING:
+    from jointid.joint.model import Model
     from jointid.recording.recording import Recording
 
 _MOST_WINDOWS = 1_000_000_000
@@ -49,10 +50,21 @@ def reading_arguments(command: argparse.ArgumentParser) -> None:
         ("--unit", "SIGNAL=UNIT", "unit of a signal, instead of the one in the header"),
         ("--scale", "SIGNAL=FACTOR", "factor from file units to SI"),
         ("--where", "COLUMN=VALUE", "keep only the rows with this value"),
+        ("--extra", "NAME=COLUMN", "keep a column as an extra signal of this name, for --term"),
     ):
         command.add_argument(
             name, action="append", type=pair, default=[], metavar=shown, help=explanation
         )
+    command.add_argument(
+        "--topic",
+        metavar="TOPIC",
+        help="topic of a log of messages (.mcap, .bag, .db3) that is the recording (default: the only one with joints)",
+    )
+    command.add_argument(
+        "--group",
+        metavar="PATH",
+        help="group of an HDF5 or MATLAB 7.3 file that is the recording (default: the only one)",
+    )
     command.add_argument(
         "--drop-copies",
         action="store_true",
@@ -132,8 +144,47 @@ def whole_seed(text: str) -> int:
     return value
 
 
-def load_all(paths: Sequence[Path], arguments: argparse.Namespace) -> list[Recording]:
-    """The recordings of a command, each read with the same --column, --unit and --where."""
+def term_argument(command: argparse.ArgumentParser) -> None:
+    """Add the own terms of a model."""
+    command.add_argument(
+        "--term",
+        action="append",
+        type=pair,
+        default=[],
+        metavar="SIGNAL=KIND",
+        help="an own term: a column (or --extra), and how it enters: viscous, coulomb, known, scaled, inertia, ...; "
+        "viscous@rate+coulomb@rate: its rate's; may be repeated",
+    )
+
+
+def with_terms(model: str | None, arguments: argparse.Namespace) -> Model:
+    """The model of --model, with the own terms of --term added.
+
+    Raises
+    ------
+    InputError
+        A model or terms that cannot be used.
+    """
+    from jointid.joint.model import Model
+
+    stated = Model.of(model)
+    if not arguments.term:
+        return stated
+    return stated.replace(terms={**(stated.terms or {}), **by_name("terms", arguments.term)})
+
+
+def load_all(
+    paths: Sequence[Path],
+    arguments: argparse.Namespace,
+    models: Sequence[Model] = (),
+) -> list[Recording]:
+    """The recordings of a command, each read with the same --column, --unit and --where.
+
+    Parameters
+    ----------
+    models : sequence of Model
+        Their own terms name columns that are read as extra signals, unless --extra says which. Default: none.
+    """
     from jointid.recording.readers.loading import load
 
     columns = {
@@ -145,14 +196,24 @@ def load_all(paths: Sequence[Path], arguments: argparse.Namespace) -> list[Recor
     }
     units = by_name("units", arguments.unit)
     scale = _numbers("scale", arguments.scale)
+    extra: dict[str, str | int] = {
+        name: int(header) if header.isdigit() else header
+        for name, header in by_name("extra", arguments.extra).items()
+    }
+    for model in models:
+        for signal in model.resolved.terms.signals:
+            extra.setdefault(signal, signal)
     return [
         load(
             path,
             columns=columns or None,
             units=units or None,
             scale=scale or None,
+            extra=extra or None,
             where=where or None,
             drop_copies=arguments.drop_copies,
+            topic=arguments.topic,
+            group=arguments.group,
         )
         for path in paths
     ]

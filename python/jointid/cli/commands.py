@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointid.cli.arguments import fixed_values, load_all, refinements
+from jointid.cli.arguments import fixed_values, load_all, refinements, with_terms
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
 from jointid.cli.parser import BAD_USAGE
 from jointid.cli.proof import check, first_motion
@@ -70,13 +70,15 @@ def identify(arguments: argparse.Namespace) -> int:
     }
     options = GaOptions(**budget)
     joint = _joint(arguments)
-    recordings = load_all(arguments.recordings, arguments)
+    model = with_terms(arguments.model, arguments)
+    merged = model if joint is None else model.over(joint.model)
+    recordings = load_all(arguments.recordings, arguments, [merged])
     with Progress(total=options.generations, enabled=not arguments.quiet) as progress:
         estimate = identification.identify(
             recordings,
             joint,
             parameters=changes or None,
-            model=arguments.model,
+            model=model,
             search=Search(
                 arguments.method,
                 ga=options,
@@ -125,16 +127,22 @@ def compare(arguments: argparse.Namespace) -> int:
     from jointid.cli.progress import ComparisonProgress
     from jointid.comparison.comparison import compare_models
     from jointid.identification.search.search import Search
+    from jointid.joint.model import Model
 
     changes = fixed_values(arguments)
     check_outputs(arguments)
     joint = _joint(arguments)
-    recordings = load_all(arguments.recordings, arguments)
+    models = arguments.models
+    if arguments.term:
+        models = [with_terms(text, arguments) for text in models or ("coulomb_viscous", "stribeck")]
+    merged = [Model.of(each) for each in models or (None,)]
+    merged = [each if joint is None else each.over(joint.model) for each in merged]
+    recordings = load_all(arguments.recordings, arguments, merged)
     with ComparisonProgress(enabled=not arguments.quiet) as progress:
         comparison = compare_models(
             recordings,
             joint,
-            models=arguments.models,
+            models=models,
             folds=arguments.folds,
             parameters=changes or None,
             search=Search(arguments.method, seed=arguments.seed, threads=arguments.threads),
@@ -260,6 +268,14 @@ def _facts(recording: Recording) -> dict[str, Any]:
                 "unit": recording.unit(signal),
             }
             for signal in recording.signals
+        }
+        | {
+            name: {
+                "min": float(values.min()),
+                "max": float(values.max()),
+                "unit": recording.unit(name),
+            }
+            for name, values in recording.extra.items()
         },
     }
 

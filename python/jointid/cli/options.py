@@ -9,12 +9,16 @@ _READING = {
     "units": "--unit",
     "scale": "--scale",
     "where": "--where",
+    "topic": "--topic",
+    "group": "--group",
     "drop_copies": "--drop-copies",
+    "extra": "--extra",
 }
 _IDENTIFICATION = {
     **_READING,
     "joint": "--joint",
     "model": "--model",
+    "terms": "--term",
     "method": "--method",
     "residual": "--residual",
     "torque_hold": "--torque-hold",
@@ -52,7 +56,11 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
     "compare": {**_IDENTIFICATION, **_ESTIMATE, "models": "--model", "folds": "--folds"},
     "simulate": {**_SCENARIO, "seed": "--seed", "output": "--output"},
     "sweep": {
-        **{name: option for name, option in _IDENTIFICATION.items() if name != "torque_hold"},
+        **{
+            name: option
+            for name, option in _IDENTIFICATION.items()
+            if name not in ("torque_hold", "terms")
+        },
         **_SCENARIO,
         "simulate": "--simulate",
         "subject": "--simulate",
@@ -103,6 +111,8 @@ PLACEHOLDERS: Mapping[str, str] = {
     "--unit": "UNIT",
     "--scale": "FACTOR",
     "--where": "VALUE",
+    "--extra": "HEADER",
+    "--term": "KIND",
     "--set": "VALUE",
     "--shift": "SECONDS",
     "--gain": "VALUE",

@@ -14,6 +14,7 @@ from jointid.cli.arguments import (
     reading_arguments,
     refinement_arguments,
     several_recordings,
+    term_argument,
     whole,
     whole_seed,
     windows,
@@ -227,6 +228,7 @@ def _identification_arguments(command: argparse.ArgumentParser, *, method: str) 
         help="number of windows (default 400), duration (0.05s) or cumulative",
     )
     refinement_arguments(command)
+    term_argument(command)
     command.add_argument(
         "--set",
         action="append",

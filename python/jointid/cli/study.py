@@ -140,10 +140,12 @@ def sweep(arguments: argparse.Namespace) -> None:
         if getattr(arguments, name) is not None
     } | refinements(arguments)
     subject: Any
+    from jointid.joint.model import Model
+
     if arguments.simulate is not None:
         subject = scenario_of(arguments.simulate, arguments)
     else:
-        subject = load_all(arguments.recordings, arguments)
+        subject = load_all(arguments.recordings, arguments, [Model.of(arguments.model)])
     with (
         _continuation(arguments),
         _workers(arguments.workers) as executor,

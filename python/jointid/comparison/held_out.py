@@ -124,11 +124,4 @@ def folds_by_recording(recordings: Sequence[Recording], count: int) -> tuple[Fol
 def _without(recording: Recording, start: float, stop: float) -> Recording:
     """Return the recording without the samples from start up to, not including, stop."""
     kept = (recording.time < start) | (recording.time >= stop)
-    return Recording(
-        **{signal: getattr(recording, signal)[kept] for signal in recording.signals},
-        kind=recording.kind,
-        torque_hold=recording.torque_hold,
-        velocity_derived=recording.velocity_derived,
-        name=recording.name,
-        metadata=recording.metadata,
-    )
+    return recording.with_signals(rows=kept)

@@ -46,7 +46,8 @@ def model_of(settings: Mapping[str, Any]) -> Model:
     InputError
         A saved model that cannot be.
     """
-    beside = {name: settings[name] for name in FIELDS if name in settings}
+    # "terms" are here the keys of the core's terms, not the model's own ones.
+    beside = {name: settings[name] for name in FIELDS if name in settings and name != "terms"}
     return Model.of(beside).over(Model.parse(settings["model"]))
 
 

@@ -90,12 +90,4 @@ def _with_less(recording: Recording, torque: Array, drift: Array) -> Recording |
             if missed > _LINEAR * np.abs(signals[name]).max():
                 return None
             signals[name] = signals[name] - factor * drift
-    return Recording(
-        **signals,
-        kind=recording.kind,
-        torque_hold=recording.torque_hold,
-        velocity_derived=recording.velocity_derived,
-        name=recording.name,
-        metadata=recording.metadata,
-        truth=recording.truth,
-    )
+    return recording.with_signals(**signals)

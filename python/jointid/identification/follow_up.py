@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from jointid.identification.causes.causes import attributed
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from jointid.estimate.bootstrap import Bootstrap
-    from jointid.estimate.causes import Causes
+    from jointid.estimate.causes import Cause, Causes
     from jointid.estimate.estimate import Estimate
     from jointid.estimate.self_test import SelfTest
     from jointid.identification.search.domain import SearchDomain
@@ -33,8 +33,8 @@ class EstimateSource:
     ----------
     problem : Problem
         As it was fitted.
-    measured : Problem
-        Before a drift was taken away.
+    known : tuple of Cause
+        Causes that were taken away from the data before.
     domain : SearchDomain
     windows : int, float, str, WindowOptions or None
         As given in the call.
@@ -44,7 +44,7 @@ class EstimateSource:
     """
 
     problem: Problem
-    measured: Problem
+    known: tuple[Cause, ...]
     domain: SearchDomain
     windows: Windows
     search: Search
@@ -62,9 +62,10 @@ class EstimateSource:
         return block_bootstrap(self.problem, penalty, self.domain, estimate, n, seed)
 
     def causes(self, estimate: Estimate, signals: Mapping[str, ArrayLike]) -> Causes:
-        """Attribute the misfit to what the model lacks."""
-        penalty = penalty_as_fitted(self.measured, self.windows, self.domain)
-        return attributed(self.measured, penalty, estimate, signals)
+        """Attribute the misfit of what was fitted, behind the causes that were taken away before."""
+        penalty = penalty_as_fitted(self.problem, self.windows, self.domain)
+        found = attributed(self.problem, penalty, estimate, signals)
+        return replace(found, found=(*self.known, *found.found))
 
     def __reduce__(self) -> tuple[Callable[[], None], tuple[()]]:
         """Leave the recordings out of a pickled estimate."""

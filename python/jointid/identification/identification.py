@@ -34,6 +34,7 @@ def identify(
     mask_standstill: bool = True,
     shift: Mapping[str, float] | None = None,
     min_speed: float | None = None,
+    terms: Mapping[str, str] | None = None,
 ) -> Estimate:
     """Identify a joint's friction, and its torque sensor if it has one, from ordinary motion.
 
@@ -82,6 +83,9 @@ def identify(
         Motion slower than this is left out [rad/s or m/s]; 0 leaves out nothing. Default: chosen; 0 unless
         slow motion contradicts the friction that faster motion shows (creep), and 0 for models whose
         friction depends on slow motion, such as "stribeck". The estimate's `slow_motion` tells it.
+    terms : mapping of str to str, optional
+        Own terms: extra signals of the recordings and how they enter, e.g. ``{"q6_rate": "viscous+coulomb",
+        "tau_model": "known"}``; the same as the field `terms` of the model. Default: the model's.
 
     Returns
     -------
@@ -97,6 +101,8 @@ def identify(
     started = time.perf_counter()
     chosen = Search.of(search)
     stated = Model.of(model)
+    if terms is not None:
+        stated = stated.replace(terms=terms)
     merged = stated.over(joint.model) if isinstance(joint, Joint) else stated
     if merged.load_friction is True:
         either = [
@@ -121,7 +127,7 @@ def identify(
     prepared = prepare(
         recordings,
         joint,
-        model=model,
+        model=stated,
         parameters=parameters,
         residual=residual,
         windows=windows,

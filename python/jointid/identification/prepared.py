@@ -36,6 +36,7 @@ from jointid.identification.refinements.sensor_instant import (
 from jointid.identification.refinements.slow_motion import checked_speed
 from jointid.identification.search.domain import SearchDomain, domain_for
 from jointid.identification.search.engine import Outcome
+from jointid.identification.search.own_duplicates import refuse_duplicates
 from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Search
 from jointid.identification.selection.selecting import select_model
@@ -96,6 +97,7 @@ class Prepared:
         estimate = self._inferred(search, outcome, started)
         steady = without_drift(self.problem, self.penalty, estimate)
         fitted = self
+        known: tuple[Cause, ...] = ()
         if steady is not None:
             problem, drift = steady
             penalty = penalty_as_fitted(problem, self.windows, self.domain)
@@ -103,10 +105,10 @@ class Prepared:
             found = run_search(search, other.penalty, other.domain)
             again = other._inferred(search, found, started, (drift,))
             if again.residuals.rms < _STEADIER * estimate.residuals.rms:
-                estimate, fitted = again, other
+                estimate, fitted, known = again, other, (drift,)
         source = EstimateSource(
             problem=fitted.problem,
-            measured=self.problem,
+            known=known,
             domain=self.domain,
             windows=self.windows,
             search=search,
@@ -279,6 +281,7 @@ def prepare(
             problem, penalty, parameters, windows, residual is not None
         )
         domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
+        refuse_duplicates(penalty, domain, problem.choice.model.resolved.terms)
     except InputError as error:
         if error.place == "parameters":  # they are not excited
             raise_if_hardly_moving(runs)

@@ -176,7 +176,11 @@ def _known(source: object, names: tuple[str, ...]) -> dict[str, Any]:
 
 def _listed(values: Mapping[str, Any]) -> dict[str, Any]:
     return {
-        name: list(value) if isinstance(value, tuple) else value
+        name: list(value)
+        if isinstance(value, tuple)
+        else dict(value)
+        if isinstance(value, Mapping)
+        else value
         for name, value in values.items()
         if value is not None
     }

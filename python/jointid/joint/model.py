@@ -5,13 +5,14 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import KW_ONLY, dataclass, fields, replace
+from dataclasses import KW_ONLY, dataclass, field, fields, replace
 from typing import Any, Literal, Self, get_args
 
 from jointid import _core
 from jointid.base.argument_checks import number_in
 from jointid.base.errors import InputError
 from jointid.joint.checks import check_choice, check_flag, finite_number, suggestion
+from jointid.joint.own_terms import OwnTerms
 
 Gravity = Literal["none", "known", "free"]
 Load = Literal["drive", "link"]
@@ -55,6 +56,14 @@ class Model:
     per_recording : collection of str, optional
         Coefficients with a separate value for each of several recordings, e.g. ("torque_offset",).
         Default none.
+    terms : mapping of str to str, optional
+        Own terms: name of an extra signal s → how it enters, several ways joined by ``+``. "viscous": a
+        coefficient times s. "coulomb": times the sign of s. "coupling": times the rate of s. "known": s is a
+        torque. "scaled": the same with a free gain. "inertia": s is an inertia J with the torque J a;
+        "inertia_own": J a + J' v²/2, for J over the joint's own position; "inertia_others": J a + (dJ/dt) v,
+        for J over other joints'; "scaled_inertia": J a with a free gain. "inertia_over" and "torque_over":
+        identified functions of the angle s, or of ``position``, centred in its range. ``@rate`` behind a
+        kind: its rate instead of s. Default none. See docs/own_terms.md.
 
     Raises
     ------
@@ -75,6 +84,7 @@ class Model:
     harmonics: tuple[float, ...] | None = None
     load_friction: bool | Load | None = None
     per_recording: tuple[str, ...] | None = None
+    terms: OwnTerms | Mapping[str, str] | None = None
 
     def __post_init__(self) -> None:
         if self.name is not None:
@@ -90,6 +100,8 @@ class Model:
                 object.__setattr__(self, name, _orders(name, getattr(self, name)))
         if self.per_recording is not None:
             object.__setattr__(self, "per_recording", _coefficients(self.per_recording))
+        if self.terms is not None:
+            object.__setattr__(self, "terms", OwnTerms.of(self.terms))
         if self.gravity in ("known", "free") and _GRAVITY_ORDER in (self.harmonics or ()):
             raise InputError(
                 "order 1 of the joint's angle is the same term as gravity",
@@ -215,6 +227,7 @@ class ResolvedModel:
     harmonics: tuple[float, ...] = ()
     load_friction: bool | Load = False
     per_recording: tuple[str, ...] = ()
+    terms: OwnTerms = field(default_factory=OwnTerms)
 
     def __str__(self) -> str:
         """Return the name and the fields that differ from their defaults, as text that `Model.parse` reads."""
@@ -291,6 +304,8 @@ def _read(key: str, text: str) -> Any:
         )
     if key == "gravity":
         return text
+    if key == "terms":
+        return OwnTerms.parse(text)
     return {"true": True, "false": False}.get(text, _number_or_text("", text))
 
 

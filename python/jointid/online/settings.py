@@ -149,6 +149,13 @@ class Settings:
                 value=chosen.load_friction,
                 remedy="leave it out",
             )
+        if chosen.terms:
+            raise InputError(
+                "samples that arrive on line have no extra signals",
+                argument="terms",
+                value=str(chosen.terms),
+                remedy=Action("call", {"terms": {}}, text="on a recording, identify has them"),
+            )
         if model.per_recording:
             raise InputError(
                 "there is only one recording on line",

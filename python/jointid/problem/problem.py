@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.joint.checks import check_choice
 from jointid.joint.joint import Joint
+from jointid.problem.own_integrals import known_torque, own_series
 from jointid.problem.recordings import output_torque
 from jointid.problem.terms import TermChoice
 from jointid.problem.window_table import WindowTable
@@ -185,6 +186,16 @@ class Problem:
         """The drive's torque of a recording at the output [N·m or N]."""
         return output_torque(self.recordings[number], self.joint)
 
+    def unexplained_torque(self, number: int) -> Array:
+        """The output torque less the known torques of own terms: what the joint by itself needs [N·m or N]."""
+        torque = self.output_torque(number)
+        known = known_torque(self.choice.model.resolved.terms, self.recordings[number])
+        if known is None:
+            return torque
+        if self.hold(number) == "zoh":  # the command is held; what is known changes until the next
+            known = np.append(0.5 * (known[1:] + known[:-1]), known[-1:])
+        return np.asarray(torque - known)
+
     def _in_core(self, number: int) -> _core.Recording:
         recording = self.recordings[number]
         return _core.Recording(
@@ -197,4 +208,5 @@ class Problem:
             gap_after=[gap.index for gap in recording.gaps],
             min_speed=self.min_speed,
             doubtful=list(recording.doubtful),
+            own=own_series(self.choice.model.resolved.terms, recording),
         )

@@ -9,6 +9,7 @@ from jointid.base.errors import InputError
 from jointid.joint.checks import check_choice
 from jointid.joint.joint import Joint
 from jointid.joint.model import Load, Model, ResolvedModel
+from jointid.problem.own_integrals import centred
 from jointid.recording.recording import Recording
 
 _GRAVITY = ("gravity_cos", "gravity_sin")
@@ -132,16 +133,18 @@ def choose_terms(
         (_LOADS.get(str(model.load_friction), "load_friction"),) if model.load_friction else ()
     )
     wanted.update(("torque_offset",) if offset else ())
-    terms = _ordered(wanted, model.ripple, model.harmonics)
+    own = centred(model.terms, recordings)
+    terms = (*_ordered(wanted, model.ripple, model.harmonics), *own.keys_in_core)
     apart = stated.per_recording
     if request.model.per_recording is not None:
         _check_per_recording(request.model.per_recording, terms)
     elif apart is not None:  # the joint's, which other recordings and other terms may use
         known = _coefficients(terms)
         apart = tuple(name for name in apart if name in known)
+    chosen = stated.replace(name=model.name, per_recording=apart if len(recordings) > 1 else None)
     return TermChoice(
         terms=terms,
-        model=stated.replace(name=model.name, per_recording=apart if len(recordings) > 1 else None),
+        model=chosen.replace(terms=own) if own.each else chosen,
         residual=residual,
         sensor=sensor,
         gear_ratio=base.gear_ratio,
@@ -217,6 +220,8 @@ def _ordered(
     for key in sorted(wanted - known):
         raise InputError("the core has no such term", argument="model", value=key)
     for term in _core.terms():
+        if term.own:
+            continue
         if term.family:
             keys += [f"{term.key}_{order:g}" for order in orders[term.key.split("_")[0]]]
         elif term.key in wanted:

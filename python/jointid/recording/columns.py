@@ -123,7 +123,7 @@ def candidates_of(
         ]
     for signal, factor in (scale or {}).items():
         check_signal_name(signal, "scale")
-        _check_scale(table, signal, factor, units or {})
+        check_scale(table, signal, factor, units or {})
         if complete:
             _check_recognised(table, signal, candidates, f"scale.{signal}")
         candidates[signal] = [
@@ -142,7 +142,8 @@ def _check_recognised(
         )
 
 
-def _check_scale(table: Table, signal: str, factor: object, units: Mapping[str, str]) -> None:
+def check_scale(table: Table, signal: str, factor: object, units: Mapping[str, str]) -> None:
+    """Refuse a factor that is no finite number other than 0, or beside a unit."""
     number = isinstance(factor, int | float | np.number) and not isinstance(factor, bool)
     if not number or factor == 0 or not math.isfinite(factor):  # type: ignore[arg-type]
         raise InputError(

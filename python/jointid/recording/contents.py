@@ -1,7 +1,7 @@
 """The contents of a table: the signals of a recording in SI units, of all rows or of some."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,18 +12,14 @@ from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
 from jointid.recording.attributes import check_kind, check_torque_hold
 from jointid.recording.column_lookup import column_index
-from jointid.recording.column_problems import TORQUES
 from jointid.recording.columns import Column
-from jointid.recording.exact_time import exact_time, stamps_note
+from jointid.recording.extra import UNITS_KEY, ExtraColumn, extra_columns
 from jointid.recording.matching import match_columns
-from jointid.recording.plausibility import too_large, unit_of_steps
+from jointid.recording.plausibility import too_large
+from jointid.recording.reading import MOTION, read_values, with_remedy
 from jointid.recording.signals import FloatArray, check_signals
 from jointid.recording.table import Table
 from jointid.recording.truncated import unrecorded
-from jointid.recording.units import UNITS
-
-_NEEDED = ("time", "position", "torque")
-_MOTION = ("velocity", "sensor")  # without them the estimate is another: the user decides
 
 Rows = npt.NDArray[np.intp]
 
@@ -43,6 +39,8 @@ class Contents:
         Attributes of a saved recording, as arguments of `Recording`.
     kind : str
         ``"revolute"`` or ``"prismatic"``.
+    extra : mapping of str to (ExtraColumn, ndarray)
+        Name of an extra signal → its column, and the values in the column's own unit. Default: none.
     left_out : sequence of mapping of str to str
         Columns that a header assigns to a signal and that are not read, as in `Match`. Default: none.
     notes : mapping of str to object
@@ -54,6 +52,7 @@ class Contents:
     values: Mapping[str, FloatArray]
     saved: Mapping[str, Any]
     kind: str
+    extra: Mapping[str, tuple[ExtraColumn, FloatArray]] = field(default_factory=dict)
     left_out: Sequence[Mapping[str, str]] = ()
     notes: Mapping[str, Any] = field(default_factory=dict)
 
@@ -84,14 +83,22 @@ class Contents:
             )
         }
 
+        extra = {
+            name: column.to_si(values if rows is None else values[rows])
+            for name, (column, values) in self.extra.items()
+        }
+
         def place(signal: str, index: int) -> str:
             row = index if rows is None else int(rows[index])
-            return self.table.place(self.found[signal].index, row)
+            own = signal.removeprefix("extra.")
+            column = self.found[signal] if own == signal else self.extra[own][0]
+            return self.table.place(column.index, row)
 
+        every = signals | {f"extra.{name}": values for name, values in extra.items()}
         try:
-            check_signals(signals, place=place, source=self.table.source, time_remedy=time_remedy)
+            check_signals(every, place=place, source=self.table.source, time_remedy=time_remedy)
         except InputError as error:
-            if error.argument in _MOTION and self.table.saved is None:
+            if error.argument in MOTION and self.table.saved is None:
                 raise with_remedy(error, error.argument) from None
             raise
         if self.table.saved is None and (large := too_large(signals)) is not None:
@@ -104,8 +111,13 @@ class Contents:
                 remedy="leave such rows out",
             )
         fields = {**self.saved, **signals, "kind": self.kind}
+        if extra:
+            fields["extra"] = extra
         if self.table.saved is None:
             fields["metadata"] = self._metadata()
+        units = {name: column.shown for name, (column, _) in self.extra.items() if column.shown}
+        if units and isinstance(fields.get("metadata", {}), Mapping):
+            fields["metadata"] = {**fields.get("metadata", {}), UNITS_KEY: units}
         return fields
 
     def rows_of(self, by: str | int) -> dict[str, Rows]:
@@ -173,7 +185,9 @@ class Contents:
         ]
         scaled = {signal: column.scale for signal, column in self.found.items() if column.scale}
         left_out = [dict(each) for each in self.left_out]
-        metadata = {"assumed_units": assumed, "scale": scaled, "left_out": left_out, **self.notes}
+        metadata = {"assumed_units": assumed, "scale": scaled, "left_out": left_out}
+        metadata |= getattr(self.table, "notes", {})  # how a log of messages was read
+        metadata |= self.notes
         return {name: value for name, value in metadata.items() if value}
 
 
@@ -183,6 +197,7 @@ def read_contents(
     columns: Mapping[str, str | int | None] | None = None,
     units: Mapping[str, str] | None = None,
     scale: Mapping[str, float] | None = None,
+    extra: Collection[str] | Mapping[str, str | int] | None = None,
     kind: str | None = None,
     torque_hold: str | None = None,
 ) -> Contents:
@@ -206,13 +221,29 @@ def read_contents(
             place=table.source,
             remedy="leave it out",
         )
-    match = match_columns(table, columns=columns, units=units, scale=scale, kind=kind or saved_kind)
-    found, left_out = match.found, match.left_out
+    for name, given, example in (
+        ("units", units, "{'position': 'deg'}"),
+        ("scale", scale, "{'position': 0.001}"),
+    ):
+        if given is not None:
+            require_mapping(name, given, example)
+    own = extra_columns(table, extra, units, scale)
+    match = match_columns(
+        table,
+        columns=columns,
+        units={name: unit for name, unit in units.items() if name not in own} if units else units,
+        scale={name: each for name, each in scale.items() if name not in own} if scale else scale,
+        kind=kind or saved_kind,
+    )
+    found = match.found
+    read = {table.headers[column.index] for column in own.values()}
+    left_out = [each for each in match.left_out if each["column"] not in read]
     notes: dict[str, Any] = {}
-    values = _values(table, found, left_out, notes)
+    values = read_values(table, found, left_out, notes)
     for missing in unrecorded(saved, values):
         found = {signal: column for signal, column in found.items() if signal != missing}
         del values[missing]
+    arrays = table.numbers([column.index for column in own.values()]) if own else []
     if columns and "velocity" in columns:
         saved.pop("velocity_derived", None)
     if torque_hold is not None:
@@ -222,73 +253,8 @@ def read_contents(
         found=found,
         values=values,
         saved=saved,
+        extra={name: (own[name], values) for name, values in zip(own, arrays, strict=True)},
         kind=match.kind,
         left_out=left_out,
         notes=notes,
-    )
-
-
-def _values(
-    table: Table, found: dict[str, Column], left_out: list[dict[str, str]], notes: dict[str, Any]
-) -> dict[str, FloatArray]:
-    """Read the columns; `found`, `left_out` and `notes` are brought up to date."""
-    values: dict[str, FloatArray] = {}
-    if table.saved is None and found["time"].scale is None:
-        stamps = exact_time(table, found["time"])
-        if stamps is not None:
-            values["time"] = stamps.seconds
-            found["time"] = replace(found["time"], unit=UNITS["s"], unknown="")
-            notes |= stamps_note(stamps)
-    numbers = {signal: column.index for signal, column in found.items() if signal not in values}
-    try:
-        values |= dict(zip(numbers, table.numbers(list(numbers.values())), strict=True))
-    except InputError:
-        values |= _readable(table, found, numbers, left_out)
-    time = found["time"]
-    if table.saved is None and time.unit is None and time.scale is None:
-        unit = unit_of_steps(
-            values["time"], f"{table.header_place}, column {table.headers[time.index]!r}"
-        )
-        if unit != "s":
-            found["time"] = replace(time, unit=UNITS[unit])
-            notes["recognised_units"] = {"time": unit}
-    return {signal: values[signal] for signal in found}
-
-
-def _readable(
-    table: Table,
-    found: dict[str, Column],
-    numbers: Mapping[str, int],
-    left_out: list[dict[str, str]],
-) -> dict[str, FloatArray]:
-    """Read columns of which one holds no numbers: one that is not needed is left out."""
-    for signal, index in numbers.items():
-        column = found[signal]
-        if table.saved is not None or column.chosen or signal in _NEEDED:
-            continue
-        try:
-            table.numbers([index])
-        except InputError as error:
-            if signal in _MOTION or (signal in TORQUES and not _other_torque(signal, found)):
-                raise with_remedy(error, signal) from None
-            left_out.append(
-                {"column": table.headers[index], "signal": signal, "reason": error.reason}
-            )
-            del found[signal]
-    left = {signal: index for signal, index in numbers.items() if signal in found}
-    return dict(zip(left, table.numbers(list(left.values())), strict=True))
-
-
-def _other_torque(signal: str, found: Mapping[str, Column]) -> bool:
-    return any(other in found for other in TORQUES if other != signal)
-
-
-def with_remedy(error: InputError, signal: str) -> InputError:
-    """Return the error with the advice to leave the signal out."""
-    return InputError(
-        error.reason,
-        argument=error.argument,
-        value=error.value,
-        place=error.place,
-        remedy=(*error.remedy, Action("call", {"columns": {signal: None}}, function="load")),
     )

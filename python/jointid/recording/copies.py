@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.errors import InputError
+from jointid.recording.extra import rows_of_extra
 from jointid.recording.signals import SHORTEST, SIGNALS, FloatArray
 
 _FINE = 30.0  # a usual step in smallest steps: an equal position is then no slow motion
@@ -69,6 +70,7 @@ def without_copies(fields: Mapping[str, Any]) -> dict[str, Any]:
             continue
         held = name in _COMMANDED and fields.get("torque_hold") == "zoh"
         result[name] = _means(time, values, kept) if held else values[kept]
+    result["extra"] = rows_of_extra(fields.get("extra") or {}, kept)
     even, _ = _evened(result["time"], result["position"], resting[kept])
     result["time"] = even
     if fields.get("velocity_derived"):

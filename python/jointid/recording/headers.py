@@ -14,7 +14,7 @@ ALIASES: dict[str, str] = {
         "time": "time t",
         "position": "position pos angle q",
         "velocity": "velocity vel speed",
-        "torque": "torque tau force motor_force motor_torque_output output_torque",
+        "torque": "torque tau effort force motor_force motor_torque_output output_torque",
         "sensor": "sensor sensor_raw torque_sensor",
         "reference": "reference position_ref position_reference goal_position",
         "link_position": "link_position",

@@ -1,18 +1,20 @@
 """A recording: the signals of one joint over time, measured or simulated."""
 
 import functools
-import hashlib
 import os
-from collections.abc import Mapping, Sequence
-from typing import Any, Literal, NoReturn, Self
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any, Literal, Self
 
 import numpy as np
 import numpy.typing as npt
 
 from jointid.base.errors import InputError
 from jointid.recording.attributes import check_attributes, json_mapping
+from jointid.recording.changes import Changes
 from jointid.recording.derived import DerivedVelocity, derived_velocity
+from jointid.recording.extra import checked_extra, rows_of_extra, unit_of_extra
 from jointid.recording.gaps import Gap, find_gaps
+from jointid.recording.identity import fingerprint_of, line_of, same_fields
 from jointid.recording.resampling import resampled
 from jointid.recording.signals import (
     SIGNALS,
@@ -28,7 +30,7 @@ Kind = Literal["revolute", "prismatic"]
 TorqueHold = Literal["zoh", "linear"]
 
 
-class Recording:
+class Recording(Changes):
     """The signals of one joint over time, in SI units, read-only.
 
     Values are on the output (link) side of the gear unless the name says otherwise. For a
@@ -63,6 +65,9 @@ class Recording:
     late : array_like, shape (n,), optional
         Cycles of a session that have no sample between the row before and this one, and half a cycle for a
         command that was not confirmed; identification leaves such intervals out. Default: 0 throughout.
+    extra : mapping of str to array_like, each of shape (n,), optional
+        Further signals by names of your own, e.g. another joint's rate or the torque of a model;
+        ``Model.terms`` says how they enter. Linear between samples. Default: none.
     kind : {"revolute", "prismatic"}
         Default ``"revolute"``.
     torque_hold : {"zoh", "linear"}, optional
@@ -94,6 +99,7 @@ class Recording:
     motor_torque: FloatArray | None
     current: FloatArray | None
     late: FloatArray | None
+    extra: Mapping[str, FloatArray]
     kind: Kind
     torque_hold: TorqueHold | None
     velocity_derived: bool
@@ -115,6 +121,7 @@ class Recording:
         motor_torque: npt.ArrayLike | None = None,
         current: npt.ArrayLike | None = None,
         late: npt.ArrayLike | None = None,
+        extra: Mapping[str, npt.ArrayLike] | None = None,
         kind: str = "revolute",
         torque_hold: str | None = None,
         velocity_derived: bool = False,
@@ -134,9 +141,10 @@ class Recording:
             for signal, values in arguments.items()
             if values is not None
         }
-        check_signals(arrays)
+        extras = checked_extra(extra)
+        check_signals(arrays | {f"extra.{name}": values for name, values in extras.items()})
         # Read-only: attributes are set only here, without __setattr__.
-        vars(self).update(dict.fromkeys(SIGNALS), **arrays)
+        vars(self).update(dict.fromkeys(SIGNALS), **arrays, extra=extras)
         vars(self).update(
             kind=kind,
             torque_hold=torque_hold,
@@ -156,6 +164,7 @@ class Recording:
         columns: Mapping[str, str | int | None] | None = None,
         units: Mapping[str, str] | None = None,
         scale: Mapping[str, float] | None = None,
+        extra: Collection[str] | Mapping[str, str | int] | None = None,
         kind: str | None = None,
         torque_hold: str | None = None,
     ) -> Self:
@@ -165,7 +174,7 @@ class Recording:
         ----------
         df : DataFrame
             Anything with `columns` and `df[column]`; headers are read as `load` reads a file's.
-        columns, units, scale, kind, torque_hold
+        columns, units, scale, extra, kind, torque_hold
             As in `load`.
 
         Raises
@@ -181,6 +190,7 @@ class Recording:
             columns=columns,
             units=units,
             scale=scale,
+            extra=extra,
             kind=kind,
             torque_hold=torque_hold,
         )
@@ -219,15 +229,13 @@ class Recording:
 
     @functools.cached_property
     def fingerprint(self) -> str:
-        """First 16 hexadecimal digits of the SHA-256 hash of the signals' names and bytes."""
-        digest = hashlib.sha256()
-        for name in self.signals:
-            digest.update(f"{name}:{len(self)};".encode())
-            digest.update(np.ascontiguousarray(getattr(self, name), dtype="<f8").data)
-        return digest.hexdigest()[:16]
+        """First 16 hexadecimal digits of the SHA-256 hash of the signals' names and bytes, extra ones too."""
+        return fingerprint_of(self)
 
     def unit(self, signal: str) -> str:
-        """Return the unit of a signal, e.g. ``"rad/s"``, ``"N·m"``; ``"1"`` for the sensor."""
+        """Return the unit of a signal, e.g. ``"rad/s"``; ``"1"`` for the sensor, ``""`` for an extra one of none."""
+        if signal in self.extra:
+            return unit_of_extra(self.metadata, signal)
         check_signal_name(signal, "signal")
         return shown_unit(signal, self.kind)
 
@@ -279,12 +287,6 @@ class Recording:
         return tuple(
             self._part(part, name=f"{self.name} {number}/{len(slices)}".lstrip())
             for number, part in enumerate(slices, start=1)
-        )
-
-    def with_velocity(self, velocity: npt.ArrayLike | None = None) -> Self:
-        """Return the recording with another velocity [rad/s], which counts as derived; default: derive it."""
-        return type(self)(
-            **{**self._fields(), "velocity": velocity, "velocity_derived": velocity is not None}
         )
 
     def resample(self, *, period: float | None = None, rate: float | None = None) -> Self:
@@ -347,33 +349,13 @@ class Recording:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Recording):
             return NotImplemented
-        mine, theirs = self._fields(), other._fields()
-        return self.signals == other.signals and all(
-            # Bytes, not values: -0.0 is not 0.0 here.
-            mine[name].tobytes() == theirs[name].tobytes()
-            if name in self.signals
-            else mine[name] == theirs[name]
-            for name in mine
-        )
+        return same_fields(self._fields(), other._fields())
 
     def __hash__(self) -> int:
         return hash(self.fingerprint)
 
     def __repr__(self) -> str:
-        named = f" {self.name!r}" if self.name else ""
-        derived = "velocity (derived)" if self.velocity_derived else "velocity"
-        shown = [derived if name == "velocity" else name for name in self.signals]
-        gaps = f", {len(self.gaps)} gap{'s' * (len(self.gaps) > 1)}" if self.gaps else ""
-        return (
-            f"<Recording{named}: {self.kind}, {len(self)} samples over {self.duration:.6g} s, "
-            f"period {self.sample_period:.6g} s{gaps}; {', '.join(shown)}>"
-        )
-
-    def __setattr__(self, name: str, value: object) -> NoReturn:
-        raise AttributeError(f"a recording is read-only, '{name}' cannot be set")
-
-    def __delattr__(self, name: str) -> NoReturn:
-        raise AttributeError(f"a recording is read-only, '{name}' cannot be deleted")
+        return line_of(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
         # By the constructor: unpickled arrays are writable again.
@@ -382,12 +364,14 @@ class Recording:
     def _part(self, kept: slice, **changes: Any) -> Self:
         fields = self._fields()
         fields.update({signal: fields[signal][kept] for signal in self.signals}, **changes)
+        fields["extra"] = rows_of_extra(self.extra, kept)
         return type(self)(**fields)
 
     def _fields(self) -> dict[str, Any]:
         """Return the arguments that build this recording again."""
         fields = {name: getattr(self, name) for name in (*SIGNALS, "kind", "torque_hold", "name")}
         return fields | {
+            "extra": dict(self.extra),
             "velocity_derived": self.velocity_derived,
             "metadata": dict(self.metadata),
             "truth": None if self.truth is None else dict(self.truth),

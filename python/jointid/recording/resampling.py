@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,10 +18,8 @@ _MOST = 50_000_000  # samples: more come from a wrong unit
 _ROUNDING = 1e-6  # periods by which the last sample may miss the clock and still be included
 
 
-def resampled(
-    recording: "Recording", period: float | None, rate: float | None
-) -> dict[str, FloatArray]:
-    """Return the signals on a uniform clock within each gap-free stretch; see `Recording.resample`.
+def resampled(recording: "Recording", period: float | None, rate: float | None) -> dict[str, Any]:
+    """Return all signals on a uniform clock within each gap-free stretch; see `Recording.resample`.
 
     Raises
     ------
@@ -46,18 +44,22 @@ def resampled(
             argument=argument,
         )
     _check_gaps(recording, time, step, argument)
-    signals = {"time": time}
-    for name in recording.signals[1:]:
-        values = getattr(recording, name)
-        held = recording.torque_hold == "zoh" and name in _HELD
+
+    def taken(values: FloatArray, held: bool) -> FloatArray:
         take = _held if held else np.interp
         with np.errstate(all="ignore"):  # an overflow is refused later, by signal
-            signals[name] = np.concatenate(
+            return np.concatenate(
                 [
                     take(clock, recording.time[stretch], values[stretch])
                     for clock, stretch in zip(clocks, stretches, strict=True)
                 ]
             )
+
+    signals: dict[str, Any] = {"time": time}
+    for name in recording.signals[1:]:
+        held = recording.torque_hold == "zoh" and name in _HELD
+        signals[name] = taken(getattr(recording, name), held)
+    signals["extra"] = {name: taken(values, False) for name, values in recording.extra.items()}
     return signals
 
 

@@ -13,6 +13,7 @@ from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.file_endings import ending_of
 from jointid.base.files import write_whole
+from jointid.recording.extra import PREFIX
 from jointid.recording.signals import KINDS, header_unit
 
 if TYPE_CHECKING:
@@ -43,7 +44,9 @@ def _attributes(recording: "Recording") -> str:
 def _csv(recording: "Recording") -> bytes:
     names = recording.signals
     headers = [f"{name}_{header_unit(name, recording.kind)}" for name in names]
+    headers += [PREFIX + name for name in recording.extra]
     columns = [getattr(recording, name).tolist() for name in names]
+    columns += [values.tolist() for values in recording.extra.values()]
     rows = (",".join(map(repr, row)) for row in zip(*columns, strict=True))
     lines = [CSV_MARK + _attributes(recording), ",".join(headers), *rows, ""]
     return "\n".join(lines).encode("ascii")
@@ -51,6 +54,7 @@ def _csv(recording: "Recording") -> bytes:
 
 def _npz(recording: "Recording") -> bytes:
     arrays = {name: getattr(recording, name) for name in recording.signals}
+    arrays |= {PREFIX + name: values for name, values in recording.extra.items()}
     arrays[NPZ_MEMBER] = np.array(_attributes(recording))
     stream = io.BytesIO()
     np.savez_compressed(stream, allow_pickle=False, **arrays)
@@ -104,4 +108,4 @@ def saved_attributes(text: str, place: str) -> dict[str, object]:
         raise InputError(
             f"{' or '.join(KINDS)} is expected", argument="kind", value=kind, place=place
         )
-    return {key: attributes[key] for key in _ATTRIBUTES if key in attributes}
+    return {key: attributes[key] for key in (*_ATTRIBUTES, "robot") if key in attributes}

@@ -57,7 +57,7 @@ def checked_shift(shift: object) -> dict[str, float]:
 
 
 def shifted(recording: Recording, delays: Mapping[str, float]) -> Recording:
-    """Return a recording whose late signals are moved to the position's clock.
+    """Return a recording whose late signals are moved to the position's clock; extra signals are on it already.
 
     A signal is interpolated linearly between its samples, which for a held torque is the mean over the
     interval. The samples at the edges of a stretch, where a moved signal is not known, are left out.
@@ -76,7 +76,6 @@ def shifted(recording: Recording, delays: Mapping[str, float]) -> Recording:
     """
     if not delays:
         return recording
-    signals = {name: getattr(recording, name) for name in recording.signals}
     for name in delays:
         _require(recording, name)
     time = recording.time
@@ -92,19 +91,12 @@ def shifted(recording: Recording, delays: Mapping[str, float]) -> Recording:
         raise InputError(
             "the recording is shorter than this delay", argument="shift", value=dict(delays)
         )
+    moved = {}
     for name, delay in delays.items():
         for signal in _DRIVE if name == "torque" else (name,):
-            if signal in signals:
-                signals[signal] = np.interp(time + delay, time, signals[signal])
-    return Recording(
-        **{name: np.array(values[kept]) for name, values in signals.items()},
-        kind=recording.kind,
-        torque_hold=recording.torque_hold,
-        velocity_derived=recording.velocity_derived,
-        name=recording.name,
-        metadata=recording.metadata,
-        truth=recording.truth,
-    )
+            if signal in recording.signals:
+                moved[signal] = np.interp(time + delay, time, getattr(recording, signal))
+    return recording.with_signals(rows=kept, **moved)
 
 
 def _require(recording: Recording, name: str) -> None:

@@ -47,6 +47,8 @@ _SI = {
     "temperature": ("°C", "degC"),
     "current": ("A", "A"),
     "cycles": ("1", "cycles"),
+    "inertia": ("kg·m²", "kgm2"),
+    "voltage": ("V", "V"),
 }
 
 
@@ -61,6 +63,11 @@ def dimensions(signal: str, kind: str | None) -> tuple[str, ...]:
 def shown_unit(signal: str, kind: str) -> str:
     """Return a signal's SI unit for texts, e.g. ``"N·m"``."""
     return _SI[dimensions(signal, kind)[0]][0]
+
+
+def shown_dimension(dimension: str) -> str:
+    """Return the SI unit of a dimension for texts, e.g. ``"N·m"``; empty for an unknown one."""
+    return _SI.get(dimension, ("", ""))[0]
 
 
 def header_unit(signal: str, kind: str) -> str:

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jointid.base.errors import InputError
+from jointid.recording.extra import rows_of_extra
 from jointid.recording.recording import Recording
 from jointid.recording.signals import FloatArray, signal_array
 
@@ -86,6 +87,7 @@ class SimulatedRecording(Recording):
     def _part(self, kept: slice, **changes: Any) -> Self:
         fields = self._fields()
         fields.update({signal: fields[signal][kept] for signal in self.signals}, **changes)
+        fields["extra"] = rows_of_extra(self.extra, kept)
         signals = {name: values[kept] for name, values in self.truth.signals.items()}
         return type(self)(**fields, true_signals=signals)
 

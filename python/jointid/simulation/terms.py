@@ -9,7 +9,13 @@ from jointid.base.errors import InputError
 from jointid.joint.joint import Joint
 
 # Fields of a model that switch terms on, and the value that switches them off.
-_OFF: dict[str, Any] = {"gravity": "none", "load_friction": False, "ripple": (), "harmonics": ()}
+_OFF: dict[str, Any] = {
+    "gravity": "none",
+    "load_friction": False,
+    "ripple": (),
+    "harmonics": (),
+    "terms": {},
+}
 
 
 def terms_of(joint: Joint) -> tuple[_core.Term, ...]:

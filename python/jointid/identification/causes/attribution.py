@@ -57,7 +57,9 @@ class Attributed:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Score:
+class Score:
+    """How much some columns take from the misfit, out of sample."""
+
     total: float  # mean logarithm of the reduction of the misfit, over the scales
     share: float
     factor: int
@@ -75,14 +77,14 @@ def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
     base, reached = list(range(count)), np.zeros(count)
     if _of_the_limit(fit, matrix[:, base], matrix[:, -1]):
         return ()
-    scaled = _at_scales(fit, matrix)
+    scaled = at_scales(fit, matrix)
     whole = {factor: folds.misfit(base).sum() for factor, folds in scaled}
     found: list[Attributed] = []
     taken: set[str] = set()
     slow_event = False
     while len(found) < _MOST:
         scores = {
-            index: _score(scaled[:1] if each.finest else scaled, base, places[index], whole)
+            index: score_of(scaled[:1] if each.finest else scaled, base, places[index], whole)
             for index, each in enumerate(tried)
             if _family(each) not in taken
         }
@@ -93,7 +95,7 @@ def attribute(fit: Fitted, tried: list[Candidate]) -> tuple[Attributed, ...]:
             taken.add("disturbance")
             slow_event = event.slow
             matrix = np.where(event.rows[:, None], 0.0, matrix)
-            scaled = _at_scales(fit, matrix)
+            scaled = at_scales(fit, matrix)
             found.append(_of_event(fit, matrix, base, event, reached))
             reached = reached + found[-1].shifts
             continue
@@ -176,7 +178,8 @@ def _family(candidate: Candidate) -> str:
     return candidate.family or candidate.name
 
 
-def _at_scales(fit: Fitted, matrix: Array) -> list[tuple[int, Folds]]:
+def at_scales(fit: Fitted, matrix: Array) -> list[tuple[int, Folds]]:
+    """Return the folds of columns and residual, its last column, for sums of 1, 4, 16 and 64 windows."""
     scaled = []
     for factor in SCALES:
         rows, _ = summed(matrix, fit.run, factor)
@@ -186,9 +189,20 @@ def _at_scales(fit: Fitted, matrix: Array) -> list[tuple[int, Folds]]:
     return scaled
 
 
-def _score(
+def score_of(
     scaled: list[tuple[int, Folds]], base: list[int], columns: list[int], whole: dict[int, float]
-) -> _Score:
+) -> Score:
+    """Return what columns explain beyond others, at the scale where it is most.
+
+    Parameters
+    ----------
+    scaled : list
+        As `at_scales` returns it.
+    base, columns : list of int
+        Columns that are fitted anyway, and those in question.
+    whole : dict
+        Scale → misfit before any cause was found.
+    """
     total, best, at, sure = 0.0, 0.0, 1, False
     for factor, folds in scaled:
         before, after = folds.misfit(base), folds.misfit([*base, *columns])
@@ -198,7 +212,7 @@ def _score(
             best, at = 1.0 - ratio, factor
         enough = float((before - after).sum()) > _SHARE_OF_ALL * whole.get(factor, np.inf)
         sure |= enough and 1.0 - ratio > _SHARE and _steady(before, after)
-    return _Score(float(total) / max(1, len(scaled)), best, at, sure)
+    return Score(float(total) / max(1, len(scaled)), best, at, sure)
 
 
 def _steady(before: Array, after: Array) -> bool:
@@ -208,22 +222,26 @@ def _steady(before: Array, after: Array) -> bool:
     misfit. A cause at reversals is silent in the blocks without one: the loud blocks must then fall
     together.
     """
-    floor = 1e-12 * before.sum()
-    ratios = np.log((before + floor) / (after + floor))
-    differences = before - after
-    if max(_steadiness(ratios), _steadiness(differences)) > _SURE:
+    if steadiness(before, after) > _SURE:
         return True
     loud = before > 0.2 * before.mean()
     half = after.sum() < 0.5 * before.sum()
     return bool(half and loud.sum() >= _FEWEST and np.mean(after[loud] < 0.7 * before[loud]) > 0.8)
 
 
-def _steadiness(values: Array) -> float:
+def steadiness(before: Array, after: Array) -> float:
+    """Return how many errors the mean fall of the blocks' misfit is from none; the larger of two ways to count."""
+    floor = 1e-12 * before.sum()
+    ratios = np.log((before + floor) / (after + floor))
+    return max(_errors_from_none(ratios), _errors_from_none(before - after))
+
+
+def _errors_from_none(values: Array) -> float:
     error = float(values.std(ddof=1)) / np.sqrt(len(values))
     return float(values.mean() / max(error, 1e-300))
 
 
-def _parsimonious(scores: dict[int, _Score], tried: list[Candidate]) -> int:
+def _parsimonious(scores: dict[int, Score], tried: list[Candidate]) -> int:
     """The candidate with the fewest columns among those as good as the best."""
     top = max(score.total for score in scores.values())
     near = [index for index, score in scores.items() if score.total > top - np.log(_ALIKE)]
@@ -236,7 +254,7 @@ def _attributed(
     base: list[int],
     tried: list[Candidate],
     winner: int,
-    scores: dict[int, _Score],
+    scores: dict[int, Score],
     reached: Array,
 ) -> Attributed:
     """The winner's coefficients, and the shifts of the parameters with all causes so far in the model."""

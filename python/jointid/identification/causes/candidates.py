@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.identification.causes.fitted import Fitted
+from jointid.identification.causes.loads import load_friction_of_sensor, load_frictions_of_motion
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -95,20 +96,13 @@ def _load_friction(fit: Fitted) -> Iterator[Candidate]:
     """With the load from the sensor, or from the model's gravity and inertia; never from the drive's torque."""
     if "load_friction" in fit.names:
         return
-    turned = fit.integral(lambda _, run: np.sign(run.velocity)) / fit.duration
-    for names in (
-        ("sensor_gain", "sensor_offset"),
-        ("gravity_cos", "gravity_sin"),
-        ("gravity_cos", "gravity_sin", "torque_offset"),
-        ("gravity_cos", "gravity_sin", "inertia"),
-        ("inertia",),
-    ):
-        if set(names) <= set(fit.names) and ("sensor_gain" in fit.names) == (
-            "sensor_gain" in names
-        ):
-            load = sum(fit.value(name) * fit.columns[:, fit.names.index(name)] for name in names)
-            columns = np.asarray(np.abs(load) * turned)[:, None]
-            yield Candidate(name="load_friction", columns=columns)
+    if "sensor_gain" in fit.names:
+        load = load_friction_of_sensor(fit)
+        if load is not None:
+            yield Candidate(name="load_friction", columns=load[:, None])
+        return
+    for load in load_frictions_of_motion(fit):
+        yield Candidate(name="load_friction", columns=load[:, None])
 
 
 def _slow(fit: Fitted) -> Iterator[Candidate]:

@@ -17,6 +17,7 @@ from jointid.identification.search.domain import SearchDomain
 from jointid.joint.joint import Joint
 from jointid.joint.parameters import Parameter
 from jointid.problem.inner_products import inner
+from jointid.problem.own_integrals import unit_of
 from jointid.problem.problem import Problem
 from jointid.problem.window_table import WindowTable, r_squared, relative_residual
 
@@ -118,6 +119,7 @@ def parameters_of(
     errors = dict(zip(freedom.indices, spread.stderr.tolist(), strict=True))
     factors = {i: quantile(0.975, f) for i, f in zip(freedom.indices, spread.freedom, strict=True)}
     prismatic = problem.recordings[0].kind == "prismatic"
+    own = problem.choice.model.resolved.terms
     result = {}
     for name, described in _terms_and_shapes(penalty).items():
         i = domain.names.index(name)
@@ -128,7 +130,8 @@ def parameters_of(
         result[name] = ParameterEstimate(
             name=name,
             meaning=described.meaning,
-            unit=described.unit_prismatic if prismatic else described.unit,
+            unit=unit_of(described.name, own, problem.recordings[0])
+            or (described.unit_prismatic if prismatic else described.unit),
             value=value,
             stderr=error,
             interval=None if half is None else (value - half, value + half),

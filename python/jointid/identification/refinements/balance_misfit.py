@@ -69,9 +69,4 @@ def _rows_of(recording: Recording, other: Recording) -> Recording:
     kept = np.searchsorted(recording.time, other.time)
     if len(kept) == len(recording):
         return recording
-    return Recording(
-        **{name: getattr(recording, name)[kept] for name in recording.signals},
-        kind=recording.kind,
-        torque_hold=recording.torque_hold,
-        velocity_derived=recording.velocity_derived,
-    )
+    return recording.with_signals(rows=kept)

@@ -174,14 +174,4 @@ def _with_step(problem: Problem, number: int, step: float) -> Recording:
     used = np.append(usable, 0) | np.append(0, usable)
     change = np.diff(torque, prepend=torque[0]) * (used > 0)
     change[[gap.index + 1 for gap in recording.gaps]] = 0.0
-    signals = {name: getattr(recording, name) for name in recording.signals}
-    signals["sensor"] = signals["sensor"] + step * change
-    return Recording(
-        **signals,
-        kind=recording.kind,
-        torque_hold=recording.torque_hold,
-        velocity_derived=recording.velocity_derived,
-        name=recording.name,
-        metadata=recording.metadata,
-        truth=recording.truth,
-    )
+    return recording.with_signals(sensor=recording.sensor + step * change)

@@ -115,7 +115,7 @@ def _piece(problem: Problem, number: int, first: int, last: int) -> Piece:
     time = recording.time[cut]
     grid = np.linspace(time[0], time[-1], len(time))
     uneven = float(np.abs(grid - time).max()) > _UNEVEN * recording.sample_period
-    torque = problem.output_torque(number)
+    torque = problem.unexplained_torque(number)
 
     def even(signal: Array) -> Array:
         return np.interp(grid, time, signal[cut]) if uneven else signal[cut]

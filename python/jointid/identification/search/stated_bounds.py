@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from jointid.base.errors import InputError
 from jointid.joint.checks import check_mapping
 from jointid.joint.joint import Joint
+from jointid.joint.own_terms import is_fixed
 from jointid.joint.parameters import Parameter, merge
 
 
@@ -48,7 +49,8 @@ def parameter_bounds(
     """
     if changes is not None:
         check_mapping("", "parameters", changes)
-    table = merge(known_values(joint), joint.parameters if joint is not None else {})
+    gains = {n: Parameter(name=n, value=1.0, vary=False) for n in names if is_fixed(n)}
+    table = merge(gains | known_values(joint), joint.parameters if joint is not None else {})
     table = merge(
         table, {name: _freed(table, name, entry) for name, entry in (changes or {}).items()}
     )

@@ -2,20 +2,24 @@
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.file_endings import ending_of
+from jointid.recording.attributes import check_kind
 from jointid.recording.column_lookup import column_index
 from jointid.recording.contents import read_contents
 from jointid.recording.copies import without_copies
+from jointid.recording.readers.reader import Reader
 from jointid.recording.readers.registry import endings, reader_of
 from jointid.recording.recording import Recording
 from jointid.recording.runs import one_run
 from jointid.recording.table import Table
+from jointid.recording.wide.one_joint import OneJoint, one_joint
+from jointid.recording.wide.sides import at_joint, checked_ratio
 
 _SURROGATE = re.compile("[\ud800-\udfff]")
 
@@ -23,14 +27,19 @@ _SURROGATE = re.compile("[\ud800-\udfff]")
 def load(
     path: str | os.PathLike[str],
     *,
+    joint: str | int | None = None,
     columns: Mapping[str, str | int | None] | None = None,
     units: Mapping[str, str] | None = None,
     scale: Mapping[str, float] | None = None,
+    extra: Collection[str] | Mapping[str, str | int] | None = None,
+    gear_ratio: float | None = None,
     where: Mapping[str, float | str] | None = None,
     kind: str | None = None,
     torque_hold: str | None = None,
     drop_copies: bool = False,
     name: str | None = None,
+    topic: str | None = None,
+    group: str | None = None,
 ) -> Recording:
     """Return the recording that a file holds.
 
@@ -45,12 +54,20 @@ def load(
     ----------
     path : path-like
         A ``.csv``, ``.csv.gz`` or ``.npz`` file, from any program or from `Recording.save`; a
-        MATLAB ``.mat`` file up to version 7 (vectors, also in a struct, by their names); a
-        ``.parquet`` file (needs pyarrow). The cells of a text are separated by commas, semicolons
+        MATLAB ``.mat`` file (vectors, also in a struct, by their names; version 7.3 needs h5py); a
+        ``.parquet`` file (needs pyarrow); an HDF5 file, ``.h5`` or ``.hdf5`` (needs h5py); a log of ROS messages
+        (the extra ``ros``): ``.mcap``, a ROS 2 bag (its folder, or one ``.db3`` of it), a ROS 1 ``.bag``.
+        The cells of a text are separated by commas, semicolons
         or tabs; with the latter two, decimal commas are read as well.
+    joint : str or int, optional
+        Of a file with several joints the one to read, by its number or name as the headers have it:
+        ``motor_position_3_rad``, ``joint3_pos``, ``q3``, ``q[2]``, ``position.3``, ``elbow.position [rad]``,
+        ``elbow_position``. Columns without a joint, such as time, belong to all. `docs/several_joints.md` has the
+        rules. Default: the only one.
     columns : mapping of str to str, int or None, optional
         Signal → header or 0-based number of its column; None leaves the signal out (a velocity
-        left out is derived from position). Default: by the headers, also for signals not mapped.
+        left out is derived from position). ``{joint}`` in a header stands for the joint:
+        ``{"position": "enc_{joint}_rad"}``. Default: by the headers, also for signals not mapped.
     units : mapping of str to str, optional
         Signal → unit, e.g. ``{"position": "deg"}``, whatever the header says.
         Default: the header's.
@@ -58,6 +75,15 @@ def load(
         Signal → factor from file units to SI, whatever the header says: for encoder counts
         (``{"position": 2 * math.pi / 4096}``), a voltage that drives a known force, a sign.
         Saved in ``metadata["scale"]``. Default: the factor of the unit.
+    extra : collection of str or mapping of str to str or int, optional
+        Columns to keep as `Recording.extra`: their headers, which are then the names, or name →
+        header or 0-based number. A known unit at the header's end (``_rad_s``, ``[kNm]``, ``_kgm2``)
+        is converted to SI; without one, values stay as they are. Every cell must be a finite
+        number. Default: none, but those of a saved recording.
+    gear_ratio : float, optional
+        Motor's angle per angle of the joint, negative if they turn in opposite directions: columns of the motor
+        (``motor_position_3_rad``, ``motor_torque_3_Nm``) are converted to the joint's side. Default: not known;
+        positions of the motor stay what they are, and ``metadata["side"]`` is "motor".
     where : mapping of str to number or str, optional
         Header → value: only rows with this value are kept. Default: all rows.
     kind : {"revolute", "prismatic"}, optional
@@ -71,6 +97,11 @@ def load(
         False.
     name : str, optional
         Default: as saved, else the file's name without its ending.
+    topic : str, optional
+        Of a file of messages: the topic that is the recording. Default: the only one with joints.
+    group : str, optional
+        Of an HDF5 or MATLAB 7.3 file: the group (struct) whose datasets are the recording, as a path.
+        Default: the only one with such datasets.
 
     Returns
     -------
@@ -86,10 +117,21 @@ def load(
     --------
     >>> recording = jid.load("run.csv")
     >>> recording = jid.load("log.csv", columns={"position": "enc1"}, units={"position": "deg"})
+    >>> recording = jid.load("robot.csv", extra={"gravity": "model_gravity_torque_1_Nm"})
+    >>> elbow = jid.load("arm.csv", joint=3, gear_ratio=-48)
+    >>> elbow = jid.load("arm.mcap", joint="elbow", topic="/joint_states")
     """
     file = require_path("path", path)
+    one = one_joint(table_of(file, topic=topic, group=group, kind=kind), joint, columns, extra)
+    ratio = one.gear_ratio if gear_ratio is None else checked_ratio(gear_ratio)
     contents = read_contents(
-        _table(file), columns=columns, units=units, scale=scale, kind=kind, torque_hold=torque_hold
+        one.table,
+        columns=one.columns,
+        units=units,
+        scale=scale,
+        extra=one.extra,
+        kind=kind,
+        torque_hold=torque_hold,
     )
     if where:
         fields = contents.fields(contents.rows_where(where))
@@ -100,19 +142,24 @@ def load(
             fields = without_copies(fields)
         except InputError as error:
             raise error.at(str(file)) from None
-    return _recording(file, fields, name)
+    return _recording(file, _of_joint(fields, one, ratio), _named(file, fields, name, one))
 
 
 def load_runs(
     path: str | os.PathLike[str],
     *,
     by: str | int,
+    joint: str | int | None = None,
     columns: Mapping[str, str | int | None] | None = None,
     units: Mapping[str, str] | None = None,
     scale: Mapping[str, float] | None = None,
+    extra: Collection[str] | Mapping[str, str | int] | None = None,
+    gear_ratio: float | None = None,
     kind: str | None = None,
     torque_hold: str | None = None,
     name: str | None = None,
+    topic: str | None = None,
+    group: str | None = None,
 ) -> tuple[Recording, ...]:
     """Return the recordings of a file that holds several runs, one after the other.
 
@@ -123,7 +170,7 @@ def load_runs(
     by : str or int
         Header or 0-based number of the column that numbers the runs: rows with the same value
         are one run.
-    columns, units, scale, kind, torque_hold
+    joint, columns, units, scale, extra, gear_ratio, kind, torque_hold, topic, group
         As in `load`.
     name : str, optional
         Beginning of the runs' names. Default: as in `load`.
@@ -143,16 +190,26 @@ def load_runs(
     >>> slow, fast = jid.load_runs("week.csv", by="run")
     """
     file = require_path("path", path)
+    one = one_joint(table_of(file, topic=topic, group=group, kind=kind), joint, columns, extra)
+    ratio = one.gear_ratio if gear_ratio is None else checked_ratio(gear_ratio)
     contents = read_contents(
-        _table(file), columns=columns, units=units, scale=scale, kind=kind, torque_hold=torque_hold
+        one.table,
+        columns=one.columns,
+        units=units,
+        scale=scale,
+        extra=one.extra,
+        kind=kind,
+        torque_hold=torque_hold,
     )
     header = contents.table.headers[column_index(contents.table, by, "by")]
     runs = []
     for value, rows in contents.rows_of(by).items():
         run = f"{header}={value}"
         try:
-            fields = contents.fields(rows)
-            runs.append(_recording(file, fields, f"{_name(file, fields, name)} {run}".lstrip()))
+            fields = _of_joint(contents.fields(rows), one, ratio)
+            runs.append(
+                _recording(file, fields, f"{_named(file, fields, name, one)} {run}".lstrip())
+            )
         except InputError as error:
             raise InputError(
                 error.reason,
@@ -164,11 +221,23 @@ def load_runs(
     return tuple(runs)
 
 
-def _table(file: Path) -> Table:
+def table_of(
+    file: Path, *, topic: str | None = None, group: str | None = None, kind: str | None = None
+) -> Table:
     """Return a file as a table of columns, by the ending of its name."""
     reader = reader_of(file)
+    part: str | None = None
+    for argument, given in (("topic", topic), ("group", group)):
+        if given is None:
+            continue
+        if argument != reader.part or not isinstance(given, str):
+            problem = "a name is expected" if argument == reader.part else _without(file, argument)
+            raise InputError(problem, argument=argument, value=given, place=str(file))
+        part = given
+    if kind is not None:
+        check_kind(kind)
     try:
-        return reader.open(file)
+        return reader.open(file, part=part, kind=kind) if reader.part else reader.open(file)
     except FileNotFoundError:
         raise InputError("there is no such file", place=str(file)) from None
     except IsADirectoryError:
@@ -176,25 +245,49 @@ def _table(file: Path) -> Table:
     except OSError as error:
         raise InputError(f"the file cannot be read ({error.strerror})", place=str(file)) from None
     except ModuleNotFoundError as error:
-        if not reader.package or (error.name or "").partition(".")[0] != reader.package:
+        package = (error.name or "").partition(".")[0]
+        if package not in reader.packages:
             raise
         raise InputError(
-            f"reading {ending_of(file, reader.endings)} files needs {reader.package}, "
-            "which is not installed",
+            f"reading {_form(file, reader)} needs {package}, which is not installed",
             place=str(file),
             remedy=(f"pip install 'jointid[{reader.extra}]'", "save the file as .csv"),
         ) from None
 
 
-def _name(file: Path, fields: Mapping[str, Any], name: str | None) -> Any:
-    stem = file.name[: -len(ending_of(file, endings()))]
+def _without(file: Path, argument: str) -> str:
+    return f"{ending_of(file, endings()) if file.is_file() else 'such'} files have no {argument}"
+
+
+def _form(file: Path, reader: Reader) -> str:
+    return "bags" if file.is_dir() else f"{ending_of(file, reader.endings)} files"
+
+
+def file_name(file: Path, fields: Mapping[str, Any], name: str | None) -> Any:
+    """Return a recording's name: as given, as saved, or the file's without its ending."""
+    stem = file.resolve().name if file.is_dir() else file.name[: -len(ending_of(file, endings()))]
     # Bytes of a file name that are not UTF-8 reach Python as surrogates, which no file can hold.
     stem = _SURROGATE.sub("\ufffd", stem)
     return fields.get("name", stem) if name is None else name
 
 
+def _named(file: Path, fields: Mapping[str, Any], name: str | None, one: OneJoint) -> Any:
+    """The name of a recording; of a joint among several with the joint's."""
+    whole = file_name(file, fields, name)
+    return f"{whole} joint {one.joint}".lstrip() if one.joint and name is None else whole
+
+
+def _of_joint(fields: dict[str, Any], one: OneJoint, gear_ratio: float | None) -> dict[str, Any]:
+    if not one.joint and gear_ratio is None:
+        return fields
+    found = at_joint(fields, one.side, gear_ratio)
+    if one.joint:
+        found["metadata"] = {**found["metadata"], "joint": one.joint}
+    return found
+
+
 def _recording(file: Path, fields: Mapping[str, Any], name: str | None) -> Recording:
     try:
-        return Recording(**{**fields, "name": _name(file, fields, name)})
+        return Recording(**{**fields, "name": file_name(file, fields, name)})
     except InputError as error:
         raise error.at(str(file)) from None

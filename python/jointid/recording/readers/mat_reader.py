@@ -6,9 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from jointid.base.errors import InputError
+from jointid.recording.hierarchies.hdf5_table import Hdf5Table
 from jointid.recording.readers.mat_elements import Array, DamageError, Variable, variables_of
 from jointid.recording.readers.reader import Reader
 from jointid.recording.signals import FloatArray, signal_array
+from jointid.recording.table import Table
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _HEADER = 128  # bytes before the first variable
@@ -31,7 +33,7 @@ class MatTable:
     Raises
     ------
     InputError
-        The file is of version 7.3 or 4, damaged, not a .mat file, or has no vectors.
+        The file is of version 4, damaged, not a .mat file, or has no vectors.
     """
 
     saved: Mapping[str, Any] | None = None
@@ -72,15 +74,6 @@ class MatTable:
 
 def _variables(path: Path) -> list[Variable]:
     content = path.read_bytes()
-    if _HDF5 in (content[:8], content[512:520]) or content.startswith(b"MATLAB 7.3"):
-        raise InputError(
-            "a MATLAB 7.3 file (HDF5) is not read",
-            place=str(path),
-            remedy=(
-                "in MATLAB save it with '-v7'",
-                "read it with h5py and make a Recording from the arrays",
-            ),
-        )
     order = _ORDERS.get(content[_HEADER - 2 : _HEADER])
     if order is None:
         raise InputError(
@@ -118,4 +111,28 @@ def _vectors(struct: str, variable: Variable) -> Iterator[tuple[str, str, Array]
             yield struct + part, part, vector
 
 
-READER = Reader(endings=(".mat",), open=MatTable)
+def _opened(path: Path, *, part: str | None = None, kind: str | None = None) -> Table:  # noqa: ARG001
+    with path.open("rb") as stream:
+        beginning = stream.read(520)
+    if not (_HDF5 in (beginning[:8], beginning[512:]) or beginning.startswith(b"MATLAB 7.3")):
+        if part is not None:
+            raise InputError(
+                "MATLAB files up to version 7 have no groups",
+                argument="group",
+                value=part,
+                place=str(path),
+            )
+        return MatTable(path)
+    try:
+        return Hdf5Table(path, part)
+    except ModuleNotFoundError as error:
+        if error.name != "h5py":
+            raise
+        raise InputError(
+            "a MATLAB 7.3 file (HDF5) needs h5py, which is not installed",
+            place=str(path),
+            remedy=("pip install 'jointid[hdf5]'", "in MATLAB save it with '-v7'"),
+        ) from None
+
+
+READER = Reader(endings=(".mat",), open=_opened, part="group")

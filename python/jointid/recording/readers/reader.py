@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 from jointid.recording.table import Table
 
@@ -17,14 +16,27 @@ class Reader:
         Endings of the file names, in lower case, with the dot.
     open : callable
         Takes a path and returns the file as a `Table`. It raises `InputError` when the file is
-        damaged; the caller handles `OSError` and a missing package.
-    package : str
-        Package that `open` imports and that is not installed with jointid. Default: none.
+        damaged; the caller handles `OSError` and a missing package. With `part` it also takes the
+        keywords `part` (a name, or None) and `kind` (of the joint, or None).
+    package : str or tuple of str
+        Packages that `open` imports and that are not installed with jointid. Default: none.
     extra : str
-        Extra of jointid that installs this package. Default: none.
+        Extra of jointid that installs these packages. Default: none.
+    part : str
+        The argument of `load` that names a part of such a file: ``"topic"`` or ``"group"``. Default: none.
+    folder : tuple of str
+        A folder with files of these endings is read as one file. Default: no folder is.
     """
 
     endings: tuple[str, ...]
-    open: Callable[[Path], Table]
-    package: str = ""
+    open: Callable[..., Table]
+    package: str | tuple[str, ...] = ""
     extra: str = ""
+    part: str = ""
+    folder: tuple[str, ...] = ()
+
+    @property
+    def packages(self) -> tuple[str, ...]:
+        """The packages that `open` imports."""
+        packages = (self.package,) if isinstance(self.package, str) else self.package
+        return tuple(package for package in packages if package)

@@ -13,6 +13,9 @@ MODULES = (
     "npz_reader",
     "mat_reader",
     "parquet_reader",
+    "mcap_reader",
+    "rosbag_reader",
+    "hdf5_reader",
 )
 
 READERS: tuple[Reader, ...] = tuple(
@@ -38,5 +41,10 @@ def reader_of(path: Path) -> Reader:
     InputError
         No reader reads such files.
     """
+    if path.is_dir():
+        inside = [each.name.lower() for each in path.iterdir()]
+        for reader in READERS:
+            if reader.folder and any(name.endswith(reader.folder) for name in inside):
+                return reader
     ending = ending_of(path, endings())
     return next(reader for reader in READERS if ending in reader.endings)

@@ -1,0 +1,118 @@
+"""Write an identified joint for another program."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from jointid.base.argument_checks import require_kind, require_path
+from jointid.base.errors import InputError
+from jointid.base.files import write_whole
+from jointid.estimate.estimate import Estimate
+from jointid.exports.registry import TARGETS, target_of
+from jointid.exports.subject import subject_of
+from jointid.exports.target import Existing, Order, Target
+from jointid.joint.checks import check_flag, positive_number
+from jointid.joint.joint import Joint
+
+_LARGEST = 64 * 2**20  # bytes of a file that is edited
+
+
+def export(
+    source: Estimate | Joint,
+    path: str | os.PathLike[str],
+    *,
+    target: str | None = None,
+    into: str | os.PathLike[str] | None = None,
+    joint: str | None = None,
+    approximate: bool = False,
+    speed: float | None = None,
+) -> Path:
+    """Write an identified joint for a simulator, a controller, a PLC or Simulink.
+
+    Each file states its source, units, signs and gear ratio, the standard error and 95 % interval of each
+    parameter, which parameters the recording did not determine, and what it cannot express. Numbers are written
+    with all their digits. The file is written completely or not at all.
+
+    Parameters
+    ----------
+    source : Estimate or Joint
+        A joint needs values for the parameters of its model; their uncertainty is not known then.
+    path : path-like
+        Its ending chooses the target: ``.xml`` (MuJoCo), ``.urdf``, ``.h`` (C99), ``.st`` (IEC 61131-3 Structured
+        Text), ``.mat`` (Simulink).
+    target : {"mujoco", "urdf", "c", "st", "matlab"}, optional
+        Instead of the one that the ending chooses.
+    into : path-like, optional
+        An existing MuJoCo or URDF file: the new file is this one with damping and friction of one joint set, in
+        MuJoCo also its armature, and with a comment before the joint. Everything else keeps its bytes. May be `path`
+        itself. Default: a model of this joint alone.
+    joint : str, optional
+        Name of the joint in `into`. Default: the joint's own name.
+    approximate : bool
+        MuJoCo and URDF have Coulomb and viscous friction, the same in both directions. False (default) refuses any
+        other; True writes the nearest over the recorded speeds, and in the file what is lost and how large it is.
+    speed : float, optional
+        Largest speed for the nearest friction and for tables [rad/s or m/s]. Default: that of the estimate's
+        recordings, or the joint's limit.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        An ending that no target has, a parameter without a value, no such joint in `into`, or a model that the
+        target cannot express.
+    OSError
+        The file cannot be written.
+
+    Examples
+    --------
+    >>> jid.export(estimate, "joint_friction.h")  # doctest: +SKIP
+    PosixPath('joint_friction.h')
+    >>> jid.export(estimate, "arm.xml", into="arm.xml", joint="shoulder", approximate=True)  # doctest: +SKIP
+    PosixPath('arm.xml')
+    """
+    require_kind("source", source, Estimate, Joint)
+    place = require_path("path", path)
+    if target is not None:
+        require_kind("target", target, str)
+    if joint is not None:
+        require_kind("joint", joint, str)
+    check_flag("", "approximate", approximate)
+    peak = None if speed is None else positive_number("", "speed", speed)
+    chosen = target_of(place, target)
+    subject = subject_of(source, peak)
+    order = Order(
+        name=subject.joint.name or place.name.partition(".")[0],
+        approximate=approximate,
+        into=_existing(chosen, into, joint or subject.joint.name),
+    )
+    if joint is not None and order.into is None:
+        raise InputError("it names a joint of the file to edit", argument="joint", value=joint)
+    write_whole(place, chosen.write(subject, order))
+    return place
+
+
+def _existing(target: Target, into: str | os.PathLike[str] | None, joint: str) -> Existing | None:
+    """The file to edit, read."""
+    if into is None:
+        return None
+    path = require_path("into", into)
+    if not target.edits:
+        able = " and ".join(each.name for each in TARGETS if each.edits)
+        raise InputError(f"only {able} files can be edited", argument="into", value=str(path))
+    if not joint:
+        raise InputError("the joint in the file is not named", argument="joint")
+    try:
+        if path.stat().st_size > _LARGEST:
+            raise InputError("the file is too large", argument="into", value=str(path))
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(
+            f"the file cannot be read: {error.strerror}", argument="into", value=str(path)
+        ) from error
+    return Existing(content=content, place=str(path), joint=joint)

@@ -1,0 +1,105 @@
+"""A joint's law as expressions of a programming language, from the same terms."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from jointid.exports.identifiers import parameter_identifier
+from jointid.exports.law import FrictionTerm, Harmonic, Law, Over
+
+_PARTS: dict[Over, tuple[str, str]] = {
+    "gravity": ("gravity_cos", "gravity_sin"),
+    "harmonics": ("position_cos_{}", "position_sin_{}"),
+    "ripple": ("ripple_cos_{}", "ripple_sin_{}"),
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Language:
+    """How a language writes what the law needs.
+
+    Attributes
+    ----------
+    name : callable
+        A constant's name from a parameter's.
+    number : callable
+        A number.
+    exp, log, sin, cos : str
+        Functions.
+    """
+
+    name: Callable[[str], str]
+    number: Callable[[float], str]
+    exp: str
+    log: str
+    sin: str
+    cos: str
+
+
+def fading(law: Law, side: int, language: Language) -> list[str]:
+    """Return the summands of one direction's friction that do not vanish with the speed; `speed`, `load_size`."""
+    return [_summand(each, language) for each in _of_side(law, side) if each.basis != "linear"]
+
+
+def growing(law: Law, side: int, language: Language) -> list[str]:
+    """Return the summands of one direction's friction that vanish with the speed."""
+    return [_summand(each, language) for each in _of_side(law, side) if each.basis == "linear"]
+
+
+def _of_side(law: Law, side: int) -> list[FrictionTerm]:
+    return [each for each in law.friction if each.side in (0, side)]
+
+
+def _summand(term: FrictionTerm, language: Language) -> str:
+    value = language.name(term.name)
+    shapes = [language.name(name) for name in term.shapes]
+    if term.basis == "linear":
+        return f"({value} * speed)"
+    if term.basis == "load":
+        return f"({value} * load_size)"
+    if term.basis == "gaussian":
+        return f"({value} * {language.exp}(-({shapes[0]} * speed * speed)))"
+    if term.basis == "general":
+        # speed is above 0 here; a power as exponential and logarithm, which every language has.
+        power = f"{language.exp}({shapes[1]} * {language.log}(speed / {shapes[0]}))"
+        return f"({value} * {language.exp}(-{power}))"
+    return value
+
+
+def periodic(law: Law, kind: Over, angle: str, language: Language) -> list[str]:
+    """Return the summands of the torque over an angle."""
+    summands = []
+    for each in law.over(kind):
+        cos, sin = harmonic_names(each)
+        turned = angle if each.order == 1.0 else f"{language.number(each.order)} * {angle}"
+        summands.append(f"({language.name(cos)} * {language.cos}({turned}))")
+        summands.append(f"({language.name(sin)} * {language.sin}({turned}))")
+    return summands
+
+
+def harmonic_names(harmonic: Harmonic) -> tuple[str, str]:
+    """Return the names of a harmonic's two coefficients."""
+    cos, sin = _PARTS[harmonic.over]
+    return cos.format(f"{harmonic.order:g}"), sin.format(f"{harmonic.order:g}")
+
+
+def total(summands: Sequence[str], nothing: str) -> str:
+    """Return a sum, or what stands for an empty one."""
+    return " + ".join(summands) if summands else nothing
+
+
+def constants(law: Law) -> dict[str, float]:
+    """Return the law's numbers by the parameters' names, each once."""
+    values: dict[str, float] = {}
+    for term in law.friction:
+        values |= {term.name: term.value, **term.shapes}
+    for each in law.harmonics:
+        cos, sin = harmonic_names(each)
+        values |= {cos: each.cos, sin: each.sin}
+    return values
+
+
+def upper(name: str) -> str:
+    """Return a parameter's name as the name of a constant."""
+    return parameter_identifier(name).upper()

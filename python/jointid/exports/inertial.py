@@ -1,0 +1,150 @@
+"""The body behind a joint for simulators that know bodies only: mass, centre of mass, inertia, and the drive's part."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from jointid.base.errors import InputError
+from jointid.exports.law import Law
+from jointid.exports.subject import Subject
+from jointid.joint.joint import Joint
+from jointid.joint.link import STANDARD_GRAVITY
+
+# A body needs some inertia of its own, where the joint has none: a share that no result shows.
+_NOTHING = 1e-9
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Body:
+    """What a joint moves, so that inertia and gravity about its axis are those of the law.
+
+    Attributes
+    ----------
+    mass : float
+        [kg]
+    distance : float
+        Of the centre of mass from the axis [m].
+    angle : float
+        Of the centre of mass above the horizontal, at position 0 [rad].
+    inertia : float
+        About the centre of mass [kg·m²].
+    gravity : float
+        [m/s²]; 0 where the model has no gravity.
+    drive : float
+        Inertia of the drive at the output [kg·m²], or [kg].
+    note : str
+        What is chosen and not known; may be empty.
+    """
+
+    mass: float
+    distance: float
+    angle: float
+    inertia: float
+    gravity: float
+    drive: float
+    note: str = ""
+
+
+def drive_inertia(subject: Subject) -> float | None:
+    """Return the inertia of the drive alone, at the output; None if it is not known apart from the link's.
+
+    A torque sensor stands between them; without one, the identified inertia contains the link's.
+    """
+    joint, law = subject.joint, subject.law
+    if joint.sensor and law.inertia is not None:
+        return law.inertia
+    if joint.reflected_inertia is not None:
+        return joint.reflected_inertia
+    if joint.link is None or law.inertia is None:
+        return None
+    return _left(joint, law.inertia)
+
+
+def body_of(subject: Subject) -> Body:
+    """Return a body that, with the drive, has the inertia and the gravity of the joint.
+
+    Raises
+    ------
+    InputError
+        The inertia is not known, or smaller than the link's.
+    """
+    joint, law = subject.joint, subject.law
+    total = law.total_inertia
+    if total is None or total <= 0.0:
+        raise InputError(
+            "has no value, which a model that moves needs",
+            argument="inertia",
+            place=joint.owner,
+            remedy="give the joint inertia or rotor_inertia, or identify it",
+        )
+    least = _NOTHING * total
+    weight = sum(each.amplitude for each in law.over("gravity"))
+    if joint.model.resolved.gravity == "free" and weight > 0.0:
+        return _equivalent(law, joint, total, weight)
+    if joint.link is None:
+        return Body(mass=least, distance=0.0, angle=0.0, inertia=least, gravity=0.0, drive=total)
+    drive = law.inertia if joint.sensor else None
+    if drive is None:
+        drive = _left(joint, total)
+    link = joint.link
+    if joint.kind == "prismatic":
+        return Body(
+            mass=max(link.mass, least),
+            distance=0.0,
+            angle=0.0,
+            inertia=least,
+            gravity=0.0,
+            drive=drive,
+        )
+    inner = joint.link_inertia - link.mass * link.centre_of_mass**2
+    if inner < -1e-9 * joint.link_inertia:
+        raise InputError(
+            "it is below mass · centre_of_mass², which no body has",
+            argument="inertia",
+            value=joint.link_inertia,
+            place=f"{joint.owner}: link",
+        )
+    return Body(
+        mass=max(link.mass, least),
+        distance=link.centre_of_mass,
+        angle=link.angle,
+        inertia=max(inner, least),
+        gravity=link.gravity if weight > 0.0 else 0.0,
+        drive=drive,
+    )
+
+
+def _left(joint: Joint, total: float) -> float:
+    """The drive's part of an inertia that contains the link's."""
+    drive = total - joint.link_inertia
+    if drive < 0.0:
+        raise InputError(
+            f"it is below the link's inertia of {joint.link_inertia:.6g}, which it contains",
+            argument="parameters.inertia",
+            value=total,
+            place=joint.owner,
+            remedy="check the link's mass, centre_of_mass and inertia",
+        )
+    return drive
+
+
+def _equivalent(law: Law, joint: Joint, total: float, weight: float) -> Body:
+    """A point mass with the identified torque of gravity; only mass · distance is known."""
+    (gravity,) = law.over("gravity")
+    field = STANDARD_GRAVITY if joint.link is None else joint.link.gravity
+    field = field or STANDARD_GRAVITY
+    drive = joint.reflected_inertia
+    if drive is None or not total - drive > 0.0:
+        drive = total / 2.0
+    distance = (total - drive) * field / weight
+    return Body(
+        mass=weight / (field * distance),
+        distance=distance,
+        angle=math.atan2(-gravity.sin, gravity.cos),
+        inertia=_NOTHING * total,
+        gravity=field,
+        drive=drive,
+        note="mass and distance of the body are chosen: the recording determines their product with gravity, and the"
+        " inertia of drive and body together",
+    )

@@ -1,0 +1,217 @@
+"""The torque law of a joint as plain numbers: friction, torques over the position, inertia, sensor."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from jointid import _core
+from jointid.base.errors import InputError
+from jointid.joint.joint import Joint
+
+Array = NDArray[np.float64]
+Basis = Literal["constant", "linear", "gaussian", "general", "load"]
+Over = Literal["gravity", "harmonics", "ripple"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FrictionTerm:
+    """One term of the friction: a coefficient times a function of the speed, in one direction or both.
+
+    Attributes
+    ----------
+    key : str
+        Of the core's term.
+    name : str
+        Of the coefficient's parameter.
+    basis : str
+        What the coefficient multiplies: 1, the speed, exp(-s v²), exp(-(v / v_s)^d), or the load's magnitude.
+    side : int
+        1 or -1: of this direction alone; 0: of both.
+    value : float
+    shapes : mapping of str to float
+        Shape parameters by name, in the order of the core.
+    """
+
+    key: str
+    name: str
+    basis: Basis
+    side: int
+    value: float
+    shapes: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Harmonic:
+    """A torque that is periodic in an angle: ``cos * cos(order * angle) + sin * sin(order * angle)``.
+
+    Attributes
+    ----------
+    over : str
+        "gravity" and "harmonics": the joint's angle; "ripple": the motor's, which is gear ratio · position.
+    order, cos, sin : float
+    """
+
+    over: Over
+    order: float
+    cos: float
+    sin: float
+
+    @property
+    def amplitude(self) -> float:
+        """Largest torque [N·m or N]."""
+        return math.hypot(self.cos, self.sin)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Law:
+    """The torque that a motion needs from the drive, at the output of the gear.
+
+    Attributes
+    ----------
+    friction : tuple of FrictionTerm
+    harmonics : tuple of Harmonic
+        Gravity, torques over the joint's angle, and ripple over the motor's.
+    inertia : float or None
+        What the drive's torque accelerates in front of a torque sensor; without a sensor, all. None: not known.
+    link_inertia : float
+        Behind the torque sensor; 0 without a sensor.
+    offset : float
+        Constant torque.
+    sensor : tuple of float or None
+        Gain and offset: torque = gain · reading + offset.
+    gear_ratio : float
+    """
+
+    friction: tuple[FrictionTerm, ...]
+    harmonics: tuple[Harmonic, ...]
+    inertia: float | None
+    link_inertia: float
+    offset: float
+    sensor: tuple[float, float] | None
+    gear_ratio: float
+
+    @property
+    def total_inertia(self) -> float | None:
+        """Inertia of drive and link together."""
+        return None if self.inertia is None else self.inertia + self.link_inertia
+
+    def over(self, kind: Over) -> tuple[Harmonic, ...]:
+        """Return the harmonics of one kind."""
+        return tuple(each for each in self.harmonics if each.over == kind)
+
+    def friction_torque(
+        self, velocity: ArrayLike, load: float = 0.0, *, width: float = 0.0
+    ) -> Array:
+        """Return the friction at each velocity [N·m or N].
+
+        Parameters
+        ----------
+        velocity : array_like
+        load : float
+            Torque that load friction grows with. Default 0.
+        width : float
+            Friction that does not vanish with the speed is multiplied by tanh(speed / width). Default 0: it is not.
+        """
+        velocities = np.atleast_1d(np.asarray(velocity, dtype=np.float64))
+        fade = np.tanh(np.abs(velocities) / width) if width > 0.0 else np.ones_like(velocities)
+        total = np.zeros_like(velocities)
+        for term in self.friction:
+            shapes = np.array([*term.shapes.values()], dtype=np.float64)
+            torque = term.value * _core.friction_basis(term.key, velocities, shapes, load)
+            total += torque if term.basis == "linear" else torque * fade
+        return total
+
+    def position_torque(self, position: ArrayLike, *kinds: Over) -> Array:
+        """Return the torque over the position [N·m or N] of some kinds; none named: of all."""
+        positions = np.atleast_1d(np.asarray(position, dtype=np.float64))
+        total = np.zeros_like(positions)
+        for each in self.harmonics:
+            if not kinds or each.over in kinds:
+                scale = self.gear_ratio if each.over == "ripple" else 1.0
+                angle = each.order * (scale * positions)
+                total += each.cos * np.cos(angle) + each.sin * np.sin(angle)
+        return total
+
+
+def law_of(joint: Joint, terms: Sequence[str], values: Mapping[str, float]) -> Law:
+    """Return the law of a joint with these terms and values.
+
+    Parameters
+    ----------
+    joint : Joint
+        Gear ratio, link and drive.
+    terms : sequence of str
+        Keys of the core's terms.
+    values : mapping of str to float
+        By parameter name; one value for a parameter that each recording has for itself.
+
+    Raises
+    ------
+    InputError
+        A term that no export has.
+    """
+    sensor = "sensor_gain" in terms
+    model = joint.model.resolved
+    harmonics = []
+    for over, cos, sin, orders in (
+        ("gravity", "gravity_cos", "gravity_sin", ()),
+        ("harmonics", "position_cos_", "position_sin_", model.harmonics),
+        ("ripple", "ripple_cos_", "ripple_sin_", model.ripple),
+    ):
+        for order in orders or ((1.0,) if over == "gravity" and cos in terms else ()):
+            keys = [f"{name}{order:g}" if orders else name for name in (cos, sin)]
+            harmonics.append(_harmonic(over, order, [values[key] for key in keys]))
+    link = 0.0
+    if sensor and joint.link is not None:
+        # Behind the sensor, which measures its weight: no term of the balance, but of the torque.
+        link = joint.link_inertia
+        if joint.kind == "revolute" and not any(each.over == "gravity" for each in harmonics):
+            known = joint.gravity_coefficients
+            harmonics.insert(0, _harmonic("gravity", 1.0, [known.cos, known.sin]))
+    return Law(
+        friction=tuple(_friction(key, values) for key in terms if _core.term(key).friction),
+        harmonics=tuple(harmonics),
+        inertia=values.get("inertia"),
+        link_inertia=link,
+        offset=values.get("torque_offset", 0.0),
+        sensor=(values["sensor_gain"], values["sensor_offset"]) if sensor else None,
+        gear_ratio=joint.gear_ratio,
+    )
+
+
+def _harmonic(over: str, order: float, parts: Sequence[float]) -> Harmonic:
+    return Harmonic(over=over, order=order, cos=parts[0], sin=parts[1])  # type: ignore[arg-type]
+
+
+def _friction(key: str, values: Mapping[str, float]) -> FrictionTerm:
+    term = _core.term(key)
+    shapes = {name: values[name] for name in term.shapes}
+    parts = np.array([*shapes.values()], dtype=np.float64)
+    # What the term is, asked from the core itself: a basis that is new there is refused, not mistaken.
+    at = _core.friction_basis(key, np.array([-2.0, -1.0, 1.0, 2.0]), parts, 3.0)
+    if not (np.any(at[:2]) or np.any(at[2:])):  # it has decayed at these speeds
+        at = _core.friction_basis(key, np.array([-2e-9, -1e-9, 1e-9, 2e-9]), parts, 3.0)
+    side = 0 if at[1] and at[2] else 1 if at[2] else -1
+    one, two = (at[2], at[3]) if side >= 0 else (-at[1], -at[0])
+    basis: Basis
+    if term.needs_load:
+        basis = "load"
+    elif term.decay == "gaussian":
+        basis = "gaussian"
+    elif term.decay == "general":
+        basis = "general"
+    elif one == two == 1.0:
+        basis = "constant"
+    elif two == 2.0 * one == 2.0:
+        basis = "linear"
+    else:
+        raise InputError("no export has this term of the model", argument="model", value=key)
+    return FrictionTerm(
+        key=key, name=term.name, basis=basis, side=side, value=values[term.name], shapes=shapes
+    )

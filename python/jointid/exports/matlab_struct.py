@@ -1,0 +1,120 @@
+"""MATLAB: a struct with parameters, units, uncertainty, and lookup tables for Simulink."""
+
+from __future__ import annotations
+
+import io
+from typing import Any
+
+import numpy as np
+
+from jointid.exports.identifiers import identifier, parameter_identifier
+from jointid.exports.provenance import statements
+from jointid.exports.subject import ExportedValue, Subject
+from jointid.exports.tables import speed_scale
+from jointid.exports.target import Order, Target
+
+_ROWS = 201  # of a lookup table, in each direction
+_LONGEST = 63  # letters of a field's name in MATLAB
+
+
+def _write(subject: Subject, order: Order) -> bytes:
+    from scipy.io import savemat
+
+    notes = [
+        "friction.velocity has no 0: between its two middle rows a lookup is a steep line through 0",
+        "NaN stands for what is not known",
+    ]
+    if any(each.basis == "load" for each in subject.law.friction):
+        notes.append("lookup tables are without load; load_friction is per load")
+    if subject.speed is None:
+        notes.append("the range of the tables is chosen: no range of speeds is known")
+    law = subject.law
+    struct = {
+        "name": subject.joint.name,
+        "kind": subject.joint.kind,
+        "model": subject.model,
+        "source": subject.source,
+        "date": subject.date,
+        "jointid_version": subject.version,
+        "statements": np.array(statements(subject, notes=notes), dtype=object),
+        "units": {
+            "position": subject.position_unit,
+            "velocity": f"{subject.position_unit}/s",
+            "torque": subject.torque_unit,
+        },
+        "parameters": {
+            parameter_identifier(each.name)[:_LONGEST]: _parameter(each) for each in subject.values
+        },
+        "undetermined": np.array(subject.undetermined, dtype=object),
+        "gear_ratio": law.gear_ratio,
+        "torque_constant": _known(subject.joint.torque_constant),
+        "inertia": _known(law.inertia),
+        "link_inertia": law.link_inertia,
+        "torque_offset": law.offset,
+        "friction": _friction(subject),
+        "position_torque": _periods(subject),
+        "limits": {
+            name: _known(getattr(subject.joint.limits, name))
+            for name in ("velocity", "torque", "current")
+        },
+    }
+    if law.sensor is not None:
+        struct["sensor"] = {"gain": law.sensor[0], "offset": law.sensor[1]}
+    content = io.BytesIO()
+    name = identifier(order.name)[:_LONGEST]
+    savemat(
+        content,  # type: ignore[arg-type]  # the stubs know names of files alone
+        {name: struct},
+        long_field_names=True,
+        oned_as="column",
+    )
+    return content.getvalue()
+
+
+def _parameter(value: ExportedValue) -> dict[str, Any]:
+    return {
+        "name": value.name,
+        "value": value.value,
+        "unit": value.unit,
+        "meaning": value.meaning,
+        "standard_error": _known(value.stderr),
+        "interval": np.array(value.interval or (np.nan, np.nan)),
+        "remark": value.remark,
+    }
+
+
+def _known(value: float | None) -> float:
+    return float("nan") if value is None else value
+
+
+def _friction(subject: Subject) -> dict[str, Any]:
+    """Friction over the speed: of each direction, and of both in one table that only rises in velocity."""
+    law, peak = subject.law, speed_scale(subject)
+    # Denser where the speed is small, as the Stribeck curve is.
+    speed = peak * np.linspace(0.0, 1.0, _ROWS) ** 2
+    speed[0] = 1e-6 * peak
+    positive, negative = law.friction_torque(speed), law.friction_torque(-speed)
+    return {
+        "velocity": np.concatenate([-speed[::-1], speed]),
+        "torque": np.concatenate([negative[::-1], positive]),
+        "positive": {"speed": speed, "torque": positive},
+        "negative": {"speed": speed, "torque": -negative},
+    }
+
+
+def _periods(subject: Subject) -> dict[str, Any]:
+    """Gravity, torques over the joint's angle, and ripple over the motor's, by order."""
+    periods: dict[str, Any] = {}
+    for over in ("gravity", "harmonics", "ripple"):
+        found = [each for each in subject.law.harmonics if each.over == over]
+        periods[over] = {
+            "order": np.array([each.order for each in found]),
+            "cos": np.array([each.cos for each in found]),
+            "sin": np.array([each.sin for each in found]),
+        }
+    return periods
+
+
+TARGET = Target(
+    name="matlab", endings=(".mat",), meaning="MATLAB struct for Simulink", write=_write
+)

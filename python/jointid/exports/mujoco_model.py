@@ -1,0 +1,151 @@
+"""MuJoCo: a model of the joint alone, or damping, friction and armature of a joint in an existing one."""
+
+from __future__ import annotations
+
+import math
+
+from jointid.exports.inertial import body_of, drive_inertia
+from jointid.exports.nearest import Nearest, nearest_friction
+from jointid.exports.provenance import statements
+from jointid.exports.subject import Subject
+from jointid.exports.target import Existing, Order, Target
+from jointid.exports.xml_patch import (
+    Element,
+    attribute,
+    comment,
+    elements,
+    only,
+    with_attributes,
+    with_comment,
+)
+from jointid.joint.checks import suggestion
+from jointid.simulation.plant import torque_limit
+
+_STEP = 0.0005
+# MuJoCo's dry friction creeps below a speed in proportion to the time constant; 0.02 is its default.
+_FRICTION = 'solreffriction="0.002 1" solimpfriction="0.99 0.99 0.001 0.5 2"'
+
+
+def _write(subject: Subject, order: Order) -> bytes:
+    nearest = nearest_friction(subject, approximate=order.approximate, target="MuJoCo")
+    if order.into is not None:
+        return _edited(subject, nearest, order.into)
+    return _model(subject, nearest, order.name).encode()
+
+
+def loss_notes(subject: Subject, nearest: Nearest) -> list[str]:
+    """Return what the nearest Coulomb and viscous friction has lost, in words."""
+    if not nearest.lost:
+        return []
+    unit = subject.torque_unit
+    notes = [f"lost: {each}" for each in nearest.lost]
+    loads = any(each.basis == "load" for each in subject.law.friction)
+    return [
+        *notes,
+        f"friction here is {nearest.constant!r} {unit} + {nearest.slope!r} {unit}*s/{subject.position_unit} * speed,"
+        f" the least-squares fit over speeds up to {nearest.speed!r} {subject.position_unit}/s, all alike",
+        f"largest difference of the torque over this range: {nearest.worst:.4g} {unit}"
+        f"{' without load' if loads else ''}; of the friction, root mean square: {nearest.rms:.4g} {unit}",
+    ]
+
+
+def _edited(subject: Subject, nearest: Nearest, into: Existing) -> bytes:
+    found = elements(into.content, into.place)
+    joint = only(found, into.joint, _is_joint, into.place, suggestion)
+    changes = {"damping": repr(nearest.slope), "frictionloss": repr(nearest.constant)}
+    notes = loss_notes(subject, nearest)
+    armature = drive_inertia(subject)
+    if armature is None:
+        notes.append(
+            "armature is left as it was: the identified inertia contains the link's, which this model has already"
+        )
+    else:
+        changes["armature"] = repr(armature)
+    notes += _elsewhere(subject)
+    if subject.law.offset:
+        notes.append(f"constant torque of {subject.law.offset!r} {subject.torque_unit}")
+    lines = statements(subject, notes=notes)
+    edited = with_attributes(into.content, joint, changes)
+    return with_comment(edited, joint, lines)
+
+
+def _is_joint(element: Element) -> bool:
+    return element.tag == "joint" and "body" in element.path
+
+
+def _elsewhere(subject: Subject) -> list[str]:
+    """What the model around the joint has to say."""
+    notes = []
+    if subject.law.over("gravity"):
+        notes.append("gravity: it follows from the masses of this file")
+    if subject.law.sensor is not None:
+        notes.append("calibration of the torque sensor")
+    return notes
+
+
+def _model(subject: Subject, nearest: Nearest, name: str) -> str:
+    joint, law = subject.joint, subject.law
+    body = body_of(subject)
+    notes = loss_notes(subject, nearest)
+    if law.sensor is not None:
+        notes.append("calibration of the torque sensor")
+    if body.note:
+        notes.append(body.note)
+    notes.append(
+        f"dry friction is a soft constraint: below about {_creep(subject, nearest):.2g} "
+        f"{subject.position_unit}/s it fades, and the joint creeps"
+    )
+    slides = joint.kind == "prismatic"
+    kind, axis = ("slide", "1 0 0") if slides else ("hinge", "0 -1 0")
+    limits = ""
+    if joint.limits.position is not None:
+        low, high = joint.limits.position
+        limits = f' limited="true" range="{low!r} {high!r}"'
+    x, z = body.distance * math.cos(body.angle), body.distance * math.sin(body.angle)
+    lines = [
+        f"<mujoco model={attribute(name)}>",
+        f"  {comment([*statements(subject, notes=notes)], '  ')}",
+        '  <compiler angle="radian"/>',
+        f'  <option timestep="{_STEP!r}" integrator="implicitfast" gravity="0 0 {0.0 - body.gravity!r}"/>',
+        "  <worldbody>",
+        f"    <body name={attribute(f'{name} link')}>",
+        f'      <inertial pos="{x!r} 0 {z!r}" mass="{body.mass!r}" diaginertia="{body.inertia!r} {body.inertia!r}'
+        f' {body.inertia!r}"/>',
+        f'      <joint name={attribute(name)} type="{kind}" axis="{axis}" damping="{nearest.slope!r}"'
+        f' frictionloss="{nearest.constant!r}" armature="{body.drive!r}"{limits}',
+        f"             {_FRICTION}/>",
+        "    </body>",
+        "  </worldbody>",
+        "  <actuator>",
+        f"    {_actuator(subject, name)}",
+        "  </actuator>",
+        "</mujoco>",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def _actuator(subject: Subject, name: str) -> str:
+    """The drive: its control is the motor's torque, its force the same; the gear makes torque at the joint of it."""
+    joint = subject.joint
+    gear = joint.gear_ratio
+    limit = torque_limit(joint)
+    offset = subject.law.offset
+    text = f'joint={attribute(name)} gear="{gear!r}"'
+    if limit is not None:
+        text += f' ctrllimited="true" ctrlrange="{-limit / abs(gear)!r} {limit / abs(gear)!r}"'
+    if not offset:
+        return f"<motor name={attribute(f'{name} motor')} {text}/>"
+    # A constant torque against the drive, behind its limit.
+    bias = f'gaintype="fixed" gainprm="1" biastype="affine" biasprm="{-offset / gear!r} 0 0"'
+    return f"<general name={attribute(f'{name} motor')} {text} {bias}/>"
+
+
+def _creep(subject: Subject, nearest: Nearest) -> float:
+    """The speed below which MuJoCo's dry friction is not fully there, of the settings above."""
+    total = subject.law.total_inertia or 1.0
+    share, constant = 0.99, 0.002
+    return nearest.constant / total * (1.0 - share) / share * share * constant / 2.0
+
+
+TARGET = Target(name="mujoco", endings=(".xml",), meaning="MuJoCo model", write=_write, edits=True)

@@ -1,0 +1,132 @@
+"""The nearest Coulomb and viscous friction, and what it loses of a joint's torque law."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointid.base.errors import InputError
+from jointid.exports.law import Law
+from jointid.exports.subject import Subject
+
+_SPEEDS = 400
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Nearest:
+    """Coulomb and viscous friction, the same in both directions.
+
+    Attributes
+    ----------
+    constant : float
+        Friction at every speed [N·m or N].
+    slope : float
+        Friction per speed.
+    lost : tuple of str
+        What of the law is not in it; empty where it is exact.
+    speed : float or None
+        The fit's largest speed; None where there was no fit.
+    worst : float
+        Largest difference of the friction over the range, without load, and of the torques over the position.
+    rms : float
+        Root mean square of the friction's difference, all speeds alike.
+    """
+
+    constant: float
+    slope: float
+    lost: tuple[str, ...] = ()
+    speed: float | None = None
+    worst: float = 0.0
+    rms: float = 0.0
+
+
+def lost_terms(subject: Subject) -> tuple[str, ...]:
+    """Return what Coulomb and viscous friction cannot express of a law, in words."""
+    law, unit = subject.law, subject.torque_unit
+    lost = []
+    excess = [each for each in law.friction if each.basis in ("gaussian", "general")]
+    if excess:
+        sizes = " and ".join(f"{each.value:.4g}" for each in excess)
+        lost.append(f"Stribeck friction ({sizes} {unit} above Coulomb at rest)")
+    if any(each.side for each in law.friction):
+        lost.append("the difference between the two directions")
+    lost += [
+        f"load friction ({each.value:.4g} {unit} per {unit} of load)"
+        for each in law.friction
+        if each.basis == "load"
+    ]
+    for over, angle in (("ripple", "motor"), ("harmonics", "joint")):
+        found = [each for each in law.harmonics if each.over == over]
+        if found:
+            size = sum(each.amplitude for each in found)
+            name = "ripple" if over == "ripple" else "torque"
+            lost.append(f"{name} over the {angle}'s angle (up to {size:.4g} {unit})")
+    return tuple(lost)
+
+
+def nearest_friction(subject: Subject, *, approximate: bool, target: str) -> Nearest:
+    """Return Coulomb and viscous friction: the law's own, or the nearest over the recorded speeds.
+
+    Parameters
+    ----------
+    subject : Subject
+    approximate : bool
+        Whether something may be lost.
+    target : str
+        The target's name, for the error.
+
+    Raises
+    ------
+    InputError
+        Something would be lost and must not, or no range of speeds is known.
+    """
+    law, lost = subject.law, lost_terms(subject)
+    if not lost:
+        return Nearest(
+            constant=sum(each.value for each in law.friction if each.basis == "constant"),
+            slope=sum(each.value for each in law.friction if each.basis == "linear"),
+        )
+    if not approximate:
+        raise InputError(
+            f"{target} has Coulomb and viscous friction only; lost would be {' and '.join(lost)}",
+            argument="approximate",
+            value=False,
+            remedy="approximate to export the nearest Coulomb and viscous friction",
+        )
+    if subject.speed is None:
+        raise InputError(
+            "the nearest friction needs the range of speeds, which a joint file does not hold",
+            argument="speed",
+            remedy="state the largest speed, or export the estimate",
+        )
+    return _fitted(law, lost, subject.speed)
+
+
+def _fitted(law: Law, lost: tuple[str, ...], peak: float) -> Nearest:
+    """Least squares over all speeds alike, in both directions, with no negative part."""
+    half = (np.arange(_SPEEDS) + 0.5) / _SPEEDS * peak
+    speed = np.concatenate([half, half])
+    torque = np.concatenate([law.friction_torque(half), -law.friction_torque(-half)])
+    columns = np.column_stack([np.ones_like(speed), speed])
+    candidates = [np.linalg.lstsq(columns, torque, rcond=None)[0]]
+    for kept in (0, 1):
+        part = columns[:, kept] @ torque / (columns[:, kept] @ columns[:, kept])
+        candidates.append(np.where(np.arange(2) == kept, part, 0.0))
+    allowed = [each for each in candidates if np.all(each >= 0.0)] or [np.zeros(2)]
+    constant, slope = min(allowed, key=lambda each: float(np.sum((torque - columns @ each) ** 2)))
+    edge = np.array([1e-9, 1.0]) * peak  # where static friction is largest, and the end
+    tried = np.concatenate([half, edge])
+    worst = max(
+        float(np.max(np.abs(sign * law.friction_torque(sign * tried) - constant - slope * tried)))
+        for sign in (1.0, -1.0)
+    )
+    periodic = sum(each.amplitude for each in law.harmonics if each.over != "gravity")
+    return Nearest(
+        constant=float(constant),
+        slope=float(slope),
+        lost=lost,
+        speed=peak,
+        worst=worst + periodic,
+        rms=float(np.sqrt(np.mean((torque - columns @ [constant, slope]) ** 2))),
+    )

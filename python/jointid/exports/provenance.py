@@ -1,0 +1,87 @@
+"""What every exported file says of itself: source, units, signs, uncertainty, and what is missing."""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Sequence
+
+from jointid.exports.subject import ExportedValue, Subject
+
+_PLAIN = str.maketrans(
+    {
+        "·": "*",
+        "²": "^2",
+        "³": "^3",
+        "±": "+-",
+        "√": "sqrt ",
+        "…": "...",
+        "−": "-",
+        "–": "-",
+        "—": "-",
+        "≥": ">=",
+        "≤": "<=",
+        "°": " deg",
+        "Ω": "ohm",
+    }
+)
+
+
+def statements(subject: Subject, *, notes: Sequence[str] = ()) -> list[str]:
+    """Return what a file states, line by line.
+
+    Parameters
+    ----------
+    subject : Subject
+    notes : sequence of str
+        What the target cannot express, or expresses in another way. Default: nothing.
+    """
+    joint = subject.joint
+    name = f"Joint '{joint.name}'" if joint.name else "Joint"
+    force = "force" if joint.kind == "prismatic" else "torque"
+    lines = [
+        f"{name}, exported by jointid {subject.version} on {subject.date} (UTC).",
+        f"Source: {subject.source}.",
+        f"Model: {subject.model}.",
+        f"Units: SI ({subject.position_unit}, {subject.position_unit}/s, {subject.torque_unit}), on the output side"
+        " of the gear (joint side) unless said otherwise.",
+        f"Sign: a positive {force} of the drive moves the joint towards positive position; friction has the sign of the"
+        f" velocity: it is the {force} that the drive needs in addition.",
+        f"Gear ratio {joint.gear_ratio!r} (motor angle per joint position): motor {force} = {force} / gear ratio.",
+    ]
+    if subject.speed is not None:
+        lines.append(
+            f"Speeds up to {subject.speed!r} {subject.position_unit}/s are known; beyond, friction is extrapolated."
+        )
+    lines.append("Parameters:")
+    lines += [f"  {value_line(each)}" for each in subject.values]
+    if subject.undetermined:
+        lines.append(
+            f"Without a known uncertainty, do not rely on: {', '.join(subject.undetermined)}."
+        )
+    if subject.findings:
+        lines.append("Warnings of the identification:")
+        lines += [f"  {each}" for each in subject.findings]
+    if notes:
+        lines.append("Notes:")
+        lines += [f"  {each}" for each in notes]
+    return lines
+
+
+def value_line(value: ExportedValue) -> str:
+    """Return a parameter with its unit and its uncertainty, in one line."""
+    parts = [f"{value.name} = {value.value!r} {value.unit}: {value.meaning}"]
+    if value.stderr is not None:
+        parts.append(f"standard error {value.stderr:.3g}")
+    if value.interval is not None:
+        parts.append(f"95 % interval {value.interval[0]:.6g} to {value.interval[1]:.6g}")
+    if value.remark:
+        parts.append(value.remark)
+    return ", ".join(parts)
+
+
+def plain(text: str) -> str:
+    """Return text in ASCII on one line, for files whose readers may know no other."""
+    decomposed = unicodedata.normalize("NFKD", text.translate(_PLAIN))
+    return " ".join(decomposed.encode("ascii", "ignore").decode("ascii").split(" ")).translate(
+        dict.fromkeys((*range(32), 127), " ")
+    )

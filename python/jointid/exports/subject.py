@@ -1,0 +1,287 @@
+"""What is exported: a joint with values, what is known of them, and where they come from."""
+
+from __future__ import annotations
+
+import datetime
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointid import _core
+from jointid.base.argument_checks import require_kind
+from jointid.base.errors import InputError
+from jointid.estimate.estimate import Estimate
+from jointid.estimate.friction_map import shared_value
+from jointid.estimate.statistics import ParameterEstimate
+from jointid.exports.law import Law, law_of
+from jointid.joint.joint import Joint
+
+_GRAVITY = ("gravity_cos", "gravity_sin")
+_SENSOR = ("sensor_gain", "sensor_offset")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportedValue:
+    """One parameter as it is exported.
+
+    Attributes
+    ----------
+    name, meaning, unit : str
+    value : float
+    stderr : float or None
+        Standard error of chance alone; None if it is not known.
+    interval : tuple of float or None
+        95 % interval; None if it is not known.
+    remark : str
+        "fixed", "not determined by the recording", …; "" where nothing is to be said.
+    """
+
+    name: str
+    meaning: str
+    unit: str
+    value: float
+    stderr: float | None = None
+    interval: tuple[float, float] | None = None
+    remark: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Subject:
+    """A joint as it is exported.
+
+    Attributes
+    ----------
+    joint : Joint
+    law : Law
+    values : tuple of ExportedValue
+        In the order of the torque balance.
+    model : str
+        Text of the model.
+    source : str
+        Where the values come from.
+    date : str
+        Of the export, in UTC.
+    version : str
+        Of jointid that exports.
+    findings : tuple of str
+        Warnings of the estimate.
+    speed : float or None
+        Largest speed of the recordings [rad/s or m/s]; None if it is not known.
+    """
+
+    joint: Joint
+    law: Law
+    values: tuple[ExportedValue, ...]
+    model: str
+    source: str
+    date: str
+    version: str
+    findings: tuple[str, ...]
+    speed: float | None
+
+    @property
+    def undetermined(self) -> tuple[str, ...]:
+        """Names of the parameters that no recording is known to have determined."""
+        return tuple(v.name for v in self.values if v.interval is None and v.remark != "fixed")
+
+    @property
+    def torque_unit(self) -> str:
+        """Unit of the drive's torque or force."""
+        return "N" if self.joint.kind == "prismatic" else "N·m"
+
+    @property
+    def position_unit(self) -> str:
+        """Unit of the position."""
+        return "m" if self.joint.kind == "prismatic" else "rad"
+
+
+def subject_of(value: Estimate | Joint, speed: float | None = None) -> Subject:
+    """Return what is exported of an estimate, or of a joint whose parameters have values.
+
+    Parameters
+    ----------
+    value : Estimate or Joint
+    speed : float, optional
+        Largest speed [rad/s or m/s]. Default: of the estimate's recordings.
+
+    Raises
+    ------
+    InputError
+        A parameter without a value, or a value that is not finite.
+    """
+    require_kind("source", value, Estimate, Joint)
+    subject = _of_estimate(value) if isinstance(value, Estimate) else _of_joint(value)
+    for each in subject.values:
+        if not math.isfinite(each.value):
+            raise InputError(
+                "a finite value is expected",
+                argument=f"parameters.{each.name}",
+                value=each.value,
+            )
+    return subject if speed is None else _with_speed(subject, speed)
+
+
+def _with_speed(subject: Subject, speed: float) -> Subject:
+    from dataclasses import replace
+
+    return replace(subject, speed=speed)
+
+
+def _of_estimate(estimate: Estimate) -> Subject:
+    settings = estimate.settings
+    terms = tuple(settings["terms"])
+    weak = {
+        name
+        for found in estimate.findings
+        if found.code == "undetermined"
+        for name in found.parameters
+    }
+    entries = [_estimated(each, each.name in weak) for each in estimate.parameters.values()]
+    runs = [f"{run['name'] or 'unnamed'} ({run['fingerprint']})" for run in settings["recordings"]]
+    numbers = {name: parameter.value for name, parameter in estimate.parameters.items()}
+    names = dict.fromkeys(name.partition("[")[0] for name in numbers)
+    known = {name: shared_value(numbers, name) for name in names}
+    speeds = np.abs(estimate.windows.velocity)
+    return Subject(
+        joint=estimate.joint,
+        law=law_of(estimate.joint, terms, known),
+        values=tuple(_shared(entries)),
+        model=settings["model"],
+        source=(
+            f"estimate ({estimate.status}) of jointid {settings['version']} from "
+            f"{'recording' if len(runs) == 1 else 'recordings'} {', '.join(runs)}"
+        ),
+        date=_today(),
+        version=_core.__version__,
+        findings=tuple(
+            f"{each.code} ({each.severity}): {each.cause}" for each in estimate.warnings
+        ),
+        speed=float(speeds.max()) if len(speeds) else None,
+    )
+
+
+def _today() -> str:
+    return datetime.datetime.now(datetime.UTC).date().isoformat()
+
+
+def _estimated(found: ParameterEstimate, weak: bool) -> ExportedValue:
+    remark = ""
+    interval = found.interval
+    if not found.vary:
+        remark = "fixed"
+    elif found.at_bound is not None:
+        remark = f"held at its bound {found.at_bound}: not determined by the recording"
+    elif weak or interval is None or not all(map(math.isfinite, interval)):
+        remark = "not determined by the recording"
+    sound = not remark and found.stderr is not None and math.isfinite(found.stderr)
+    return ExportedValue(
+        name=found.name,
+        meaning=found.meaning,
+        unit=found.unit,
+        value=found.value,
+        stderr=found.stderr if sound else None,
+        interval=interval if sound else None,
+        remark=remark,
+    )
+
+
+def _shared(entries: list[ExportedValue]) -> list[ExportedValue]:
+    """One value for a parameter that each recording has for itself: their mean."""
+    shared: dict[str, list[ExportedValue]] = {}
+    for each in entries:
+        shared.setdefault(each.name.partition("[")[0], []).append(each)
+    return [
+        own[0]
+        if len(own) == 1 and own[0].name == name
+        else ExportedValue(
+            name=name,
+            meaning=own[0].meaning,
+            unit=own[0].unit,
+            value=float(np.mean([each.value for each in own])),
+            remark=(
+                f"mean of {len(own)} recordings, each with its own value: "
+                f"{min(each.value for each in own):.6g} to {max(each.value for each in own):.6g}"
+            ),
+        )
+        for name, own in shared.items()
+    ]
+
+
+def _of_joint(joint: Joint) -> Subject:
+    terms = _terms_of(joint)
+    slides = joint.kind == "prismatic"
+    values: dict[str, ExportedValue] = {}
+
+    def add(name: str, meaning: str, unit: str, known: float | None = None) -> None:
+        parameter = joint.parameters.get(name)
+        given = None if parameter is None else parameter.value
+        if given is None and known is None:
+            if name == "inertia":  # not every target needs it
+                return
+            raise InputError(
+                "has no value, which an export needs",
+                argument=f"parameters.{name}",
+                place=joint.owner,
+                remedy="identify the joint, or give the value",
+            )
+        number = given if given is not None else known
+        assert number is not None
+        fixed = given is None or (parameter is not None and not parameter.vary)
+        remark = "fixed" if fixed else "a joint file does not hold its standard error"
+        values[name] = ExportedValue(
+            name=name, meaning=meaning, unit=unit, value=number, remark=remark
+        )
+
+    shapes = {shape.name: shape for shape in _core.shapes()}
+    for key in terms:
+        term = _core.term(key)
+        unit = term.unit_prismatic if slides else term.unit
+        add(term.name, term.meaning, unit, _fact(joint, term.name))
+        for name in term.shapes:
+            shape = shapes[name]
+            add(name, shape.meaning, shape.unit_prismatic if slides else shape.unit)
+    numbers = {name: each.value for name, each in values.items()}
+    return Subject(
+        joint=joint,
+        law=law_of(joint, terms, numbers),
+        values=tuple(values.values()),
+        model=str(joint.model.resolved),
+        source="a joint's stated values (no estimate: their standard errors are not known)",
+        date=_today(),
+        version=_core.__version__,
+        findings=(),
+        speed=joint.limits.velocity,
+    )
+
+
+def _fact(joint: Joint, name: str) -> float | None:
+    """A value that the joint's facts give."""
+    if name == "inertia":
+        return joint.known_inertia
+    if name in _GRAVITY and joint.model.resolved.gravity == "known":
+        known = joint.gravity_coefficients
+        return known.cos if name == _GRAVITY[0] else known.sin
+    return None
+
+
+def _terms_of(joint: Joint) -> tuple[str, ...]:
+    """Keys of the terms of a joint's model, in the core's order; the offset only where it has a value."""
+    model = joint.model.resolved
+    wanted = {"inertia", *_core.model_terms(model.name, asymmetric=model.asymmetric)}
+    wanted |= set(_GRAVITY) if model.gravity != "none" else set()
+    wanted |= set(_SENSOR) if joint.sensor else set()
+    if model.load_friction:
+        wanted.add("load_friction_link" if model.load_friction == "link" else "load_friction")
+    offset = joint.parameters.get("torque_offset")
+    wanted |= {"torque_offset"} if offset is not None and offset.value is not None else set()
+    orders = {"ripple": model.ripple, "harmonics": model.harmonics}
+    return tuple(
+        key
+        for term in _core.terms()
+        for key in (
+            [f"{term.key}_{order:g}" for order in orders[term.option]]
+            if term.family
+            else [term.key] * (term.key in wanted)
+        )
+    )

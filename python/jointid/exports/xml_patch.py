@@ -1,0 +1,183 @@
+"""Attributes of one element of an XML text, edited in place: everything else keeps its bytes."""
+
+from __future__ import annotations
+
+import re
+import xml.parsers.expat
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from xml.sax.saxutils import escape, quoteattr
+
+from jointid.base.errors import InputError
+
+MARK = "jointid:"
+_PAIR = re.compile(rb"""(\s+)([^\s=/>]+)(\s*=\s*)("[^"]*"|'[^']*')""")
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """One element of a text.
+
+    Attributes
+    ----------
+    tag : str
+    attributes : mapping of str to str
+    path : tuple of str
+        Tags of the elements around it, the outermost first.
+    start, inner : int
+        Where its start tag begins, and the byte behind it.
+    stop : int
+        Where its end tag begins; the same as `inner` for an element without one.
+    parent : int
+        Place of the element around it in the list of all; -1 for the root.
+    """
+
+    tag: str
+    attributes: Mapping[str, str]
+    path: tuple[str, ...]
+    start: int
+    inner: int
+    stop: int
+    parent: int
+
+
+def elements(content: bytes, place: str) -> list[Element]:
+    """Return all elements of an XML text, in the order of their start tags.
+
+    Raises
+    ------
+    InputError
+        It is not XML, or in an encoding whose bytes cannot be edited.
+    """
+    found: list[Element] = []
+    open_: list[int] = []
+    parser = xml.parsers.expat.ParserCreate()
+
+    def begin(tag: str, attributes: dict[str, str]) -> None:
+        start = parser.CurrentByteIndex
+        if content[start : start + 1] != b"<":
+            raise InputError(
+                "text in UTF-8 is expected", place=place, remedy="save the file as UTF-8"
+            )
+        path = tuple(found[each].tag for each in open_)
+        end = _tag_end(content, start)
+        parent = open_[-1] if open_ else -1
+        open_.append(len(found))
+        found.append(Element(tag, attributes, path, start, end, end, parent))
+
+    def end(tag: str) -> None:
+        number = open_.pop()
+        each = found[number]
+        stop = max(parser.CurrentByteIndex, each.inner)
+        if content[each.inner - 2 : each.inner] == b"/>":
+            stop = each.inner
+        found[number] = Element(
+            tag, each.attributes, each.path, each.start, each.inner, stop, each.parent
+        )
+
+    parser.StartElementHandler = begin
+    parser.EndElementHandler = end
+    try:
+        parser.Parse(content, True)
+    except xml.parsers.expat.ExpatError as error:
+        reason = xml.parsers.expat.ErrorString(error.code)
+        raise InputError(f"not XML: {reason}", place=f"{place}, line {error.lineno}") from None
+    return found
+
+
+def _tag_end(content: bytes, start: int) -> int:
+    """The byte behind a start tag; a `>` may stand in an attribute's value."""
+    quote = b""
+    for at in range(start, len(content)):
+        byte = content[at : at + 1]
+        if quote:
+            quote = b"" if byte == quote else quote
+        elif byte in (b'"', b"'"):
+            quote = byte
+        elif byte == b">":
+            return at + 1
+    return len(content)
+
+
+def with_attributes(content: bytes, element: Element, changes: Mapping[str, str]) -> bytes:
+    """Return the text with some attributes of one element set; new ones stand last."""
+    tag = content[element.start : element.inner]
+    left = dict(changes)
+
+    def replaced(found: re.Match[bytes]) -> bytes:
+        name = found[2].decode()
+        if name not in left:
+            return found[0]
+        return found[1] + found[2] + found[3] + quoteattr(left.pop(name)).encode()
+
+    tag = _PAIR.sub(replaced, tag)
+    closing = b"/>" if tag.endswith(b"/>") else b">"
+    body = tag[: -len(closing)]
+    kept = body.rstrip()
+    added = b"".join(f" {name}={quoteattr(value)}".encode() for name, value in left.items())
+    tag = kept + added + body[len(kept) :] + closing
+    return content[: element.start] + tag + content[element.inner :]
+
+
+def with_comment(content: bytes, element: Element, lines: Sequence[str]) -> bytes:
+    """Return the text with a comment before an element; an earlier one of ours there is replaced."""
+    before = content[: element.start]
+    newline = b"\r\n" if b"\r\n" in content else b"\n"
+    indent = re.search(rb"[ \t]*\Z", before)
+    space = indent[0] if indent else b""
+    before = before[: len(before) - len(space)]
+    earlier = re.search(rb"[ \t]*<!-- " + MARK.encode() + rb"(?:(?!-->).)*-->\r?\n\Z", before, re.S)
+    if earlier:
+        before = before[: earlier.start()]
+    text = comment(lines, space.decode()).replace("\n", newline.decode()).encode()
+    return before + space + text + newline + space + content[element.start :]
+
+
+def comment(lines: Sequence[str], indent: str = "") -> str:
+    """Return an XML comment; two dashes, which end one, are kept apart."""
+    safe = [re.sub(r"-(?=-)", "- ", _characters(line)).rstrip("-") for line in lines]
+    return f"<!-- {MARK} " + f"\n{indent}     ".join(safe) + " -->"
+
+
+def _characters(text: str) -> str:
+    """Text without characters that XML does not have."""
+    return "".join(c for c in text if c in "\t" or (c >= " " and not "\ud800" <= c <= "\udfff"))
+
+
+def attribute(value: str) -> str:
+    """Return an attribute's value with its quotes."""
+    return quoteattr(_characters(value))
+
+
+def text(value: str) -> str:
+    """Return text between tags."""
+    return escape(_characters(value))
+
+
+def only(
+    found: Sequence[Element],
+    name: str,
+    is_joint: Callable[[Element], bool],
+    place: str,
+    suggestion: Callable[[str, list[str]], str],
+) -> Element:
+    """Return the one joint of a name.
+
+    Raises
+    ------
+    InputError
+        There is none, or several.
+    """
+    joints = [each for each in found if is_joint(each)]
+    named = [each for each in joints if each.attributes.get("name") == name]
+    if len(named) == 1:
+        return named[0]
+    if named:
+        raise InputError("several joints have this name", argument="joint", value=name, place=place)
+    known = [each.attributes["name"] for each in joints if each.attributes.get("name")]
+    says = suggestion(name, known) if known else "no joint in it has a name"
+    includes = any(each.tag in ("include", "xacro:include") for each in found)
+    also = "; it includes other files, which are not searched" if includes else ""
+    raise InputError(
+        f"there is no such joint; {says}{also}", argument="joint", value=name, place=place
+    )

@@ -1,0 +1,69 @@
+"""Friction that grows with the load, as integrals over the windows: of a load that only motion and sensor tell.
+
+Which share of the inertia lies behind the gear is not known without a sensor, so several shares are tried. The fitted
+gravity has taken up part of this friction, and beside an offset it may be unknown; so the load is that of a fit which
+has the friction in its model, and of gravity's parts also each one alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.identification.causes.fitted import Fitted
+
+Array = NDArray[np.float64]
+
+_ROUNDS = 4  # of a load and of the fit with its friction
+_SHARES = (0.0, 0.05, 0.1, 0.2, 0.4, 1.0)  # of the inertia that may lie behind the gear
+_GRAVITY = (
+    ("gravity_cos", "gravity_sin"),
+    ("gravity_cos", "gravity_sin", "torque_offset"),
+    ("gravity_sin",),
+    ("gravity_cos",),
+)
+
+
+def load_friction_of_sensor(fit: Fitted) -> Array | None:
+    """Return the size of the sensed load times the direction; None without an offset of the sensor."""
+    names = ("sensor_gain", "sensor_offset")
+    return _of_load(fit, names, 0.0) if set(names) <= set(fit.names) else None
+
+
+def load_frictions_of_motion(fit: Fitted) -> Iterator[Array]:
+    """Yield the same of each load that gravity, or gravity and inertia, may be: that of the best share of the inertia."""
+    shares = _SHARES if "inertia" in fit.names else (0.0,)
+    parts = [names for names in _GRAVITY if set(names) <= set(fit.names)]
+    for names in parts:
+        tried = [_of_load(fit, names, share) for share in shares]
+        yield min(tried, key=lambda column: _misfit(fit, column))
+    if "inertia" in fit.names and not parts:
+        yield _of_load(fit, (), 1.0)
+
+
+def _of_load(fit: Fitted, names: tuple[str, ...], share: float) -> Array:
+    """Size of a load times the direction, the load being fitted with this friction in the model."""
+    turned = fit.integral(lambda _, run: np.sign(run.velocity)) / fit.duration
+    places = [fit.names.index(name) for name in names]
+    free = [(k, fit.free.index(place)) for k, place in enumerate(places) if place in fit.free]
+    values = fit.best[places]
+    still = np.zeros(len(turned))
+    if share > 0.0:
+        inertia = fit.names.index("inertia")
+        still = share * fit.best[inertia] * fit.columns[:, inertia]
+    column = np.abs(fit.columns[:, places] @ values + still) * turned
+    for _ in range(_ROUNDS if free else 0):
+        steps = fit.solve(np.column_stack([fit.jacobian, column]), fit.residual)
+        for k, at in free:
+            values[k] = fit.best[places[k]] + steps[at]
+        column = np.abs(fit.columns[:, places] @ values + still) * turned
+    return np.asarray(column)
+
+
+def _misfit(fit: Fitted, column: Array) -> float:
+    both = np.column_stack([fit.jacobian, column])
+    steps = fit.solve(both, fit.residual)
+    steps[: len(fit.start)] -= fit.start
+    return float(np.sum((fit.residual + both @ steps) ** 2))

@@ -1,0 +1,1 @@
+"""Several joints identified from one recording, each for itself, and what each residual owes to the others."""

@@ -1,0 +1,193 @@
+"""`identify_joints`: every joint of a robot's recording, each for itself."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from jointid.base.argument_checks import require_kind
+from jointid.base.errors import InputError
+from jointid.identification.identification import identify
+from jointid.identification.search.search import Search
+from jointid.joint.joint import Joint
+from jointid.joint.model import Model
+from jointid.joint.parameters import Parameter
+from jointid.joints.coupling import shares_of_others
+from jointid.joints.result import FAILED, IDENTIFIED, JointEstimates, JointResult
+from jointid.problem.windows import Windows
+from jointid.recording.recording import Recording
+from jointid.recording.wide.joint_table import joint_named
+from jointid.recording.wide.robot_recording import RobotRecording
+
+
+def identify_joints(
+    robot: RobotRecording,
+    joints: Iterable[str | int] | str | None = None,
+    *,
+    joint: Joint | Mapping[str, Joint] | None = None,
+    model: Model | str | Mapping[str, Any] | None = None,
+    parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
+    search: Search | str | None = None,
+    residual: str | None = None,
+    windows: Windows = None,
+    torque_hold: str | None = None,
+    mask_standstill: bool = True,
+    shift: Mapping[str, float] | None = None,
+    min_speed: float | None = None,
+    couplings: bool = True,
+    callback: Callable[[str, int, int], None] | None = None,
+) -> JointEstimates:
+    """Identify several joints from one recording, each for itself, and say what they owe to each other.
+
+    No joint's estimate depends on the others, or on how many threads there are. What a joint's model leaves
+    unexplained is then held against the motion of all other joints of the recording, out of sample.
+
+    Parameters
+    ----------
+    robot : RobotRecording
+    joints : iterable of str or int, optional
+        Names or numbers of the joints to identify. Default, and "all": all.
+    joint : Joint or mapping of str to Joint, optional
+        What is known of the joints: one for all, or by name. A gear ratio other than 1 is used where the recording
+        has none. Default: nothing.
+    model, parameters, search, residual, windows, torque_hold, mask_standstill, shift, min_speed
+        As in `identify`, for each joint.
+    couplings : bool
+        Whether the residuals are held against the other joints' motion. Default True.
+    callback : callable, optional
+        Called before each joint with its name, its number from 0, and how many there are.
+
+    Returns
+    -------
+    JointEstimates
+        One result a joint. A joint whose recording cannot be used has the status "failed" and its reason; the
+        others are not lost.
+
+    Raises
+    ------
+    InputError
+        No such joint, an option that no joint can have, or gear ratios that contradict each other.
+    KeyboardInterrupt
+        Ctrl-C; it is raised within 0.1 s.
+
+    Examples
+    --------
+    >>> robot = jid.load_robot("arm.csv", gear_ratio=[32, 32, 45, -48, 45, 32])
+    >>> found = jid.identify_joints(robot, joints=[1, 2, 3])
+    >>> print(found.report())
+    """
+    started = time.perf_counter()
+    require_kind("robot", robot, RobotRecording)
+    names = _wanted(robot, joints)
+    known = {name: _known(joint, name) for name in robot.names}
+    robot = _with_ratios(robot, known)
+    options = {
+        "parameters": parameters,
+        "search": Search.of(search),
+        "residual": residual,
+        "windows": windows,
+        "torque_hold": torque_hold,
+        "mask_standstill": mask_standstill,
+        "shift": shift,
+        "min_speed": min_speed,
+        "model": Model.of(model),
+    }
+    recordings = dict(robot)
+    results: dict[str, JointResult] = {}
+    for number, name in enumerate(names):
+        if callback is not None:
+            callback(name, number, len(names))
+        recording = recordings[name]
+        side = str(recording.metadata.get("side", "joint"))
+        try:
+            described = _described(known[name], name, robot, recording)
+            estimate = identify(recording, described, **options)  # type: ignore[arg-type]
+        except InputError as error:
+            results[name] = JointResult(
+                name=name, status=FAILED, error=error.at(f"joint {name}"), side=side
+            )
+            continue
+        results[name] = JointResult(name=name, status=IDENTIFIED, estimate=estimate, side=side)
+    if couplings and len(recordings) > 1:
+        results = _with_couplings(results, recordings)
+    return JointEstimates(results=results, name=robot.name, seconds=time.perf_counter() - started)
+
+
+def _with_couplings(
+    results: dict[str, JointResult], recordings: Mapping[str, Recording]
+) -> dict[str, JointResult]:
+    """Return the results with the other joints' shares; then once more for those that others owe something to."""
+    found = {
+        name: shares_of_others(each.estimate, name, recordings) if each.estimate else ()
+        for name, each in results.items()
+    }
+    owed: dict[str, set[str]] = {name: set() for name in results}
+    for name, shares in found.items():
+        for share in shares:
+            if share.joint in owed:
+                owed[share.joint].add(name)
+    coupled = {}
+    for name, each in results.items():
+        expected = owed[name] - {share.joint for share in found[name]}
+        if expected and each.estimate is not None:
+            found[name] = shares_of_others(each.estimate, name, recordings, expected)
+        coupled[name] = replace(each, others=found[name])
+    return coupled
+
+
+def _wanted(robot: RobotRecording, joints: Iterable[str | int] | str | None) -> list[str]:
+    if joints is None or joints == "all":
+        return list(robot.names)
+    given = [joints] if isinstance(joints, str | int) else list(joints)
+    names = [joint_named(each, robot.names, robot.name, "joints") for each in given]
+    if not names:
+        raise InputError("at least one joint is expected", argument="joints", value=[])
+    return list(dict.fromkeys(names))
+
+
+def _known(joint: Joint | Mapping[str, Joint] | None, name: str) -> Joint | None:
+    if joint is None or isinstance(joint, Joint):
+        return joint
+    if not isinstance(joint, Mapping):
+        raise InputError(
+            "a Joint, or one for each joint's name, is expected", argument="joint", value=joint
+        )
+    for key in (name, int(name) if name.isdigit() else name):
+        if key in joint:
+            found: Joint = joint[key]  # type: ignore[index]
+            require_kind(f"joint[{key!r}]", found, Joint)
+            return found
+    return None
+
+
+def _with_ratios(robot: RobotRecording, known: Mapping[str, Joint | None]) -> RobotRecording:
+    """Return the recording with the joints' gear ratios, where it has none."""
+    ratios = [1.0 if known[name] is None else known[name].gear_ratio for name in robot.names]  # type: ignore[union-attr]
+    if robot.gear_ratio is None:
+        stated = any(ratio != 1.0 for ratio in ratios)
+        return robot.with_gear_ratio(ratios) if stated and robot.side == "motor" else robot
+    for name, ratio, own in zip(robot.names, ratios, robot.gear_ratio, strict=True):
+        if ratio not in (1.0, own):
+            raise InputError(
+                f"the recording has {own:g} for joint {name}",
+                argument="gear_ratio",
+                value=ratio,
+                remedy="give it once",
+            )
+    return robot
+
+
+def _described(
+    joint: Joint | None, name: str, robot: RobotRecording, recording: Recording
+) -> Joint | None:
+    """Return what is known of a joint, with its name and the recording's gear ratio."""
+    if joint is None:
+        if recording.sensor is not None:
+            return None  # the recording says that there is a sensor, and no joint contradicts it
+        joint = Joint(kind=recording.kind)
+    changes: dict[str, Any] = {} if joint.name else {"name": f"joint {name}"}
+    if robot.gear_ratio is not None and joint.gear_ratio == 1.0:
+        changes["gear_ratio"] = robot.gear_ratio[robot.names.index(name)]
+    return joint.replace(**changes) if changes else joint

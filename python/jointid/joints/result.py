@@ -1,0 +1,150 @@
+"""The result of `identify_joints`: each joint's estimate, and what each residual owes to the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from jointid.base.errors import InputError
+from jointid.estimate.estimate import Estimate
+from jointid.joints.coupling import Share
+from jointid.joints.signals import MEANING
+
+IDENTIFIED, FAILED = "identified", "failed"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointResult:
+    """What became of one joint.
+
+    Attributes
+    ----------
+    name : str
+    status : str
+        "identified", or "failed" when its recording cannot be used.
+    estimate : Estimate or None
+        None if it failed.
+    error : InputError or None
+        Why it failed.
+    side : str
+        Side of the gear that the values are on: "joint", or "motor" without a known gear ratio.
+    others : tuple of Share
+        What the other joints explain of its residual, in the order in which they were found.
+    """
+
+    name: str
+    status: str
+    estimate: Estimate | None = None
+    error: InputError | None = None
+    side: str = "joint"
+    others: tuple[Share, ...] = ()
+
+    @property
+    def explained(self) -> float:
+        """Share of the residual that other joints explain for certain, 0 to 1."""
+        return float(sum(share.share for share in self.others if share.certain))
+
+    def sentences(self) -> tuple[str, ...]:
+        """What the other joints explain, in words.
+
+        Examples
+        --------
+        >>> share = Share(joint="6", by="speed", share=0.41, scale=0.07)
+        >>> JointResult(name="5", status="identified", others=(share,)).sentences()
+        ("joint 6's speed explains 41 % of joint 5's residual (friction of a coupled drive)",)
+        """
+        return tuple(_sentence(self.name, share) for share in self.others)
+
+
+def _sentence(name: str, share: Share) -> str:
+    alike = f"; {' and '.join(share.alike)} would do as well, moving alike" if share.alike else ""
+    verb = "explains" if share.certain else "explains perhaps"
+    percent = max(1, round(100.0 * share.share))
+    return (
+        f"joint {share.joint}'s {share.by} {verb} {percent} % of joint {name}'s residual "
+        f"({MEANING[share.by]}{alike})"
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointEstimates(Mapping[str, Estimate]):
+    """Several joints identified from one recording, each for itself; a mapping from names to estimates.
+
+    A joint that failed is not in the mapping; `results` has it with its reason.
+
+    Attributes
+    ----------
+    results : mapping of str to JointResult
+        By joint, in the recording's order.
+    name : str
+        The recording's.
+    seconds : float
+        Wall time.
+    """
+
+    results: Mapping[str, JointResult]
+    name: str = ""
+    seconds: float = field(default=0.0, repr=False, compare=False)
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """Names of the joints whose recordings cannot be used."""
+        return tuple(name for name, each in self.results.items() if each.status == FAILED)
+
+    def sentences(self) -> tuple[str, ...]:
+        """What the joints explain of each other's residuals, in words."""
+        return tuple(text for each in self.results.values() for text in each.sentences())
+
+    def report(self) -> str:
+        """Return the table, the couplings and each joint's findings as text."""
+        from jointid.joints.tables import text_report
+
+        return text_report(self)
+
+    def document(self) -> dict[str, Any]:
+        """Return the result in JSON types."""
+        from jointid.joints.document import document_of
+
+        return document_of(self)
+
+    def to_json(self) -> str:
+        """Return the result as JSON: each joint's estimate as `Estimate.to_json` has it, and the couplings."""
+        from jointid.joints.document import json_of
+
+        return json_of(self)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the result as JSON, whole or not at all.
+
+        Raises
+        ------
+        InputError
+            The path does not end in ``.json``, or its folder does not exist.
+        OSError
+            The file cannot be written; an existing one is untouched.
+        """
+        from jointid.joints.document import save_json
+
+        return save_json(self, path)
+
+    def __getitem__(self, joint: str | int) -> Estimate:
+        result = self.results[str(joint)]
+        if result.estimate is None:
+            raise KeyError(f"joint {joint} failed: {result.error}")
+        return result.estimate
+
+    def __iter__(self) -> Iterator[str]:
+        return (name for name, each in self.results.items() if each.estimate is not None)
+
+    def __len__(self) -> int:
+        return sum(each.estimate is not None for each in self.results.values())
+
+    def __str__(self) -> str:
+        return self.report()
+
+    def _repr_html_(self) -> str:
+        from jointid.joints.html_tables import html_summary
+
+        return str(html_summary(self))

@@ -1,0 +1,115 @@
+"""Several joints' estimates as text: one table, the couplings, and each joint's findings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from jointid.base.advice import Action
+from jointid.base.error_text import printable
+from jointid.estimate.estimate import Estimate
+from jointid.estimate.statistics import ParameterEstimate
+from jointid.estimate.wording import two_digits
+from jointid.joints.result import JointEstimates, JointResult
+
+_SHOWN = ("coulomb", "static", "stribeck", "viscous", "inertia")
+_NO_COUPLING = "no joint's residual is explained by the others beyond chance"
+
+
+def shown_parameters(result: JointEstimates) -> list[str]:
+    """Names of the parameters that the table shows: friction and inertia, as far as a joint has them."""
+    names = dict.fromkeys(name for estimate in result.values() for name in estimate.parameters)
+    return [
+        name for first in _SHOWN for name in names if name == first or name.startswith(f"{first}_")
+    ]
+
+
+def head(result: JointEstimates) -> list[str]:
+    """The table's head."""
+    units = {
+        name: parameter.unit
+        for estimate in result.values()
+        for name, parameter in estimate.parameters.items()
+    }
+    shown = [f"{name} [{units[name]}]" for name in shown_parameters(result)]
+    return ["joint", "model", *shown, "residual", "others explain", "warnings"]
+
+
+def rows(result: JointEstimates) -> list[list[str]]:
+    """One row a joint, in the order of the head."""
+    names = shown_parameters(result)
+    return [_row(each, names) for each in result.results.values()]
+
+
+def _row(result: JointResult, names: list[str]) -> list[str]:
+    estimate = result.estimate
+    if estimate is None:
+        return [result.name, "failed", *("–" for _ in names), "–", "–", "–"]
+    cells = [value_with_error(estimate.parameters.get(name)) for name in names]
+    codes = ", ".join(dict.fromkeys(found.code for found in estimate.warnings)) or "none"
+    explained = f"{100.0 * result.explained:.0f} %" if result.explained else "–"
+    residual = f"{100.0 * estimate.residuals.relative:.1f} %"
+    return [result.name, model_of(estimate), *cells, residual, explained, codes]
+
+
+def model_of(estimate: Estimate) -> str:
+    """The model's name and what was added to it."""
+    return str(estimate.settings["model"])
+
+
+def value_with_error(parameter: ParameterEstimate | None) -> str:
+    """A value with its standard error, which decides the digits: ``7.74 ± 0.21``."""
+    if parameter is None:
+        return "–"
+    if parameter.stderr is None or not 0.0 < parameter.stderr < float("inf"):
+        fixed = "" if parameter.vary else " (fixed)"
+        return f"{parameter.value:.4g}{fixed}"
+    error = two_digits(parameter.stderr)
+    digits = len(error.partition(".")[2])
+    return f"{parameter.value:.{digits}f} ± {error}"
+
+
+def notes(result: JointEstimates) -> list[str]:
+    """What holds for the whole table."""
+    lines = []
+    at_motor = [name for name, each in result.results.items() if each.side == "motor"]
+    if at_motor:
+        lines.append(
+            f"joint {', '.join(at_motor)}: no gear ratio is known; the values are on the motor's side"
+        )
+    return lines
+
+
+def couplings(result: JointEstimates) -> list[str]:
+    """What the joints explain of each other's residuals, a sentence each."""
+    if len(result.results) < 2 and not result.sentences():
+        return []
+    return list(result.sentences()) or [_NO_COUPLING]
+
+
+def text_report(result: JointEstimates, action: Callable[[Action], str] = str) -> str:
+    """The result as text.
+
+    Parameters
+    ----------
+    result : JointEstimates
+    action : callable
+        Words the advice of a finding. Default: as at a Python prompt.
+    """
+    table = [head(result), *rows(result)]
+    widths = [max(len(row[column]) for row in table) for column in range(len(table[0]))]
+    lines = [f"jointid estimates — {result.name or 'robot'}", ""]
+    for index, row in enumerate(table):
+        cells = [cell.ljust(width) for cell, width in zip(row, widths, strict=True)]
+        lines.append("  ".join(cells).rstrip())
+        if index == 0:
+            lines.append("  ".join("-" * width for width in widths))
+    lines += ["", *notes(result), *couplings(result), ""]
+    for each in result.results.values():
+        if each.error is not None:
+            lines.append(f"joint {each.name} failed: {each.error}")
+        if each.estimate is not None:
+            lines += [
+                f"joint {each.name}, {found.severity} ({found.code}): {found.worded(action)}"
+                for found in each.estimate.findings
+            ]
+    return printable("\n".join(lines).rstrip())

@@ -1,0 +1,200 @@
+"""Extra signals of a recording: named arrays that no fixed signal describes, and the columns that hold them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import numpy as np
+import numpy.typing as npt
+
+from jointid.base.errors import InputError
+from jointid.recording.column_lookup import column_index
+from jointid.recording.columns import check_scale
+from jointid.recording.headers import parsed
+from jointid.recording.signals import SIGNALS, FloatArray, shown_dimension, signal_array
+from jointid.recording.table import Table
+from jointid.recording.units import Unit, unit_named
+
+PREFIX = "extra_"
+"""Begins the header of an extra signal in a saved recording."""
+
+UNITS_KEY = "extra_units"
+"""Key of a recording's metadata: name of an extra signal → text of its unit."""
+
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,59}")
+_INERTIA = re.compile(r"[\s_(\[](kg|kgc|gc)[_·*]?m\^?[2²][)\]]?$")  # headers: SIGNAL_kgm2
+_INERTIA_FACTORS = {"kg": 1.0, "kgc": 1e-4, "gc": 1e-7}
+
+
+def checked_extra(extra: object) -> Mapping[str, FloatArray]:
+    """Return extra signals as a read-only mapping of read-only arrays.
+
+    Parameters
+    ----------
+    extra : mapping of str to array_like, each of shape (n,)
+
+    Raises
+    ------
+    InputError
+        No mapping, a name that is no identifier or is a signal's, or values that are no array of numbers.
+    """
+    if not extra:
+        return _NONE
+    if not isinstance(extra, Mapping):
+        raise InputError(
+            "a mapping from names to arrays is expected", argument="extra", value=extra
+        )
+    arrays: dict[str, FloatArray] = {}
+    for name, values in extra.items():
+        check_extra_name(name, "extra")
+        arrays[name] = signal_array(f"extra.{name}", values)
+    return MappingProxyType(arrays)
+
+
+_NONE: Mapping[str, FloatArray] = MappingProxyType({})
+
+
+def check_extra_name(name: object, argument: str) -> None:
+    """Raise `InputError` for what cannot be the name of an extra signal."""
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise InputError(
+            "a name of letters, digits and underscores is expected, like q6_rate",
+            argument=argument,
+            value=name,
+        )
+    if name in SIGNALS:
+        raise InputError(
+            "this is the name of a signal that a recording has anyway",
+            argument=argument,
+            value=name,
+            remedy=f"call it {name}_extra",
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExtraColumn:
+    """A column that holds an extra signal.
+
+    Attributes
+    ----------
+    index : int
+        0-based number of the column.
+    unit : Unit or None
+        None: its header names no known unit, and the values stay as they are.
+    shown : str
+        Text of the unit after conversion, e.g. "rad/s"; empty if it is not known.
+    scale : float, optional
+        Factor from file units to SI; replaces the unit's. Default: the unit's factor.
+    """
+
+    index: int
+    unit: Unit | None = None
+    shown: str = ""
+    scale: float | None = None
+
+    def to_si(self, values: FloatArray) -> FloatArray:
+        """Return the column's values in SI units."""
+        if self.scale is not None:
+            with np.errstate(over="ignore", under="ignore"):  # inf is refused later, by signal
+                return values * self.scale
+        return self.unit.to_si(values) if self.unit else values
+
+
+def extra_columns(
+    table: Table,
+    wanted: object,
+    units: Mapping[str, str] | None = None,
+    scale: Mapping[str, float] | None = None,
+) -> dict[str, ExtraColumn]:
+    """Return the columns of the extra signals that a call wants, and of those that were saved.
+
+    Parameters
+    ----------
+    table : Table
+    wanted : collection of str, mapping of str to str or int, or None
+        Headers, which are then the names; or name → header or 0-based number.
+    units, scale : mapping, optional
+        As in `load`; entries of other signals are ignored.
+
+    Raises
+    ------
+    InputError
+        Something else, a name that cannot be one, or no such column.
+    """
+    found: dict[str, ExtraColumn] = {}
+    if table.saved is not None:
+        for index, header in enumerate(table.headers):
+            name = header.removeprefix(PREFIX)
+            if name != header and _NAME.fullmatch(name):
+                found[name] = ExtraColumn(
+                    index=index, shown=unit_of_extra(table.saved.get("metadata"), name)
+                )
+    for name, column in named_extra(wanted).items():
+        saved = isinstance(column, str) and column in found and column not in table.headers
+        if saved:
+            found[name] = found[str(column)]
+            continue
+        index = column_index(table, column, f"extra.{name}")
+        check_extra_name(name, "extra")
+        unit = _unit(table.headers[index])
+        shown = "" if unit is None else shown_dimension(unit.dimension)
+        found[name] = ExtraColumn(index=index, unit=unit, shown=shown)
+    for name in found.keys() & (units or {}).keys():
+        unit = unit_named((units or {})[name], argument=f"units.{name}", place=table.source)
+        found[name] = replace(found[name], unit=unit, shown=shown_dimension(unit.dimension))
+    for name in found.keys() & (scale or {}).keys():
+        factor = (scale or {})[name]
+        check_scale(table, name, factor, units or {})
+        found[name] = replace(found[name], scale=float(factor))
+    return found
+
+
+def unit_of_extra(metadata: object, name: str) -> str:
+    """Return the text of an extra signal's unit from a recording's metadata; empty if it has none."""
+    units = metadata.get(UNITS_KEY) if isinstance(metadata, Mapping) else None
+    return str(units.get(name, "")) if isinstance(units, Mapping) else ""
+
+
+def _unit(header: str) -> Unit | None:
+    inertia = _INERTIA.search(header.strip())
+    if inertia:
+        return Unit(name="kgm2", dimension="inertia", factor=_INERTIA_FACTORS[inertia[1]])
+    return parsed(header)[1]
+
+
+def named_extra(wanted: object) -> dict[str, str | int]:
+    """Return the columns that a call wants as extra signals, by name; raise `InputError` for something else."""
+    if wanted is None:
+        return {}
+    if isinstance(wanted, Mapping):
+        return dict(wanted)
+    if isinstance(wanted, str) or not isinstance(wanted, Collection):
+        raise InputError(
+            "headers of columns, or a mapping from names to headers, are expected",
+            argument="extra",
+            value=wanted,
+        )
+    for header in wanted:
+        if isinstance(header, str) and not _NAME.fullmatch(header):
+            raise InputError(
+                "this header cannot be a name, which has letters, digits and underscores",
+                argument="extra",
+                value=header,
+                remedy=f"give it one: extra={{'{_suggested(header)}': {header!r}}}",
+            )
+    return {str(header): header for header in wanted}
+
+
+def _suggested(header: str) -> str:
+    name = re.sub(r"[^A-Za-z0-9]+", "_", header).strip("_")[:40]
+    return name if _NAME.fullmatch(name) else f"signal_{name}".rstrip("_")
+
+
+def rows_of_extra(
+    extra: Mapping[str, FloatArray], kept: slice | npt.NDArray[np.generic]
+) -> dict[str, FloatArray]:
+    """Return some rows of extra signals."""
+    return {name: np.asarray(values[kept]) for name, values in extra.items()}

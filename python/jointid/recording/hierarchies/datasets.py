@@ -1,0 +1,172 @@
+"""The datasets of an HDF5 file that hold numbers, each split into vectors."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+_WIDEST = 256  # columns of a matrix: a wider one is not a table of signals
+_INFLATION = 1100  # times: no compressed dataset is larger by more than deflate allows
+_MATLAB_NUMBERS = (
+    *("double", "single", "logical"),
+    *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)),
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Vector:
+    """A column of an HDF5 file.
+
+    Attributes
+    ----------
+    path : str
+        Of its dataset, without the first slash.
+    field : tuple of str
+        The field of a table, and those inside it. Empty: the dataset has none.
+    part : int, optional
+        0-based number of the column of a matrix. Default: the dataset is no matrix.
+    by_rows : bool
+        Whether the matrix has a row for each signal instead of a column.
+    unit : str
+        From the dataset's attributes; empty if there is none.
+    name : str
+        A name that the file gives instead of that of the dataset. Default: none.
+    """
+
+    path: str
+    field: tuple[str, ...] = ()
+    part: int | None = None
+    by_rows: bool = False
+    unit: str = ""
+    name: str = ""
+
+    @property
+    def last(self) -> str:
+        """Its own name, without the groups."""
+        return self.name or (".".join(self.field) if self.field else self.path.rpartition("/")[2])
+
+    @property
+    def group(self) -> str:
+        """The group that holds its dataset; empty for the file itself."""
+        return self.path.rpartition("/")[0]
+
+
+def vectors_of(file: Any, size: int) -> tuple[list[Vector], list[str]]:
+    """Return the vectors of an open file, and what is not read.
+
+    Parameters
+    ----------
+    file : h5py.File
+    size : int
+        Bytes of the file.
+
+    Raises
+    ------
+    Exception
+        Whatever h5py raises for damaged bytes.
+    """
+    import h5py
+
+    found: list[Vector] = []
+    left_out: list[str] = []
+
+    def visit(path: str, thing: Any) -> None:
+        if path.startswith("#"):  # MATLAB's own: contents of cells and objects
+            return
+        kind = _text(thing.attrs.get("MATLAB_class"))
+        if isinstance(thing, h5py.Dataset):
+            if kind and kind not in _MATLAB_NUMBERS:
+                if kind not in ("char", "cell", "string"):
+                    left_out.append(f"{path} ({kind})")
+            elif not thing.external and thing.nbytes <= _INFLATION * size:
+                found.extend(_vectors(path, thing))
+        elif "MATLAB_sparse" in thing.attrs or (kind and kind != "struct"):
+            left_out.append(f"{path} ({kind or 'object'})")
+
+    file.visititems(visit)
+    return _named_blocks(file, found), left_out
+
+
+def _vectors(path: str, dataset: Any) -> Iterator[Vector]:
+    if dataset.attrs.get("MATLAB_empty") or dataset.size is None or dataset.size < 2:
+        return
+    unit = _unit(dataset)
+    if dataset.dtype.names is not None:
+        if len(dataset.shape) == 1 and "MATLAB_class" not in dataset.attrs:
+            yield from _fields(path, dataset.dtype, ())
+    elif dataset.dtype.kind in "biuf":
+        shape = [length for length in dataset.shape if length != 1]
+        if len(shape) == 1:
+            yield Vector(path=path, unit=unit)
+        elif len(dataset.shape) == 2 and min(shape) <= _WIDEST:
+            by_rows = shape[0] < shape[1]
+            for part in range(min(shape)):
+                yield Vector(path=path, part=part, by_rows=by_rows, unit=unit)
+
+
+def _fields(path: str, dtype: Any, above: tuple[str, ...]) -> Iterator[Vector]:
+    for name in dtype.names:
+        inner = dtype[name]
+        field = (*above, name)
+        if inner.names is not None:
+            yield from _fields(path, inner, field)
+        elif inner.subdtype is None:
+            if inner.kind in "biuf":
+                yield Vector(path=path, field=field)
+        elif inner.base.kind in "biuf" and len(inner.shape) == 1 and inner.shape[0] <= _WIDEST:
+            for part in range(inner.shape[0]):
+                yield Vector(path=path, field=field, part=part)
+
+
+def values_of(file: Any, vector: Vector) -> Any:
+    """Return the numbers of a vector.
+
+    Raises
+    ------
+    Exception
+        Whatever h5py raises for damaged bytes.
+    """
+    dataset = file[vector.path]
+    if vector.field:
+        values = dataset.fields(vector.field[0])[:]
+        for name in vector.field[1:]:
+            values = values[name]
+        return values if vector.part is None else values[:, vector.part]
+    if vector.part is None:
+        return dataset[()].reshape(-1)
+    return dataset[vector.part, :] if vector.by_rows else dataset[:, vector.part]
+
+
+def _named_blocks(file: Any, vectors: list[Vector]) -> list[Vector]:
+    """Name the columns of a pandas frame's blocks, which stand in a dataset beside them."""
+    named = []
+    for vector in vectors:
+        name = ""
+        last = vector.path.rpartition("/")[2]
+        if last.startswith("block") and last.endswith("_values"):
+            items = file.get(f"{vector.path.removesuffix('_values')}_items")
+            if items is not None and items.dtype.kind == "S" and (vector.part or 0) < len(items):
+                name = _text(items[vector.part or 0])
+        if last == "axis1" and f"{vector.group}/axis0".lstrip("/") in file:
+            name = "index"
+        named.append(vector if not name else replace(vector, name=name))
+    return named
+
+
+def _unit(dataset: Any) -> str:
+    return next(
+        (
+            text
+            for name in ("unit", "units", "Unit", "Units")
+            if (text := _text(dataset.attrs.get(name)))
+        ),
+        "",
+    )
+
+
+def _text(value: Any) -> str:
+    """Return a text that an attribute holds; empty for anything else."""
+    value = getattr(value, "flat", [value])
+    first = next(iter(value), None) if not isinstance(value, str | bytes) else value
+    if isinstance(first, bytes):
+        return first.decode("utf-8", "replace").strip("\0 ")
+    return str(first).strip() if isinstance(first, str) else ""

@@ -1,0 +1,125 @@
+"""An HDF5 file as a table of columns."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from jointid.base.error_text import reason_of
+from jointid.base.errors import InputError
+from jointid.recording.headers import parsed
+from jointid.recording.hierarchies.datasets import Vector, values_of, vectors_of
+from jointid.recording.hierarchies.groups import chosen_vectors
+from jointid.recording.signals import FloatArray, signal_array
+
+
+class Hdf5Table:
+    """An HDF5 file as a table of columns; only the columns used are read.
+
+    A column is a vector (n, n x 1 or 1 x n) or a field of a table, named by its dataset or field; by its whole
+    path where this name alone is not unique. The columns of a matrix are ``joint_1.NAME``, ``joint_2.NAME``; it
+    has a row for each joint if it is wider than long.
+
+    Parameters
+    ----------
+    path : Path
+    group : str or None
+        Only what is below this group is read, and what stands beside it or above it. Default: everything.
+
+    Raises
+    ------
+    InputError
+        The file is damaged, no HDF5 file, has no vectors, no such group, or several alike.
+    ModuleNotFoundError
+        h5py is not installed.
+    """
+
+    saved: Mapping[str, Any] | None = None
+
+    def __init__(self, path: Path, group: str | None) -> None:
+        import h5py
+
+        self._path = path
+        self.source = self.header_place = str(path)
+        path.open("rb").close()  # h5py would say less of a file that cannot be read
+        if not h5py.is_hdf5(path):
+            raise InputError("the file is not an HDF5 file, or is truncated", place=str(path))
+        try:
+            with h5py.File(path, "r", locking=False) as file:
+                vectors, left_out = vectors_of(file, path.stat().st_size)
+        # HDF5 documents no errors for damaged bytes.
+        except Exception as error:
+            raise self._damage(error) from None
+        if not vectors:
+            raise InputError(
+                f"no vectors of numbers are found{_not_read(left_out)}",
+                place=str(path),
+                remedy="save time and position as vectors",
+            )
+        self._vectors = chosen_vectors(str(path), vectors, group)
+        names = [_name(vector, self._vectors) for vector in self._vectors]
+        count = Counter(names)
+        self.headers = tuple(
+            _with_unit(name if count[name] == 1 else _full(vector, "/"), vector.unit)
+            for name, vector in zip(names, self._vectors, strict=True)
+        )
+        self.other_names = {
+            other: k
+            for k, vector in enumerate(self._vectors)
+            for other in dict.fromkeys(
+                (_full(vector, "/"), "/" + _full(vector, "/"), _full(vector, "."), names[k])
+            )
+            if count[other] <= 1
+        }
+        self.notes = {"not_read": left_out} if left_out else {}
+
+    def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
+        """Return columns as arrays of shape (n,), or raise `InputError`."""
+        import h5py
+
+        try:
+            with h5py.File(self._path, "r", locking=False) as file:
+                found = [values_of(file, self._vectors[column]) for column in columns]
+        except Exception as error:
+            raise self._damage(error) from None
+        return [
+            signal_array("", values, f"{self.source}, dataset {self.headers[column]!r}")
+            for column, values in zip(columns, found, strict=True)
+        ]
+
+    def text(self, column: int) -> list[str]:
+        """Return the values of a column as text."""
+        return [f"{value:g}" for value in self.numbers([column])[0].tolist()]
+
+    def place(self, column: int, row: int) -> str:
+        """Return file, dataset and 0-based index of a value."""
+        return f"{self.source}, dataset {self.headers[column]!r}, index {row}"
+
+    def _damage(self, error: Exception) -> InputError:
+        return InputError(f"the file is damaged ({reason_of(error)})", place=str(self._path))
+
+
+def _not_read(left_out: Sequence[str]) -> str:
+    return f"; objects such as {left_out[0]} are not read" if left_out else ""
+
+
+def _name(vector: Vector, vectors: Sequence[Vector]) -> str:
+    """Return a vector's name by the contract of wide tables: the joint before the signal."""
+    if vector.name or vector.part is None:
+        return _joint_group(vector, vectors) + vector.last
+    return f"joint_{vector.part + 1}.{vector.last}"
+
+
+def _joint_group(vector: Vector, vectors: Sequence[Vector]) -> str:
+    """Return the group before the name where each of several groups holds one joint."""
+    alike = {other.group for other in vectors if other.last == vector.last}
+    return f"{vector.group.rpartition('/')[2]}." if len(alike) > 1 and vector.group else ""
+
+
+def _full(vector: Vector, separator: str) -> str:
+    name = separator.join([*vector.path.split("/"), *vector.field])
+    return name if vector.part is None else f"{name}(:,{vector.part + 1})"
+
+
+def _with_unit(name: str, unit: str) -> str:
+    return f"{name} [{unit}]" if unit and parsed(name)[1] is None else name

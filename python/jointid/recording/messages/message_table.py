@@ -1,0 +1,189 @@
+"""The messages of a topic as a table: one row a stamp, one column a joint's signal."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from jointid.base.errors import InputError
+from jointid.recording.messages.collecting import Collected
+from jointid.recording.messages.joints import Column, is_joint_kind, unit_of
+from jointid.recording.messages.rows import Rows, rows_of
+from jointid.recording.messages.topic import Topic
+from jointid.recording.signals import FloatArray
+
+_NANO = 1e9
+TIME, LOG_TIME = 0, 1  # the first two columns
+
+
+class MessageTable:
+    """The messages of one topic as a table of columns.
+
+    Columns are ``time [s]``, ``log_time [s]`` and ``JOINT.position [rad]`` and so on; without the joint's
+    name where there is only one. Times are seconds since the first.
+
+    Parameters
+    ----------
+    path : Path
+    topic : Topic
+    collected : Collected
+        Its messages, at least one.
+    kind : {"revolute", "prismatic"}
+        Of the joints, which messages do not say.
+    incomplete : str
+        Why the file ends early; empty if it does not.
+    """
+
+    saved: Mapping[str, Any] | None = None
+
+    def __init__(
+        self, path: Path, topic: Topic, collected: Collected, *, kind: str, incomplete: str
+    ) -> None:
+        self.source = f"{path}, topic {topic.name}"
+        self.header_place = self.source
+        self._collected = collected
+        self._rows: Rows = rows_of(collected)
+        columns = list(dict.fromkeys(c for block in collected.blocks for c in block.columns))
+        self._columns = [column for column in columns if self._holds_numbers(column)]
+        joints = dict.fromkeys(joint for joint, _ in self._columns)
+        named = is_joint_kind(topic.kind)
+        self.headers = (
+            "time [s]",
+            "log_time [s]",
+            *(_header(c, kind, alone=len(joints) == 1, named=named) for c in self._columns),
+        )
+        self.other_names = {
+            f"{joint}.{signal}" if joint else signal: k
+            for k, (joint, signal) in enumerate(self._columns, start=2)
+        }
+        self._time = _seconds(self._rows.time)  # once: each joint of a robot asks for it
+        self._shown: npt.NDArray[np.intp] | None = None  # rows of the last numbers
+        self.notes = _notes(topic, collected, self._rows, incomplete)
+
+    def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
+        """Return columns as arrays of shape (n,).
+
+        Where a topic's messages hold different joints, the rows are those that hold any of these columns;
+        without a time among them, those of the last call with one.
+
+        Raises
+        ------
+        InputError
+            Such a row does not hold all of them.
+        """
+        kept = self._rows_with(columns)
+        self._shown = kept
+        found = []
+        for column in columns:
+            values = self._values(column)
+            values = values if kept is None else values[kept]
+            values.flags.writeable = False
+            found.append(values)
+        return found
+
+    def text(self, column: int) -> list[str]:
+        """Return the values of a column as text, of the same rows as the last numbers."""
+        values = self._values(column)
+        values = values if self._shown is None else values[self._shown]
+        return [f"{value:g}" for value in values.tolist()]
+
+    def place(self, column: int, row: int) -> str:
+        """Return file, topic, message and column of a value."""
+        if self._shown is not None:
+            row = int(self._shown[row])
+        message = int(np.flatnonzero(self._rows.row == row)[0])
+        return f"{self.source}, message {message}, column {self.headers[column]!r}"
+
+    def _values(self, column: int) -> FloatArray:
+        if column in (TIME, LOG_TIME):
+            return self._time if column == TIME else _seconds(self._rows.log_time)
+        values = np.full(self._rows.count, np.nan)
+        wanted = self._columns[column - 2]
+        for block in self._collected.blocks:
+            if wanted in block.columns:
+                rows = self._rows.row[block.messages]
+                kept = rows >= 0
+                values[rows[kept]] = block.values[block.columns.index(wanted)][kept]
+        return values
+
+    def _rows_with(self, columns: Sequence[int]) -> npt.NDArray[np.intp] | None:
+        """Return the rows that hold any of some columns; None for all rows."""
+        numbers = [column for column in columns if column > LOG_TIME]
+        wanted = {self._columns[column - 2] for column in numbers}
+        blocks = self._collected.blocks
+        if all(wanted.issubset(block.columns) for block in blocks):
+            return None if len(numbers) < len(columns) else self._shown
+        there = np.array([self._present(column) for column in numbers])
+        alone = len(numbers) == len(columns)  # their time was asked for before
+        if not alone:
+            kept = np.flatnonzero(there.any(axis=0))
+        else:
+            kept = np.arange(self._rows.count) if self._shown is None else self._shown
+        lacking = ~there[:, kept]
+        if lacking.any():
+            row = int(np.argmax(lacking.any(axis=0)))
+            missing = numbers[int(np.argmax(lacking[:, row]))]
+            raise self._without(missing, int(kept[row]))
+        return kept
+
+    def _present(self, column: int) -> npt.NDArray[np.bool_]:
+        """Whether each row's messages hold a column."""
+        present = np.zeros(self._rows.count, dtype=np.bool_)
+        for block in self._collected.blocks:
+            if self._columns[column - 2] in block.columns:
+                rows = self._rows.row[block.messages]
+                present[rows[rows >= 0]] = True
+        return present
+
+    def _without(self, missing: int, row: int) -> InputError:
+        self._shown = None
+        return InputError(
+            "messages at this time do not hold it",
+            place=self.place(missing, row),
+            remedy="load joints that are logged at different times one at a time",
+        )
+
+    def _holds_numbers(self, column: Column) -> bool:
+        """Whether any value is a number: drivers fill what they do not measure with NaN."""
+        return any(
+            bool(np.isfinite(block.values[block.columns.index(column)]).any())
+            for block in self._collected.blocks
+            if column in block.columns
+        )
+
+
+def _seconds(times: npt.NDArray[np.int64]) -> FloatArray:
+    """Return seconds since the first; exact to a nanosecond over 100 days."""
+    return np.asarray((times - times.min()) / _NANO)
+
+
+def _header(column: Column, kind: str, *, alone: bool, named: bool) -> str:
+    joint, signal = column
+    if not named:
+        return signal
+    unit = unit_of(signal, kind)
+    name = signal if alone or not joint else f"{joint}.{signal}"
+    return f"{name} [{unit}]" if unit else name
+
+
+def _notes(topic: Topic, collected: Collected, rows: Rows, incomplete: str) -> dict[str, Any]:
+    notes: dict[str, Any] = {
+        "topic": topic.name,
+        "stamps": "log time" if collected.stamps is None else "header",
+        "first_stamp_ns": int(rows.time.min()),
+    }
+    if rows.repeated:
+        notes["repeated_messages"] = rows.repeated
+    if rows.reordered:
+        notes["reordered_messages"] = rows.reordered
+    if incomplete:
+        notes["incomplete"] = incomplete
+    return notes
+
+
+def no_messages(path: Path, topic: Topic, incomplete: str) -> InputError:
+    """Return the error for a topic without messages."""
+    reason = f"; {incomplete}" if incomplete else ""
+    return InputError(f"it has no messages{reason}", place=f"{path}, topic {topic.name}")

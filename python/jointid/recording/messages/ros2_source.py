@@ -1,0 +1,169 @@
+"""ROS 2 bags: a .db3 file (SQLite), and a folder of .db3 or .mcap files."""
+
+import sqlite3
+from collections.abc import Iterator
+from pathlib import Path
+
+from jointid.base.error_text import reason_of
+from jointid.recording.messages.definitions import normal_kind
+from jointid.recording.messages.mcap_source import McapSource
+from jointid.recording.messages.topic import DamageError, Message, Source, Topic
+
+_ZSTANDARD = b"\x28\xb5\x2f\xfd"  # how a compressed message begins; CDR begins with 0
+
+
+class SqliteSource:
+    """One .db3 file of a ROS 2 bag.
+
+    Parameters
+    ----------
+    path : Path
+
+    Raises
+    ------
+    DamageError
+        It is no such file, or damaged.
+    """
+
+    def __init__(self, path: Path) -> None:
+        path.open("rb").close()  # SQLite would say less of a file that cannot be read
+        self._path = path
+        self.incomplete = ""
+        self._numbers: dict[tuple[str, str, str], list[int]] = {}
+        try:
+            self.topics = self._topics()
+        except (sqlite3.Error, UnicodeDecodeError, TypeError, AttributeError) as error:
+            raise DamageError(
+                f"it is not a ROS 2 bag in SQLite, or is damaged ({reason_of(error)})"
+            ) from None
+
+    def messages(self, topic: Topic) -> Iterator[Message]:
+        """Yield the messages of a topic, in the order of their log times."""
+        numbers = self._numbers[topic.name, topic.kind, topic.encoding]
+        marks = ",".join("?" * len(numbers))
+        query = (
+            f"SELECT timestamp, data FROM messages WHERE topic_id IN ({marks}) ORDER BY timestamp"
+        )
+        connection = self._connected()
+        try:
+            rows = connection.execute(query, numbers)
+            while True:
+                try:
+                    row = rows.fetchone()
+                except sqlite3.Error as error:
+                    raise DamageError(f"it is damaged ({reason_of(error)})") from None
+                if row is None:
+                    return
+                time, message = row
+                if not isinstance(time, int) or not isinstance(message, bytes):
+                    raise DamageError("it is damaged (a row holds no message)")
+                if message.startswith(_ZSTANDARD):
+                    message = _decompressed(message)
+                yield time, message
+        finally:
+            connection.close()
+
+    def _connected(self) -> sqlite3.Connection:
+        # Not written to, not even by SQLite's own recovery.
+        return sqlite3.connect(f"{self._path.resolve().as_uri()}?mode=ro&immutable=1", uri=True)
+
+    def _topics(self) -> tuple[Topic, ...]:
+        connection = self._connected()
+        try:
+            rows = connection.execute("SELECT id, name, type, serialization_format FROM topics")
+            described = rows.fetchall()
+            counts = dict(
+                connection.execute("SELECT topic_id, COUNT(*) FROM messages GROUP BY topic_id")
+            )
+            definitions = self._definitions(connection)
+        finally:
+            connection.close()
+        found: dict[tuple[str, str, str], Topic] = {}
+        for number, name, kind, encoding in described:
+            kind = normal_kind(kind)
+            form, text = definitions.get(kind, ("", ""))
+            key = (name, kind, encoding)
+            before = found[key].count or 0 if key in found else 0
+            self._numbers.setdefault(key, []).append(number)
+            found[key] = Topic(
+                name=name,
+                kind=kind,
+                encoding=encoding,
+                definition=text,
+                definition_format=form,
+                count=before + counts.get(number, 0),
+            )
+        return tuple(found.values())
+
+    def _definitions(self, connection: sqlite3.Connection) -> dict[str, tuple[str, str]]:
+        try:
+            rows = connection.execute(
+                "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"
+            ).fetchall()
+        except sqlite3.OperationalError:  # bags before ROS 2 Iron hold no definitions
+            return {}
+        return {normal_kind(kind): (form, text) for kind, form, text in rows}
+
+
+class FolderSource:
+    """A ROS 2 bag: a folder of .db3 or .mcap files, one after the other.
+
+    Parameters
+    ----------
+    path : Path
+
+    Raises
+    ------
+    DamageError
+        A file of it is damaged.
+    """
+
+    def __init__(self, path: Path) -> None:
+        files = sorted(
+            (each for each in path.iterdir() if each.suffix.lower() in (".db3", ".mcap")),
+            key=lambda each: (len(each.name), each.name),  # bag_2 before bag_10
+        )
+        self._sources: list[Source] = [
+            McapSource(each) if each.suffix.lower() == ".mcap" else SqliteSource(each)
+            for each in files
+        ]
+        found: dict[tuple[str, str, str], Topic] = {}
+        for source in self._sources:
+            for topic in source.topics:
+                key = topic.name, topic.kind, topic.encoding
+                before = found.get(key)
+                count: int | None = topic.count
+                if before is not None:
+                    known = count is not None and before.count is not None
+                    count = (count or 0) + (before.count or 0) if known else None
+                found[key] = Topic(
+                    name=topic.name,
+                    kind=topic.kind,
+                    encoding=topic.encoding,
+                    definition=topic.definition or (before.definition if before else ""),
+                    definition_format=topic.definition_format,
+                    count=count,
+                )
+        self.topics = tuple(found.values())
+
+    @property
+    def incomplete(self) -> str:
+        """Why a file of the bag ends early."""
+        return next((source.incomplete for source in self._sources if source.incomplete), "")
+
+    def messages(self, topic: Topic) -> Iterator[Message]:
+        """Yield the messages of a topic, file by file."""
+        wanted = topic.name, topic.kind, topic.encoding
+        for source in self._sources:
+            for each in source.topics:
+                if (each.name, each.kind, each.encoding) == wanted:
+                    yield from source.messages(each)
+
+
+def _decompressed(message: bytes) -> bytes:
+    import zstandard
+
+    try:
+        return zstandard.ZstdDecompressor().decompress(message, max_output_size=1 << 28)
+    except zstandard.ZstdError as error:
+        raise DamageError(f"a message is damaged ({reason_of(error)})") from None

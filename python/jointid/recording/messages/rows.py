@@ -1,0 +1,126 @@
+"""Which row of a table each message belongs to: rows in the order of their stamps, one for each stamp."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from jointid.recording.messages.collecting import Collected
+
+_LATE = (
+    1_000_000_000  # ns: a message that comes later than this after a younger one begins another run
+)
+Integers = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """The rows of a topic's messages.
+
+    Attributes
+    ----------
+    row : ndarray of int, shape (messages,)
+        The row of each message, -1 for a repeated one.
+    time, log_time : ndarray of int, shape (rows,)
+        Stamp and log time [ns].
+    repeated : int
+        Messages left out because they repeat another one.
+    reordered : int
+        Messages that stand behind a younger one.
+    """
+
+    row: Integers
+    time: Integers
+    log_time: Integers
+    repeated: int
+    reordered: int
+
+    @property
+    def count(self) -> int:
+        """Number of rows."""
+        return len(self.time)
+
+
+def rows_of(collected: Collected) -> Rows:
+    """Return the rows of messages.
+
+    Messages that stand a little behind a younger one (less than 1 s) are put in order; what goes back further is
+    left as it is, and refused later. Messages with equal stamps become one row if they hold
+    different joints, and are left out if they repeat all values.
+
+    Parameters
+    ----------
+    collected : Collected
+        At least one message.
+    """
+    logged = collected.log_times
+    stamps = logged if collected.stamps is None else collected.stamps
+    behind = np.maximum.accumulate(stamps) - stamps
+    late = (behind > 0) & (behind < _LATE)
+    reordered = int(np.count_nonzero(late)) if not (behind >= _LATE).any() else 0
+    order = np.argsort(stamps, kind="stable") if reordered else np.arange(len(stamps))
+    ordered = stamps[order]
+    equal = np.concatenate([[False], ordered[1:] == ordered[:-1]])
+    row = np.empty(len(stamps), dtype=np.int64)
+    repeated = 0
+    if equal.any():
+        joined, dropped = _joined(collected, order, equal)
+        row[order] = np.cumsum(~joined) - 1
+        row[order[dropped]] = -1
+        repeated = int(np.count_nonzero(dropped))
+        first = order[~joined]
+    else:
+        row[order] = np.arange(len(stamps))
+        first = order
+    return Rows(row, stamps[first], logged[first], repeated, reordered)
+
+
+def _joined(
+    collected: Collected, order: npt.NDArray[np.intp], equal: npt.NDArray[np.bool_]
+) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+    """Return which messages, in order, join the row of the one before, and which of them only repeat."""
+    group = np.cumsum(~equal) - 1  # of equal stamps
+    shared = np.flatnonzero(equal | np.append(equal[1:], False))
+    place = np.full(len(order), -1, dtype=np.int64)  # message → line of the small table
+    place[order[shared]] = np.arange(len(shared))
+    columns = list(dict.fromkeys(c for block in collected.blocks for c in block.columns))
+    there = np.zeros((len(shared), len(columns)), dtype=np.bool_)
+    values = np.zeros((len(shared), len(columns)))
+    for block in collected.blocks:
+        lines = place[block.messages]
+        used = lines >= 0
+        where = np.array([columns.index(column) for column in block.columns], dtype=np.intp)
+        cells = np.ix_(lines[used], where)
+        there[cells] = True
+        values[cells] = block.values[:, used].T
+    joined, dropped = np.zeros_like(equal), np.zeros_like(equal)
+    start = 0
+    for line in range(1, len(shared) + 1):
+        if line < len(shared) and group[shared[line]] == group[shared[start]]:
+            continue
+        _join_group(shared, slice(start, line), there, values, joined, dropped)
+        start = line
+    return joined, dropped
+
+
+def _join_group(
+    shared: npt.NDArray[np.intp],
+    lines: slice,
+    there: npt.NDArray[np.bool_],
+    values: npt.NDArray[np.float64],
+    joined: npt.NDArray[np.bool_],
+    dropped: npt.NDArray[np.bool_],
+) -> None:
+    """Decide on the messages of one stamp: all of them agree and join, or none does."""
+    seen, known = there[lines.start].copy(), values[lines.start].copy()
+    repeats = []
+    for line in range(lines.start + 1, lines.stop):
+        both = seen & there[line]
+        if not np.array_equal(known[both], values[line][both], equal_nan=True):
+            return
+        repeats.append(bool(both.sum() == there[line].sum()))
+        known[there[line]] = values[line][there[line]]
+        seen |= there[line]
+    positions = shared[lines.start + 1 : lines.stop]
+    joined[positions] = True
+    dropped[positions] = repeats

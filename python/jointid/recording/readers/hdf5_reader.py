@@ -1,0 +1,13 @@
+"""Reading HDF5 files with h5py, which the extra `hdf5` installs."""
+
+from pathlib import Path
+
+from jointid.recording.hierarchies.hdf5_table import Hdf5Table
+from jointid.recording.readers.reader import Reader
+
+
+def _opened(path: Path, *, part: str | None = None, kind: str | None = None) -> Hdf5Table:  # noqa: ARG001
+    return Hdf5Table(path, part)
+
+
+READER = Reader(endings=(".h5", ".hdf5"), open=_opened, package="h5py", extra="hdf5", part="group")

@@ -1,0 +1,218 @@
+"""Loading all joints of a file."""
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from jointid.base.argument_checks import require_path
+from jointid.base.errors import InputError
+from jointid.recording.column_lookup import column_index
+from jointid.recording.contents import Contents, read_contents
+from jointid.recording.readers.loading import file_name, table_of
+from jointid.recording.signals import FloatArray
+from jointid.recording.table import Table
+from jointid.recording.wide.joint_table import (
+    JointTable,
+    joint_named,
+    joints_of,
+    nothing_named,
+)
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.recording.wide.robot_signals import ROBOT_SIGNALS
+from jointid.recording.wide.saved_robot import saved_robot
+
+
+def load_robot(
+    path: str | os.PathLike[str],
+    joints: Sequence[str | int] | str | None = None,
+    *,
+    columns: Mapping[str, str | int | None] | None = None,
+    units: Mapping[str, str] | None = None,
+    scale: Mapping[str, float] | None = None,
+    gear_ratio: Sequence[float] | float | None = None,
+    where: Mapping[str, float | str] | None = None,
+    kind: str | None = None,
+    torque_hold: str | None = None,
+    extra: Mapping[str, str] | None = None,
+    name: str | None = None,
+    topic: str | None = None,
+    group: str | None = None,
+) -> RobotRecording:
+    """Return the recording of several joints that a file holds.
+
+    Parameters
+    ----------
+    path : path-like
+        A file as `load` reads it, or one that `RobotRecording.save` wrote.
+    joints : sequence of str or int, optional
+        Names or numbers of the joints, as the headers have them. Default, and "all": all that the headers name.
+    columns : mapping of str to str, int or None, optional
+        As in `load`; ``{joint}`` in a header stands for each joint's name:
+        ``{"position": "motor_encoder_pos_{joint}_linkside_rad"}``.
+    units, scale : mapping, optional
+        As in `load`, for all joints.
+    gear_ratio : sequence of float, optional
+        One a joint, in the order of `joints`, or one for all; signed. Default: not known.
+    where, kind, torque_hold
+        As in `load`.
+    extra : mapping of str to str, optional
+        Name → header of further columns; with ``{joint}`` in the header one of each joint. Default: none.
+    name : str, optional
+        Default: as saved, else the file's name without its ending.
+    topic, group : str, optional
+        As in `load`.
+
+    Returns
+    -------
+    RobotRecording
+        On the side of the gear that the headers show ("motor_position_3_rad": the motor's).
+
+    Raises
+    ------
+    InputError
+        The headers name no joints, or a joint's columns are not a recording; the error names joint and header.
+
+    Examples
+    --------
+    >>> robot = jid.load_robot("arm.csv", gear_ratio=[32, 32, 45, -48, 45, 32])
+    >>> elbow = robot.joint(3)
+    """
+    file = require_path("path", path)
+    table = table_of(file, topic=topic, group=group, kind=kind)
+    whole = saved_robot(table)
+    if whole is not None and not (
+        columns or units or scale or where or kind or torque_hold or extra
+    ):
+        return _changed(whole, joints, gear_ratio, name)
+    known = joints_of(table)
+    if not known:
+        raise nothing_named(table, "all" if joints is None else joints)
+    names = _wanted(joints, known, table.header_place)
+    tables = [JointTable(table, each, columns or {}) for each in names]
+    contents = []
+    fields = []
+    for each, one in zip(names, tables, strict=True):
+        try:
+            held = read_contents(
+                one,
+                columns=one.columns,
+                units=_of_present(units, one),
+                scale=_of_present(scale, one),
+                kind=kind,
+                torque_hold=torque_hold,
+            )
+            fields.append(held.fields(held.rows_where(where) if where else None))
+        except InputError as error:
+            raise error.at(f"joint {each}") from None
+        contents.append(held)
+    _check_times(names, fields, table.source)
+    sides = {one.side for one in tables}
+    if len(sides) > 1:
+        shown = ", ".join(f"{each}: {one.side}" for each, one in zip(names, tables, strict=True))
+        raise InputError(
+            f"some joints have positions of the motor, others of the joint ({shown})",
+            argument="joints",
+            place=table.header_place,
+            remedy="load those of one side",
+        )
+    first = fields[0]
+    return RobotRecording(
+        time=first["time"],
+        **_stacked(fields),  # type: ignore[arg-type]
+        side=sides.pop(),
+        gear_ratio=gear_ratio,
+        names=names,
+        extra=_extra(table, names, extra or {}, contents[0], where),
+        kind=first["kind"],
+        torque_hold=first.get("torque_hold"),
+        name=file_name(file, first, name),
+        metadata=first.get("metadata"),
+    )
+
+
+def _check_times(names: Sequence[str], fields: Sequence[Mapping[str, Any]], place: str) -> None:
+    """Refuse joints that were logged at different times, as by two publishers on one topic."""
+    for each, held in zip(names, fields, strict=True):
+        if not np.array_equal(held["time"], fields[0]["time"]):
+            raise InputError(
+                f"{each} was logged at other times than {names[0]}",
+                argument="joints",
+                place=place,
+                remedy="load those that were logged together",
+            )
+
+
+def _wanted(
+    joints: Sequence[str | int] | str | None, known: tuple[str, ...], place: str
+) -> list[str]:
+    if joints is None or joints == "all":
+        return list(known)
+    if isinstance(joints, str | int):
+        joints = [joints]
+    names = [joint_named(each, known, place, "joints") for each in joints]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None or not names:
+        raise InputError(
+            "it is named twice" if names else "at least one joint is expected",
+            argument="joints",
+            value=twice if names else [],
+            place=place,
+        )
+    return names
+
+
+def _of_present(values: Mapping[str, Any] | None, one: JointTable) -> Mapping[str, Any] | None:
+    """Units and factors of the signals that a joint has: another one may have more."""
+    if not isinstance(values, Mapping):
+        return values
+    absent = {signal for signal in ROBOT_SIGNALS if one.columns.get(signal) is None}
+    return {signal: value for signal, value in values.items() if signal not in absent}
+
+
+def _stacked(fields: Sequence[Mapping[str, Any]]) -> dict[str, FloatArray]:
+    """Return each signal's columns side by side, NaN for a joint that lacks it."""
+    length = len(fields[0]["time"])
+    stacked = {}
+    for signal in ROBOT_SIGNALS:
+        if any(each.get(signal) is not None for each in fields):
+            stacked[signal] = np.column_stack(
+                [
+                    np.full(length, np.nan) if each.get(signal) is None else each[signal]
+                    for each in fields
+                ]
+            )
+    return stacked
+
+
+def _extra(
+    table: Table,
+    names: Sequence[str],
+    extra: Mapping[str, str],
+    contents: Contents,
+    where: Mapping[str, float | str] | None,
+) -> dict[str, FloatArray]:
+    rows = contents.rows_where(where) if where else slice(None)
+    found = {}
+    for key, header in extra.items():
+        each = isinstance(header, str) and "{joint}" in header
+        headers = [header.replace("{joint}", name) for name in names] if each else [header]
+        indices = [column_index(table, one, f"extra.{key}") for one in headers]
+        values = [column[rows] for column in table.numbers(indices)]
+        found[key] = np.column_stack(values) if each else values[0]
+    return found
+
+
+def _changed(
+    robot: RobotRecording,
+    joints: Sequence[str | int] | str | None,
+    gear_ratio: Sequence[float] | float | None,
+    name: str | None,
+) -> RobotRecording:
+    """Return a saved recording, or some of its joints."""
+    if joints is not None and joints != "all":
+        robot = robot.select(_wanted(joints, robot.names, robot.name))
+    if gear_ratio is not None:
+        robot = robot.with_gear_ratio(gear_ratio)
+    return robot if name is None else RobotRecording(**{**robot.fields(), "name": name})

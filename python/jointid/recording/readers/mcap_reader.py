@@ -1,0 +1,17 @@
+"""Reading .mcap files with mcap, and the messages in them with rosbags; the extra `ros` installs both."""
+
+from pathlib import Path
+
+from jointid.recording.messages.mcap_source import McapSource
+from jointid.recording.messages.message_table import MessageTable
+from jointid.recording.messages.opening import opened
+from jointid.recording.readers.reader import Reader
+
+
+def _opened(path: Path, *, part: str | None = None, kind: str | None = None) -> MessageTable:
+    return opened(path, McapSource, topic=part, kind=kind)
+
+
+READER = Reader(
+    endings=(".mcap",), open=_opened, package=("mcap", "rosbags"), extra="ros", part="topic"
+)

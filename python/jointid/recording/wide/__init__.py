@@ -1,0 +1,1 @@
+"""Several joints in one table: whose each column is, one joint of it, and all of them together."""

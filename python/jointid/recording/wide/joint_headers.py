@@ -1,0 +1,182 @@
+"""The joints that a table's headers name: numbered (``motor_position_3_rad``) or named (``elbow.position [rad]``)."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from jointid.recording.headers import parsed
+from jointid.recording.units import find_unit
+from jointid.recording.wide.words import CARRIERS, KNOWN, NUMBERED, Meaning, meaning_of
+
+_UNIT = re.compile(r"\s*[\[(]\s*[^\[\](){}]*[^\[\](){}\d\s:,][^\[\](){}]*[\])]\s*$")
+_INDEX = re.compile(r"\[(\d+)\]|\((?::,)?(\d+)(?:,:)?\)")
+_SEPARATORS = re.compile(r"[\s_.\-/]+")
+_CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
+_LETTERS_DIGITS = re.compile(r"([^\W\d]+)(\d+)")
+_MARK = "{joint}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointHeader:
+    """A header that belongs to one joint.
+
+    Attributes
+    ----------
+    index : int
+        0-based number of the column.
+    joint : str
+        The joint's name, or its number as it is written.
+    header : str
+        Without the joint: ``motor_position_rad``.
+    pattern : str
+        With ``{joint}`` in the joint's place: ``motor_position_{joint}_rad``.
+    meaning : Meaning or None
+        None: no signal of a recording is recognised.
+    """
+
+    index: int
+    joint: str
+    header: str
+    pattern: str
+    meaning: Meaning | None
+
+
+def joint_headers(headers: Sequence[str]) -> dict[str, list[JointHeader]]:
+    """Return the joints of a table, each with its columns, in the order in which they first appear.
+
+    A joint is what has a position, a link's position counts. The number of a joint is an index in brackets
+    (``q[2]``, ``position(:,2)``), a word of its own (``position.3``, ``actual_q_0``) or stands at the end of a
+    word that names a signal or says "joint" (``q3``, ``joint3_pos``). A name stands before a point, a slash or an
+    underscore and the signal (``elbow.position``, ``elbow_position``), or behind the signal and a point
+    (``position.elbow``).
+
+    Parameters
+    ----------
+    headers : sequence of str
+    """
+    found: dict[str, list[JointHeader]] = {}
+    for index, header in enumerate(headers):
+        numbered = _numbered(index, header)
+        each = _indexed(index, header) or _dotted(index, header)
+        if each is None and (numbered is None or numbered.meaning is None):
+            each = _named(index, header)
+        each = each or numbered
+        if each is not None:
+            found.setdefault(each.joint, []).append(each)
+    return {joint: columns for joint, columns in found.items() if _is_joint(columns)}
+
+
+def _is_joint(columns: list[JointHeader]) -> bool:
+    signals = {each.meaning.signal for each in columns if each.meaning}
+    return bool(signals & {"position", "link_position"})
+
+
+def _without_unit(header: str) -> tuple[str, str]:
+    """Return a header in two parts: all but a unit in brackets, and that."""
+    bracketed = _UNIT.search(header)
+    cut = bracketed.start() if bracketed else len(header)
+    return header[:cut], header[cut:]
+
+
+def _words(header: str) -> tuple[str, ...]:
+    """The words of a header without its unit."""
+    name, _, _ = parsed(_CAMEL.sub("_", header) if find_unit(header) is None else header)
+    return tuple(word for word in name.split("_") if word)
+
+
+def _column(index: int, joint: str, shown: str, pattern: str) -> JointHeader:
+    meaning = meaning_of(_words(shown))
+    return JointHeader(index=index, joint=joint, header=shown, pattern=pattern, meaning=meaning)
+
+
+def _indexed(index: int, header: str) -> JointHeader | None:
+    """``q[2]``, ``states.position[2] [rad]``, ``position(:,2)``."""
+    stem, unit = _without_unit(header)
+    found = list(_INDEX.finditer(stem))
+    if len(found) != 1:
+        return None
+    (place,) = found
+    number = place[1] or place[2]
+    start = place.start(1) if place[1] else place.start(2)
+    pattern = f"{stem[:start]}{_MARK}{stem[start + len(number) :]}{unit}"
+    shown = f"{stem[: place.start()]}{stem[place.end() :]}"
+    # What stands before the last point or slash is where the signal comes from.
+    shown = re.split(r"[./]", shown)[-1]
+    return _column(index, number, f"{shown}{unit}", pattern)
+
+
+def _dotted(index: int, header: str) -> JointHeader | None:
+    """``elbow.position [rad]``, ``/arm/elbow/position``, ``position.elbow``."""
+    stem, unit = _without_unit(header)
+    for separator in (".", "/"):
+        before, found, behind = stem.rpartition(separator)
+        name = before.strip().rpartition("/")[2]  # of a path the last part
+        if not found or not name:
+            continue
+        pattern = f"{before[: len(before.rstrip()) - len(name)]}{_MARK}{found}{behind}{unit}"
+        column = _column(index, name, f"{behind}{unit}", pattern)
+        if column.meaning and not set(_words(name)) <= KNOWN:
+            return column
+        joint = behind.strip()
+        other = _column(index, joint, f"{before}{unit}", f"{before}{found}{_MARK}{unit}")
+        named = joint and not joint.isdigit() and not set(_words(joint)) <= KNOWN
+        if other.meaning and named and find_unit(joint) is None:
+            return other
+    return None
+
+
+def _numbered(index: int, header: str) -> JointHeader | None:
+    """``motor_position_3_rad``, ``joint3_pos``, ``q3``, ``actual_q_0``, ``A1_torque``."""
+    stem, unit = _without_unit(header)
+    places = [place for place in re.finditer(r"\d+", stem) if _is_number_word(stem, place)]
+    if len(places) != 1:
+        return None
+    (place,) = places
+    before, behind = stem[: place.start()], stem[place.end() :]
+    kept = [*_split(before), *_split(behind)]
+    carrier = len(_split(before)) - 1
+    if carrier >= 0 and kept[carrier].casefold() in CARRIERS and len(kept) > 1:
+        del kept[carrier]
+    if not kept:
+        return None
+    shown = f"{'_'.join(kept)}{unit}"
+    return _column(index, place[0], shown, f"{before}{_MARK}{behind}{unit}")
+
+
+def _split(text: str) -> list[str]:
+    return [word for word in _SEPARATORS.split(text) if word]
+
+
+def _is_number_word(stem: str, place: re.Match[str]) -> bool:
+    """Whether digits are a word, or the end of one that a joint's number may follow."""
+    if place.end() < len(stem) and not _SEPARATORS.match(stem, place.end()):
+        return False
+    before = stem[: place.start()]
+    if not before or _SEPARATORS.search(before[-1]):
+        return True
+    word = re.split(r"[\W\d_]+", before)[-1]
+    return bool({word.casefold(), _CAMEL.split(word)[-1].casefold()} & NUMBERED)
+
+
+def _named(index: int, header: str) -> JointHeader | None:
+    """``shoulder_pan_position``, ``elbow_2_motor_torque_Nm``: the signal's words are the last ones."""
+    stem, unit = _without_unit(header)
+    words = _split(stem)
+    behind = len(words)
+    # A unit among the last words is no word of the signal.
+    for first in range(1, len(words)):
+        suffix = "_".join(words[first:])
+        if not unit and not suffix[0].isdigit() and find_unit(suffix):
+            behind = first
+            break
+    first = behind
+    while first > 1 and words[first - 1].casefold() in KNOWN:
+        first -= 1
+    if first == behind:
+        return None
+    name = "_".join(words[:first])
+    if words[0].casefold() in KNOWN or not stem.startswith(name):
+        return None
+    shown = f"{'_'.join(words[first:])}{unit}"
+    column = _column(index, name, shown, f"{_MARK}{stem[len(name) :]}{unit}")
+    return column if column.meaning else None

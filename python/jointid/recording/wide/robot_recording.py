@@ -1,0 +1,327 @@
+"""A robot's recording: the signals of several joints on one clock, read-only."""
+
+import functools
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any, NoReturn, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from jointid.base.errors import InputError
+from jointid.recording.attributes import check_attributes, json_mapping
+from jointid.recording.recording import Recording
+from jointid.recording.signals import FloatArray, signal_array
+from jointid.recording.slicing import slice_between
+from jointid.recording.wide.joint_table import joint_named
+from jointid.recording.wide.robot_signals import (
+    ROBOT_SIGNALS,
+    checked_extra,
+    checked_names,
+    checked_ratios,
+    joint_arrays,
+)
+from jointid.recording.wide.sides import at_joint
+from jointid.recording.wide.words import JOINT, MOTOR, SIDES
+
+
+class RobotRecording(Mapping[str, Recording]):
+    """The signals of several joints on one clock, read-only; a mapping from a joint's name to its recording.
+
+    Arrays have one row a sample and one column a joint. A column of NaN says that this joint has no such signal.
+
+    Parameters
+    ----------
+    time : array_like, shape (n,)
+        Time stamps [s], strictly increasing; n is at least 8.
+    position : array_like, shape (n, joints)
+        [rad], or [m] with ``kind="prismatic"``.
+    velocity : array_like, shape (n, joints), optional
+        [rad/s] or [m/s]. Default: of each joint derived from its position, as by `Recording`.
+    torque : array_like, shape (n, joints), optional
+        Torque of the actuators [N·m], on the side that `side` says.
+    motor_torque, current, sensor, reference, link_position, temperature : array_like, shape (n, joints), optional
+        As in `Recording`; the reference is on the side that `side` says.
+    side : {"joint", "motor"}
+        Side of the gear on which position, velocity and torque are. Default ``"joint"``.
+    gear_ratio : sequence of float, optional
+        Motor's angle per angle of the joint, one a joint, negative if they turn in opposite directions. With it
+        each joint's recording is at the joint. Default: not known.
+    names : sequence of str, optional
+        Names of the joints. Default: "1", "2", ...
+    extra : mapping of str to array_like, shape (n,) or (n, joints), optional
+        Other signals by name. Default: none.
+    kind : {"revolute", "prismatic"}
+        Of all joints. Default ``"revolute"``.
+    torque_hold : {"zoh", "linear"}, optional
+        As in `Recording`. Default: not known.
+    velocity_derived : bool
+        Whether the given velocity was derived from the position. Default False.
+    name : str
+        Default ``""``.
+    metadata : mapping of str to JSON value, optional
+        Default: empty.
+
+    Raises
+    ------
+    InputError
+        A signal has another shape, is not finite, or time does not strictly increase; two joints have one name;
+        an option has no such value.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> time = np.arange(100) / 100.0
+    >>> robot = RobotRecording(time=time, position=np.column_stack([np.sin(time), np.cos(time)]))
+    >>> robot.names
+    ('1', '2')
+    >>> robot.joint(2).name
+    'joint 2'
+    """
+
+    time: FloatArray
+    position: FloatArray
+    velocity: FloatArray | None
+    torque: FloatArray | None
+    motor_torque: FloatArray | None
+    current: FloatArray | None
+    sensor: FloatArray | None
+    reference: FloatArray | None
+    link_position: FloatArray | None
+    temperature: FloatArray | None
+    side: str
+    gear_ratio: tuple[float, ...] | None
+    names: tuple[str, ...]
+    extra: Mapping[str, FloatArray]
+    kind: str
+    torque_hold: str | None
+    velocity_derived: bool
+    name: str
+    metadata: Mapping[str, Any]
+
+    def __init__(
+        self,
+        *,
+        time: npt.ArrayLike,
+        position: npt.ArrayLike,
+        velocity: npt.ArrayLike | None = None,
+        torque: npt.ArrayLike | None = None,
+        motor_torque: npt.ArrayLike | None = None,
+        current: npt.ArrayLike | None = None,
+        sensor: npt.ArrayLike | None = None,
+        reference: npt.ArrayLike | None = None,
+        link_position: npt.ArrayLike | None = None,
+        temperature: npt.ArrayLike | None = None,
+        side: str = JOINT,
+        gear_ratio: Sequence[float] | float | None = None,
+        names: Sequence[str] | None = None,
+        extra: Mapping[str, npt.ArrayLike] | None = None,
+        kind: str = "revolute",
+        torque_hold: str | None = None,
+        velocity_derived: bool = False,
+        name: str = "",
+        metadata: Mapping[str, Any] | None = None,
+    ) -> None:
+        check_attributes(kind, torque_hold, name, velocity_derived)
+        if side not in SIDES:
+            raise InputError(
+                f"{JOINT} or {MOTOR} is expected: where position, velocity and torque are",
+                argument="side",
+                value=side,
+            )
+        clock = signal_array("time", time)
+        given = (position, velocity, torque, motor_torque, current)
+        rest = (sensor, reference, link_position, temperature)
+        arrays = joint_arrays(clock, dict(zip(ROBOT_SIGNALS, (*given, *rest), strict=True)))
+        joints = arrays["position"].shape[1]
+        # Read-only: attributes are set only here, without __setattr__.
+        vars(self).update(dict.fromkeys(ROBOT_SIGNALS), **arrays)
+        vars(self).update(
+            time=clock,
+            side=side,
+            gear_ratio=checked_ratios(gear_ratio, joints),
+            names=checked_names(names, joints),
+            extra=MappingProxyType(checked_extra(extra or {}, clock, joints)),
+            kind=kind,
+            torque_hold=torque_hold,
+            velocity_derived=velocity_derived,
+            name=name,
+            metadata=json_mapping("metadata", metadata or {}),
+        )
+        for joint in self.names:  # what no recording can hold is refused here
+            self.joint(joint)
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """Names of the signals present, time first, always in the same order."""
+        return ("time", *(name for name in ROBOT_SIGNALS if getattr(self, name) is not None))
+
+    @property
+    def samples(self) -> int:
+        """Number of samples."""
+        return len(self.time)
+
+    @property
+    def duration(self) -> float:
+        """Time from the first sample to the last [s]."""
+        return float(self.time[-1]) - float(self.time[0])
+
+    @functools.cached_property
+    def _recordings(self) -> dict[str, Recording]:
+        return {}
+
+    def joint(self, joint: str | int) -> Recording:
+        """Return one joint's recording, at the joint if the gear ratio is known.
+
+        Parameters
+        ----------
+        joint : str or int
+            Name, or number in the name: 3 is "3" or the only name with this number, such as "joint_3".
+
+        Returns
+        -------
+        Recording
+            Values of a motor without a known gear ratio stay what they are; ``metadata["side"]`` is then "motor".
+
+        Raises
+        ------
+        InputError
+            There is no such joint.
+        """
+        name = joint_named(joint, self.names, self.name or "robot recording")
+        if name not in self._recordings:
+            self._recordings[name] = self._recording(name)
+        return self._recordings[name]
+
+    def _recording(self, name: str) -> Recording:
+        column = self.names.index(name)
+        fields: dict[str, Any] = {"time": self.time}
+        for signal in ROBOT_SIGNALS:
+            values = getattr(self, signal)
+            if values is not None and not np.isnan(values[0, column]):
+                fields[signal] = np.ascontiguousarray(values[:, column])
+        ratio = None if self.gear_ratio is None else self.gear_ratio[column]
+        fields["metadata"] = {**self.metadata, "joint": name}
+        found = at_joint(fields, self.side, ratio)
+        shown = f"{self.name} joint {name}".lstrip() if self.name or name.isdigit() else name
+        try:
+            return Recording(
+                **found,
+                kind=self.kind,
+                torque_hold=self.torque_hold,
+                velocity_derived=self.velocity_derived and "velocity" in fields,
+                name=shown,
+            )
+        except InputError as error:
+            raise error.at(f"joint {name}") from None
+
+    def to_recordings(self) -> tuple[Recording, ...]:
+        """Return the recordings of all joints, in their order."""
+        return tuple(self.joint(name) for name in self.names)
+
+    def select(self, joints: Iterable[str | int]) -> Self:
+        """Return the recording of some of the joints, in the order given.
+
+        Raises
+        ------
+        InputError
+            There is no such joint, or none is named.
+        """
+        place = self.name or "robot recording"
+        names = [joint_named(each, self.names, place, "joints") for each in joints]
+        kept = [self.names.index(name) for name in names]
+        fields = self.fields()
+        for signal in self.signals[1:]:
+            fields[signal] = fields[signal][:, kept]
+        fields["extra"] = {
+            key: values if values.ndim == 1 else values[:, kept]
+            for key, values in self.extra.items()
+        }
+        if self.gear_ratio is not None:
+            fields["gear_ratio"] = [self.gear_ratio[column] for column in kept]
+        return type(self)(**{**fields, "names": names})
+
+    def crop(self, start: float | None = None, stop: float | None = None) -> Self:
+        """Return the samples from one time to another, both included; see `Recording.crop`."""
+        kept = slice_between(self.time, start, stop)
+        fields = self.fields()
+        for signal in self.signals:
+            fields[signal] = fields[signal][kept]
+        fields["extra"] = {key: values[kept] for key, values in self.extra.items()}
+        return type(self)(**fields)
+
+    def with_gear_ratio(self, gear_ratio: Sequence[float] | float) -> Self:
+        """Return the recording with other gear ratios, one a joint or one for all."""
+        return type(self)(**{**self.fields(), "gear_ratio": gear_ratio})
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the recording to a file (.npz, .csv, .csv.gz), whole or not at all.
+
+        `load_robot` returns an equal recording, bit for bit, and ``load(path, joint=...)`` one joint of it.
+
+        Raises
+        ------
+        InputError
+            Another ending, or the folder does not exist.
+        OSError
+            The file cannot be written; an existing one is untouched.
+        """
+        from jointid.recording.wide.robot_saving import save_robot
+
+        save_robot(self, path)
+
+    def fields(self) -> dict[str, Any]:
+        """Return the arguments that build this recording again."""
+        names = ("time", *ROBOT_SIGNALS, "side", "gear_ratio", "names", "kind", "torque_hold")
+        fields = {name: getattr(self, name) for name in (*names, "velocity_derived", "name")}
+        return fields | {"extra": dict(self.extra), "metadata": dict(self.metadata)}
+
+    def __getitem__(self, joint: str | int) -> Recording:
+        try:
+            return self.joint(joint)
+        except InputError as error:
+            raise KeyError(str(error)) from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, RobotRecording):
+            return NotImplemented
+        return _plain(self.fields()) == _plain(other.fields())
+
+    def __hash__(self) -> int:
+        return hash((self.names, self.time.tobytes(), self.position.tobytes()))
+
+    def __repr__(self) -> str:
+        named = f" {self.name!r}" if self.name else ""
+        shown = [each for each in self.signals if each != "time"]
+        shown += [f"extra {each}" for each in self.extra]
+        return (
+            f"<RobotRecording{named}: {len(self)} joints ({', '.join(self.names)}), {self.samples} samples over "
+            f"{self.duration:.6g} s, {self.side} side; {', '.join(shown)}>"
+        )
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise AttributeError(f"a recording is read-only, '{name}' cannot be set")
+
+    def __delattr__(self, name: str) -> NoReturn:
+        raise AttributeError(f"a recording is read-only, '{name}' cannot be deleted")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # By the constructor: unpickled arrays are writable again.
+        return functools.partial(type(self), **self.fields()), ()
+
+
+def _plain(fields: dict[str, Any]) -> dict[str, Any]:
+    """Arrays as their bytes: -0.0 is not 0.0 here, and NaN is itself."""
+    flat = {**fields, **{f"extra {key}": value for key, value in fields["extra"].items()}}
+    del flat["extra"]
+    return {
+        key: (value.shape, value.tobytes()) if isinstance(value, np.ndarray) else value
+        for key, value in flat.items()
+    }

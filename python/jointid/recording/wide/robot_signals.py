@@ -1,0 +1,140 @@
+"""The arrays of a robot's recording, checked: one row a sample, one column a joint."""
+
+import re
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from jointid.base.errors import InputError
+from jointid.recording.signals import FloatArray, signal_array
+from jointid.recording.wide.sides import checked_ratio
+
+ROBOT_SIGNALS = (
+    *("position", "velocity", "torque", "motor_torque", "current"),
+    *("sensor", "reference", "link_position", "temperature"),
+)
+_MOST = 10_000  # joints: more are samples and joints exchanged
+_IN_HEADERS = re.compile(r"[^,;\"'\[\](){}\t\r\n]+")
+
+
+def joint_arrays(
+    time: FloatArray, given: Mapping[str, npt.ArrayLike | None]
+) -> dict[str, FloatArray]:
+    """Return the signals present as read-only arrays of shape (n, joints).
+
+    Raises
+    ------
+    InputError
+        The position is missing, or a signal has another shape or values that are no numbers.
+    """
+    if given["position"] is None:
+        raise InputError("a recording needs time and position", argument="position", value=None)
+    arrays: dict[str, FloatArray] = {}
+    for name, values in given.items():
+        if values is None:
+            continue
+        array = _matrix(name, values)
+        joints = arrays["position"].shape[1] if arrays else array.shape[1]
+        if array.shape != (len(time), joints):
+            hint = "; are samples and joints exchanged?" if array.shape[0] == joints else ""
+            raise InputError(
+                f"its shape is {array.shape}; {(len(time), joints)} is expected, one row a sample and one column "
+                f"a joint{hint}",
+                argument=name,
+            )
+        _check_absent(name, array)
+        arrays[name] = array
+    return arrays
+
+
+def _matrix(name: str, values: npt.ArrayLike) -> FloatArray:
+    try:
+        array = np.asarray(values)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError("an array of numbers is expected", argument=name) from None
+    if array.ndim != 2 or not 0 < array.shape[1] <= _MOST:
+        raise InputError(
+            f"its shape is {array.shape}; one row a sample and one column a joint are expected",
+            argument=name,
+        )
+    flat = signal_array(name, array.reshape(-1))
+    matrix = np.array(flat.reshape(array.shape), order="F")
+    matrix.flags.writeable = False
+    return matrix
+
+
+def _check_absent(name: str, array: FloatArray) -> None:
+    """Refuse a column that is NaN in part; one that is NaN throughout is no signal."""
+    missing = np.isnan(array)
+    partly = np.flatnonzero(missing.any(axis=0) & (~missing.all(axis=0) | (name == "position")))
+    if len(partly):
+        column = int(partly[0])
+        raise InputError(
+            "every sample must be a finite number",
+            argument=f"{name}[:, {column}]",
+            value=float("nan"),
+            place=f"index {int(np.argmax(missing[:, column]))}",
+        )
+
+
+def checked_extra(
+    extra: Mapping[str, npt.ArrayLike], time: FloatArray, joints: int
+) -> dict[str, FloatArray]:
+    """Return further signals as read-only arrays of shape (n,) or (n, joints)."""
+    if not isinstance(extra, Mapping):
+        raise InputError("a mapping of names to arrays is expected", argument="extra", value=extra)
+    found = {}
+    for name, values in extra.items():
+        place = f"extra.{name}"
+        if not isinstance(name, str) or not _IN_HEADERS.fullmatch(name):
+            raise InputError(
+                "a name without brackets, commas or quotes is expected", argument=place
+            )
+        array = np.asarray(values)
+        fitted = signal_array(place, array) if array.ndim == 1 else _matrix(place, array)
+        if fitted.shape not in ((len(time),), (len(time), joints)):
+            raise InputError(
+                f"its shape is {fitted.shape}; {(len(time),)} or {(len(time), joints)} is expected",
+                argument=place,
+            )
+        found[name] = fitted
+    return found
+
+
+def checked_names(names: Sequence[str] | None, joints: int) -> tuple[str, ...]:
+    """Return the joints' names; default "1", "2", ..."""
+    if names is None:
+        return tuple(str(number) for number in range(1, joints + 1))
+    if isinstance(names, str) or len(names) != joints:
+        raise InputError(
+            f"one name for each of the {joints} joints is expected", argument="names", value=names
+        )
+    for name in names:
+        if not isinstance(name, str) or not _IN_HEADERS.fullmatch(name) or name != name.strip():
+            raise InputError(
+                "a text without brackets, commas or quotes is expected",
+                argument="names",
+                value=name,
+            )
+    twice = [name for name in names if list(names).count(name) > 1]
+    if twice:
+        raise InputError("two joints have this name", argument="names", value=twice[0])
+    return tuple(names)
+
+
+def checked_ratios(
+    gear_ratio: Sequence[float] | float | None, joints: int
+) -> tuple[float, ...] | None:
+    """Return one gear ratio a joint; a single one is that of all."""
+    if gear_ratio is None:
+        return None
+    single = isinstance(gear_ratio, int | float | np.number)
+    ratios = [gear_ratio] * joints if single else list(gear_ratio)  # type: ignore[arg-type]
+    if len(ratios) != joints:
+        raise InputError(
+            f"one ratio for each of the {joints} joints is expected, or one for all",
+            argument="gear_ratio",
+            value=gear_ratio,
+        )
+    return tuple(checked_ratio(each) for each in ratios)

@@ -1,0 +1,72 @@
+"""Reading back what `RobotRecording.save` wrote."""
+
+from typing import Any
+
+import numpy as np
+
+from jointid.base.errors import InputError
+from jointid.recording.signals import KINDS, header_unit
+from jointid.recording.table import Table
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.recording.wide.robot_saving import EXTRA
+from jointid.recording.wide.robot_signals import ROBOT_SIGNALS
+
+
+def saved_robot(table: Table) -> RobotRecording | None:
+    """Return the recording that a table was saved from; None of a table that is no such file.
+
+    Raises
+    ------
+    InputError
+        The file's description does not fit its columns.
+    """
+    saved = table.saved
+    robot = None if saved is None else saved.get("robot")
+    if saved is None or robot is None:
+        return None
+    try:
+        names, signals, extra = robot["names"], robot["signals"], robot["extra"]
+        fields = {key: robot[key] for key in ("side", "gear_ratio")}
+        if not set(signals) <= set(ROBOT_SIGNALS) or saved.get("kind") not in KINDS:
+            raise ValueError
+        kind = str(saved["kind"])
+        wanted: dict[str, list[str]] = {"time": [f"time [{header_unit('time', kind)}]"]}
+        for signal in signals:
+            unit = header_unit(signal, kind)
+            wanted[signal] = [f"{name}.{signal} [{unit}]" for name in names]
+        shared = {name for name, dimensions in extra.items() if dimensions == 1}
+        for name in extra:
+            inside = f"{EXTRA}{name}"
+            wanted[inside] = [inside] if name in shared else [f"{one}.{inside}" for one in names]
+        arrays = _arrays(table, wanted)
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise InputError(
+            "the description of the recording does not fit its columns", place=table.source
+        ) from None
+    found = {signal: arrays[signal] for signal in signals}
+    return RobotRecording(
+        time=arrays["time"][:, 0],
+        **found,
+        **fields,
+        names=names,
+        extra={
+            name: arrays[f"{EXTRA}{name}"][:, 0] if name in shared else arrays[f"{EXTRA}{name}"]
+            for name in extra
+        },
+        **{
+            key: saved[key]
+            for key in ("name", "kind", "torque_hold", "velocity_derived", "metadata")
+        },
+    )
+
+
+def _arrays(table: Table, wanted: dict[str, list[str]]) -> dict[str, Any]:
+    """Columns by signal, side by side; NaN where a joint has none."""
+    at = {header: index for index, header in enumerate(table.headers)}
+    present = [header for headers in wanted.values() for header in headers if header in at]
+    columns = dict(zip(present, table.numbers([at[header] for header in present]), strict=True))
+    absent = np.full(len(columns[wanted["time"][0]]), np.nan)
+    return {
+        signal: np.column_stack([columns.get(header, absent) for header in headers])
+        for signal, headers in wanted.items()
+    }

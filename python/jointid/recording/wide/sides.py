@@ -1,0 +1,68 @@
+"""The sides of a gear: what a motor's encoder and torque say at the joint."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from jointid.base.errors import InputError
+from jointid.recording.wide.words import JOINT, MOTOR
+
+_MOTION = ("position", "velocity", "reference")
+
+
+def checked_ratio(gear_ratio: object, argument: str = "gear_ratio") -> float:
+    """Return a gear ratio as a float.
+
+    Raises
+    ------
+    InputError
+        It is no finite number, or 0.
+    """
+    number = isinstance(gear_ratio, int | float | np.number) and not isinstance(gear_ratio, bool)
+    if not number or not np.isfinite(gear_ratio) or gear_ratio == 0:  # type: ignore[call-overload]
+        raise InputError(
+            "the motor's angle per angle of the joint is expected, negative if they turn in opposite directions",
+            argument=argument,
+            value=gear_ratio,
+        )
+    return float(gear_ratio)  # type: ignore[arg-type]
+
+
+def at_joint(fields: Mapping[str, Any], side: str, gear_ratio: float | None) -> dict[str, Any]:
+    """Return the arguments of `Recording` at the joint, as far as the gear ratio is known.
+
+    Position, velocity and reference of the motor are divided by the ratio, torque and motor torque multiplied by
+    it. What stays on the motor's side says so in ``metadata["side"]``; its motor torque is then the torque.
+
+    Parameters
+    ----------
+    fields : mapping
+        Arguments of `Recording`, as arrays.
+    side : str
+        "joint" or "motor": where position, velocity and torque are.
+    gear_ratio : float or None
+        Signed; None: not known.
+    """
+    result = dict(fields)
+    metadata = dict(result.get("metadata") or {})
+    torque, motor_torque = result.get("torque"), result.get("motor_torque")
+    if side == MOTOR and torque is None and motor_torque is not None:
+        torque, motor_torque = motor_torque, None
+    if gear_ratio is None:
+        if side == MOTOR:
+            metadata["side"] = MOTOR
+    else:
+        metadata["gear_ratio"] = gear_ratio
+        if side == MOTOR:
+            for name in _MOTION:
+                if result.get(name) is not None:
+                    result[name] = result[name] / gear_ratio
+            torque = None if torque is None else torque * gear_ratio
+        if motor_torque is not None and torque is None:
+            torque, motor_torque = motor_torque * gear_ratio, None
+    result |= {"torque": torque, "motor_torque": motor_torque, "metadata": metadata}
+    return result
+
+
+__all__ = ["JOINT", "MOTOR", "at_joint", "checked_ratio"]

@@ -1,0 +1,86 @@
+"""The report of several joints as one HTML page that needs no other file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from jointid.base.advice import Action
+from jointid.base.argument_checks import require_path
+from jointid.base.files import write_whole
+from jointid.base.html import Html, element, page
+from jointid.estimate.html_tables import html_findings, html_quality
+from jointid.estimate.html_tables import html_table as html_parameters
+from jointid.joints.html_tables import html_couplings, html_shares, html_table
+from jointid.joints.result import JointEstimates, JointResult
+from jointid.report.html import STYLE, friction_picture, shown_by, windows_picture
+
+if TYPE_CHECKING:
+    from jointid.estimate.estimate import Estimate
+
+_WIDE = "table { font-size: .92rem; } .wide { overflow-x: auto; }"
+
+
+def joints_report(result: JointEstimates, action: Callable[[Action], str] = str) -> str:
+    """The report as one HTML page: the table, what couples the joints, and a section a joint.
+
+    Parameters
+    ----------
+    result : JointEstimates
+    action : callable
+        Words the advice of a finding. Default: as at a Python prompt.
+    """
+    title = (
+        f"{result.name or 'robot'}: friction of {len(result.results)} joints, identified by jointid"
+    )
+    body: list[Html | str] = [
+        element("h1", title),
+        element("p", "Each joint for itself; value ± standard error."),
+        element("div", html_table(result), class_="wide"),
+        element("h2", "Between the joints", id="couplings"),
+        element(
+            "p",
+            "How much of what a joint's model leaves unexplained the motion of another joint explains, on blocks of "
+            "time that were held out.",
+        ),
+        html_couplings(result),
+    ]
+    if any(each.others for each in result.results.values()):
+        body.append(element("div", html_shares(result), class_="wide"))
+    for each in result.results.values():
+        body += _section(each, action)
+    return page(title, f"{STYLE}{_WIDE}", *body)
+
+
+def save_joints_report(
+    result: JointEstimates, path: str | Path, action: Callable[[Action], str] = str
+) -> Path:
+    """Write the report, whole or not at all; see `save_report`."""
+    target = require_path("path", path)
+    write_whole(target, joints_report(result, action).encode())
+    return target
+
+
+def _section(result: JointResult, action: Callable[[Action], str]) -> list[Html | str]:
+    heading = element("h2", f"Joint {result.name}", id=f"joint-{_slug(result.name)}")
+    estimate = result.estimate
+    if estimate is None:
+        return [heading, element("p", f"This joint failed: {result.error}")]
+    return [heading, *_of_estimate(estimate, action)]
+
+
+def _of_estimate(estimate: Estimate, action: Callable[[Action], str]) -> list[Html | str]:
+    pictured = {"friction-map", "windows", "convergence"}
+    shown = {code: name for code, name in shown_by(estimate).items() if name not in pictured}
+    return [
+        element("div", html_parameters(estimate), class_="wide"),
+        html_findings(estimate, shown, action),
+        friction_picture(estimate),
+        windows_picture(estimate),
+        element("div", html_quality(estimate), class_="wide"),
+    ]
+
+
+def _slug(name: str) -> str:
+    return "".join(letter if letter.isalnum() else "-" for letter in name)
