@@ -154,7 +154,10 @@ def several_joints(table: Table, columns: Columns | None) -> tuple[str, ...]:
         return ()
     if any(ALIASES.get(parsed(header)[0]) == "position" for header in table.headers):
         return ()
-    return joints_of(table)
+    joints = joint_headers(table.headers)
+    if sum(map(len, joints.values())) == len(table.headers):  # a matrix: one of them is the time
+        return ()
+    return tuple(joints)
 
 
 def which_joint(table: Table, joints: Sequence[str]) -> InputError:
