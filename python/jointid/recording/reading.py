@@ -8,10 +8,10 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.column_problems import TORQUES
 from jointid.recording.columns import Column
-from jointid.recording.exact_time import exact_time, stamps_note
 from jointid.recording.plausibility import unit_of_steps
 from jointid.recording.signals import FloatArray
 from jointid.recording.table import Table
+from jointid.recording.time_column import exact_time, stamps_note
 from jointid.recording.units import UNITS
 
 _NEEDED = ("time", "position", "torque")

@@ -9,6 +9,7 @@ from jointid.base.errors import InputError
 _SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
 BLANK = " "  # separates the cells of controllers' logs, one or several of them
 _TOKEN = re.compile(r'"[^"]*"|\S+')
+_UNITS = re.compile(r"[\[(][^\])]*[\])]|\S+")
 _OPEN = re.compile(r"[\[(][^\[\]()]*$")
 _DECIMAL_COMMA = re.compile(r"[+-]?(\d+,\d*|,\d+)(e[+-]?\d+)?", re.IGNORECASE)
 # 1,234 may mean 1234 or 1.234; 0,25 and 1,5 and 1234,567 are unambiguous.
@@ -34,6 +35,8 @@ def _between_blanks(line: str) -> list[str]:
     """Return what stands between blanks; a bracket belongs to the word before it: `time [s]`."""
     if not any(sign in line for sign in '"[('):
         return line.split()
+    if line.lstrip()[:1] in ("[", "("):  # a row of units
+        return _UNITS.findall(line)
     cells: list[str] = []
     for token in _TOKEN.findall(line):
         if cells and (token[0] in "[(" or _OPEN.search(cells[-1])):

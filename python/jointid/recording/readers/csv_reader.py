@@ -22,8 +22,10 @@ from jointid.recording.readers.csv_layout import is_comment, layout_of
 from jointid.recording.readers.csv_stream import even_rows, plain_numbers
 from jointid.recording.readers.csv_text import text_of
 from jointid.recording.readers.reader import Reader
+from jointid.recording.readers.twincat_scope import ScopeTable, separator_of_scope
 from jointid.recording.saving import CSV_MARK, saved_attributes
 from jointid.recording.signals import FloatArray
+from jointid.recording.table import Table
 from jointid.recording.truncated import no_sample, session_text, with_metadata
 
 _LONG = 1 << 20  # characters: a longer file is read as a stream if it holds only numbers
@@ -41,6 +43,8 @@ class CsvTable:
     Parameters
     ----------
     path : Path
+    text : str
+        What it holds, where it was read before. Default: the file is read.
 
     Raises
     ------
@@ -50,9 +54,9 @@ class CsvTable:
 
     other_names: Mapping[str, int] = MappingProxyType({})
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, text: str = "") -> None:
         self.source = str(path)
-        self._content = text_of(path)
+        self._content = text or text_of(path)
         ending: Mapping[str, Any] | None = None  # of a session's file
         if self._content.startswith(CSV_MARK):
             self._content, ending = session_text(self._content)
@@ -224,4 +228,11 @@ def _no_number(cell: str) -> str:
     return f"{what}; a number such as 0.25 is expected"
 
 
-READER = Reader(endings=(".csv", ".csv.gz"), open=CsvTable)
+def _opened(path: Path) -> Table:
+    """Return a text file as a table, whichever program wrote it."""
+    text = text_of(path)
+    separator = separator_of_scope(text[:_LONG].splitlines()[:100])
+    return CsvTable(path, text) if separator is None else ScopeTable(str(path), text, separator)
+
+
+READER = Reader(endings=(".csv", ".csv.gz", ".txt", ".tsv", ".log", ".dat"), open=_opened)
