@@ -19,6 +19,7 @@ from jointid.cli.arguments import (
     whole_seed,
     windows,
 )
+from jointid.cli.export import add_export
 from jointid.cli.proof import add_check, add_first_motion
 from jointid.cli.session import add_emulate, add_run
 from jointid.cli.simulation import add_simulate
@@ -83,7 +84,7 @@ def command_parser() -> argparse.ArgumentParser:
     commands = main_parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=_Parser)
     for add in (
         *(_add_demo, _add_identify, _add_compare, add_simulate, add_sweep),
-        *(add_check, add_first_motion, add_run, add_emulate, _add_report, _add_info),
+        *(add_check, add_first_motion, add_run, add_emulate, _add_report, add_export, _add_info),
     ):
         add(commands)
     return main_parser
@@ -111,7 +112,8 @@ def _add_identify(commands: Any) -> None:
             "examples:\n  jointid identify run.csv\n"
             "  jointid identify run.csv --joint joint.toml --set viscous=12 --report report.html --save joint.toml\n"
             "  jointid identify log.csv --column position=enc1_rad --unit position=deg --windows 0.05s --json\n"
-            "  jointid identify monday.csv tuesday.csv --joint joint.toml   (one fit, shared parameters)"
+            "  jointid identify monday.csv tuesday.csv --joint joint.toml   (one fit, shared parameters)\n"
+            "  jointid identify arm.csv --joints all --gear-ratio 32,32,45,-48,45,32 --report arm.html"
         ),
         formatter_class=TEXT,
     )

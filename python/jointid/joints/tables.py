@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from jointid.base.advice import Action
 from jointid.base.error_text import printable
+from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import two_digits
@@ -17,9 +18,7 @@ _NO_COUPLING = "no joint's residual is explained by the others beyond chance"
 
 def shown_parameters(result: JointEstimates) -> list[str]:
     """Names of the parameters that the table shows: friction and inertia, as far as a joint has them."""
-    names = dict.fromkeys(
-        name for estimate in result.values() for name in estimate.parameters
-    )
+    names = dict.fromkeys(name for estimate in result.values() for name in estimate.parameters)
     return [
         name for first in _SHOWN for name in names if name == first or name.startswith(f"{first}_")
     ]
@@ -88,7 +87,11 @@ def couplings(result: JointEstimates) -> list[str]:
     return list(result.sentences()) or [_NO_COUPLING]
 
 
-def text_report(result: JointEstimates, action: Callable[[Action], str] = str) -> str:
+def text_report(
+    result: JointEstimates,
+    action: Callable[[Action], str] = str,
+    error: Callable[[InputError], str] = str,
+) -> str:
     """The result as text.
 
     Parameters
@@ -96,6 +99,8 @@ def text_report(result: JointEstimates, action: Callable[[Action], str] = str) -
     result : JointEstimates
     action : callable
         Words the advice of a finding. Default: as at a Python prompt.
+    error : callable
+        Words why a joint failed. Default: as Python does.
     """
     table = [head(result), *rows(result)]
     widths = [max(len(row[column]) for row in table) for column in range(len(table[0]))]
@@ -108,7 +113,7 @@ def text_report(result: JointEstimates, action: Callable[[Action], str] = str) -
     lines += ["", *notes(result), *couplings(result), ""]
     for each in result.results.values():
         if each.error is not None:
-            lines.append(f"joint {each.name} failed: {each.error}")
+            lines.append(f"joint {each.name} failed: {error(each.error)}")
         if each.estimate is not None:
             lines += [
                 f"joint {each.name}, {found.severity} ({found.code}): {found.worded(action)}"
