@@ -60,7 +60,7 @@ SLIDING = jid.Joint(
     gear_ratio=300.0,
     inertia=12.0,
     model=jid.Model("coulomb_viscous"),
-    limits=jid.Limits(torque=400.0, velocity=0.8, position=(0.0, 1.5)),
+    limits=jid.Limits(torque=400.0, velocity=0.8, position=(-0.5, 1.5)),
 ).with_parameters({"coulomb": 14.0, "viscous": 90.0, "torque_offset": 3.0})
 
 JOINTS = {"thesis": THESIS, "loaded": LOADED, "everything": EVERYTHING, "sliding": SLIDING}

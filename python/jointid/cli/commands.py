@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.cli.arguments import fixed_values, joints_wanted, load_all, refinements, with_terms
+from jointid.cli.export import export
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
 from jointid.cli.parser import BAD_USAGE
 from jointid.cli.proof import check, first_motion
@@ -293,6 +294,7 @@ COMMANDS: dict[str, Callable[[argparse.Namespace], int | None]] = {
     "check": check,
     "first-motion": first_motion,
     "report": report,
+    "export": export,
     "info": info,
 }
 """By name; None stands for the exit code 0."""

@@ -104,6 +104,14 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "seed": "--seed",
     },
     "report": {"output": "--output"},
+    "export": {
+        "path": "--to",
+        "target": "--target",
+        "into": "--into",
+        "joint_name": "--joint-name",
+        "approximate": "--approximate",
+        "speed": "--speed",
+    },
     "info": _READING,
 }
 """By command and argument."""
@@ -126,7 +134,11 @@ PLACEHOLDERS: Mapping[str, str] = {
 FILES: Mapping[str, str] = {
     **dict.fromkeys(("--joint", "--believe", "--simulate"), "JOINT"),
     **dict.fromkeys(
-        ("--output", "--save", "--report", "--table", "--plot", "--checkpoint", "--resume"), "FILE"
+        (
+            *("--output", "--save", "--report", "--table", "--plot", "--checkpoint", "--resume"),
+            *("--to", "--into"),
+        ),
+        "FILE",
     ),
 }
 """Options that take a file, and what stands for one that the user has to choose."""
@@ -134,7 +146,7 @@ FILES: Mapping[str, str] = {
 FLAGS = frozenset(
     {
         *("--drop-copies", "--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run"),
-        *("--selftest", "--causes", "--unknown-friction", "--json", "--watchdog"),
+        *("--selftest", "--causes", "--unknown-friction", "--json", "--watchdog", "--approximate"),
     }
 )
 """Options that may stand without a value."""

@@ -30,11 +30,12 @@ def check_outputs(arguments: argparse.Namespace) -> None:
 _READ = (
     *("recordings", "recording", "joint", "estimate"),
     *("simulate", "believe", "trajectory", "resume"),
+    *("source", "into"),
 )
-_WRITTEN = ("output", "report", "table", "plot", "checkpoint", "save")
+_WRITTEN = ("output", "report", "table", "plot", "checkpoint", "save", "to")
 # Continuing a search in its own file, and updating a joint file, are intended; but values of an
 # emulated joint do not belong into the file of the real one.
-_INTENDED = {("resume", "checkpoint"), ("joint", "save")}
+_INTENDED = {("resume", "checkpoint"), ("joint", "save"), ("into", "to")}
 
 
 def check_distinct(arguments: argparse.Namespace) -> None:

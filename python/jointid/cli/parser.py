@@ -19,6 +19,7 @@ from jointid.cli.arguments import (
     whole_seed,
     windows,
 )
+from jointid.cli.export import add_export
 from jointid.cli.proof import add_check, add_first_motion
 from jointid.cli.session import add_emulate, add_run
 from jointid.cli.simulation import add_simulate
@@ -83,7 +84,7 @@ def command_parser() -> argparse.ArgumentParser:
     commands = main_parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=_Parser)
     for add in (
         *(_add_demo, _add_identify, _add_compare, add_simulate, add_sweep),
-        *(add_check, add_first_motion, add_run, add_emulate, _add_report, _add_info),
+        *(add_check, add_first_motion, add_run, add_emulate, _add_report, add_export, _add_info),
     ):
         add(commands)
     return main_parser

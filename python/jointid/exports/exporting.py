@@ -24,7 +24,7 @@ def export(
     *,
     target: str | None = None,
     into: str | os.PathLike[str] | None = None,
-    joint: str | None = None,
+    joint_name: str | None = None,
     approximate: bool = False,
     speed: float | None = None,
 ) -> Path:
@@ -47,7 +47,7 @@ def export(
         An existing MuJoCo or URDF file: the new file is this one with damping and friction of one joint set, in
         MuJoCo also its armature, and with a comment before the joint. Everything else keeps its bytes. May be `path`
         itself. Default: a model of this joint alone.
-    joint : str, optional
+    joint_name : str, optional
         Name of the joint in `into`. Default: the joint's own name.
     approximate : bool
         MuJoCo and URDF have Coulomb and viscous friction, the same in both directions. False (default) refuses any
@@ -73,15 +73,15 @@ def export(
     --------
     >>> jid.export(estimate, "joint_friction.h")  # doctest: +SKIP
     PosixPath('joint_friction.h')
-    >>> jid.export(estimate, "arm.xml", into="arm.xml", joint="shoulder", approximate=True)  # doctest: +SKIP
+    >>> jid.export(estimate, "arm.xml", into="arm.xml", joint_name="shoulder", approximate=True)  # doctest: +SKIP
     PosixPath('arm.xml')
     """
     require_kind("source", source, Estimate, Joint)
     place = require_path("path", path)
     if target is not None:
         require_kind("target", target, str)
-    if joint is not None:
-        require_kind("joint", joint, str)
+    if joint_name is not None:
+        require_kind("joint_name", joint_name, str)
     check_flag("", "approximate", approximate)
     peak = None if speed is None else positive_number("", "speed", speed)
     chosen = target_of(place, target)
@@ -89,10 +89,14 @@ def export(
     order = Order(
         name=subject.joint.name or place.name.partition(".")[0],
         approximate=approximate,
-        into=_existing(chosen, into, joint or subject.joint.name),
+        into=_existing(chosen, into, joint_name or subject.joint.name),
     )
-    if joint is not None and order.into is None:
-        raise InputError("it names a joint of the file to edit", argument="joint", value=joint)
+    if joint_name is not None and order.into is None:
+        raise InputError(
+            "it names a joint of the file to edit, and there is none",
+            argument="joint_name",
+            value=joint_name,
+        )
     write_whole(place, chosen.write(subject, order))
     return place
 
@@ -106,7 +110,7 @@ def _existing(target: Target, into: str | os.PathLike[str] | None, joint: str) -
         able = " and ".join(each.name for each in TARGETS if each.edits)
         raise InputError(f"only {able} files can be edited", argument="into", value=str(path))
     if not joint:
-        raise InputError("the joint in the file is not named", argument="joint")
+        raise InputError("which joint of the file is meant is not said", argument="joint_name")
     try:
         if path.stat().st_size > _LARGEST:
             raise InputError("the file is too large", argument="into", value=str(path))

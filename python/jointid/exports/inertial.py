@@ -13,6 +13,8 @@ from jointid.joint.link import STANDARD_GRAVITY
 
 # A body needs some inertia of its own, where the joint has none: a share that no result shows.
 _NOTHING = 1e-9
+# Of the mass of a joint that slides, at least in its body.
+_SHARE = 0.02
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,20 +84,19 @@ def body_of(subject: Subject) -> Body:
     weight = sum(each.amplitude for each in law.over("gravity"))
     if joint.model.resolved.gravity == "free" and weight > 0.0:
         return _equivalent(law, joint, total, weight)
+    slides = joint.kind == "prismatic"
     if joint.link is None:
-        return Body(mass=least, distance=0.0, angle=0.0, inertia=least, gravity=0.0, drive=total)
+        # Sliding, dry friction is judged by the body's mass: all of it is there.
+        mass, drive = (total, 0.0) if slides else (least, total)
+        return Body(mass=mass, distance=0.0, angle=0.0, inertia=least, gravity=0.0, drive=drive)
     drive = law.inertia if joint.sensor else None
     if drive is None:
         drive = _left(joint, total)
     link = joint.link
-    if joint.kind == "prismatic":
+    if slides:
+        mass = max(link.mass, _SHARE * total)
         return Body(
-            mass=max(link.mass, least),
-            distance=0.0,
-            angle=0.0,
-            inertia=least,
-            gravity=0.0,
-            drive=drive,
+            mass=mass, distance=0.0, angle=0.0, inertia=least, gravity=0.0, drive=total - mass
         )
     inner = joint.link_inertia - link.mass * link.centre_of_mass**2
     if inner < -1e-9 * joint.link_inertia:

@@ -22,8 +22,9 @@ from jointid.joint.checks import suggestion
 from jointid.simulation.plant import torque_limit
 
 _STEP = 0.0005
-# MuJoCo's dry friction creeps below a speed in proportion to the time constant; 0.02 is its default.
-_FRICTION = 'solreffriction="0.002 1" solimpfriction="0.99 0.99 0.001 0.5 2"'
+# MuJoCo's dry friction is a soft constraint: below a speed in proportion to this time constant it fades. Its default
+# is 0.02 s.
+_CONSTANT, _SOFTNESS = 0.002, 0.01
 
 
 def _write(subject: Subject, order: Order) -> bytes:
@@ -61,6 +62,11 @@ def _edited(subject: Subject, nearest: Nearest, into: Existing) -> bytes:
         )
     else:
         changes["armature"] = repr(armature)
+    if joint.attributes.get("type") == "slide" and changes.get("armature"):
+        notes.append(
+            "of a joint that slides, MuJoCo softens friction by the body's mass without the armature: give the body"
+            " the mass, or the joint a solimpfriction nearer to 1"
+        )
     notes += _elsewhere(subject)
     if subject.law.offset:
         notes.append(f"constant torque of {subject.law.offset!r} {subject.torque_unit}")
@@ -101,6 +107,9 @@ def _model(subject: Subject, nearest: Nearest, name: str) -> str:
     if joint.limits.position is not None:
         low, high = joint.limits.position
         limits = f' limited="true" range="{low!r} {high!r}"'
+    # Of a joint that slides, MuJoCo takes the body's mass for the whole.
+    share = body.mass / (body.mass + body.drive) if slides else 1.0
+    hard = repr(1.0 / (1.0 + _SOFTNESS * share))
     x, z = body.distance * math.cos(body.angle), body.distance * math.sin(body.angle)
     lines = [
         f"<mujoco model={attribute(name)}>",
@@ -113,7 +122,7 @@ def _model(subject: Subject, nearest: Nearest, name: str) -> str:
         f' {body.inertia!r}"/>',
         f'      <joint name={attribute(name)} type="{kind}" axis="{axis}" damping="{nearest.slope!r}"'
         f' frictionloss="{nearest.constant!r}" armature="{body.drive!r}"{limits}',
-        f"             {_FRICTION}/>",
+        f'             solreffriction="{_CONSTANT!r} 1" solimpfriction="{hard} {hard} 0.001 0.5 2"/>',
         "    </body>",
         "  </worldbody>",
         "  <actuator>",
@@ -142,10 +151,9 @@ def _actuator(subject: Subject, name: str) -> str:
 
 
 def _creep(subject: Subject, nearest: Nearest) -> float:
-    """The speed below which MuJoCo's dry friction is not fully there, of the settings above."""
+    """The speed below which MuJoCo's dry friction is not fully there, with the settings above."""
     total = subject.law.total_inertia or 1.0
-    share, constant = 0.99, 0.002
-    return nearest.constant / total * (1.0 - share) / share * share * constant / 2.0
+    return nearest.constant / total * _SOFTNESS * _CONSTANT / 2.0
 
 
 TARGET = Target(name="mujoco", endings=(".xml",), meaning="MuJoCo model", write=_write, edits=True)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.exports.law import Law
 from jointid.exports.subject import Subject
@@ -90,15 +91,15 @@ def nearest_friction(subject: Subject, *, approximate: bool, target: str) -> Nea
     if not approximate:
         raise InputError(
             f"{target} has Coulomb and viscous friction only; lost would be {' and '.join(lost)}",
-            argument="approximate",
-            value=False,
-            remedy="approximate to export the nearest Coulomb and viscous friction",
+            argument="model",
+            value=subject.model,
+            remedy=Action("call", {"approximate": True}, "the nearest of that kind", "export"),
         )
     if subject.speed is None:
         raise InputError(
             "the nearest friction needs the range of speeds, which a joint file does not hold",
             argument="speed",
-            remedy="state the largest speed, or export the estimate",
+            remedy=Action("call", {"speed": ...}, "the largest speed", "export"),
         )
     return _fitted(law, lost, subject.speed)
 

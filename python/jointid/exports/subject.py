@@ -279,6 +279,7 @@ def _terms_of(joint: Joint) -> tuple[str, ...]:
     return tuple(
         key
         for term in _core.terms()
+        if not term.own  # of signals that the joint has not: the model's text names them
         for key in (
             [f"{term.key}_{order:g}" for order in orders[term.option]]
             if term.family

@@ -93,7 +93,7 @@ def _with_children(
     if content[: joint.inner].endswith(b"/>"):
         raise InputError(
             "it has no parent and child",
-            argument="joint",
+            argument="joint_name",
             value=joint.attributes.get("name"),
         )
     newline = b"\r\n" if b"\r\n" in content else b"\n"

@@ -49,16 +49,18 @@ def elements(content: bytes, place: str) -> list[Element]:
     InputError
         It is not XML, or in an encoding whose bytes cannot be edited.
     """
+    try:
+        readable = "\0" not in content.decode("utf-8")
+    except UnicodeDecodeError:
+        readable = False
+    if not readable:
+        raise InputError("text in UTF-8 is expected", place=place, remedy="save the file as UTF-8")
     found: list[Element] = []
     open_: list[int] = []
     parser = xml.parsers.expat.ParserCreate()
 
     def begin(tag: str, attributes: dict[str, str]) -> None:
         start = parser.CurrentByteIndex
-        if content[start : start + 1] != b"<":
-            raise InputError(
-                "text in UTF-8 is expected", place=place, remedy="save the file as UTF-8"
-            )
         path = tuple(found[each].tag for each in open_)
         end = _tag_end(content, start)
         parent = open_[-1] if open_ else -1
@@ -173,11 +175,13 @@ def only(
     if len(named) == 1:
         return named[0]
     if named:
-        raise InputError("several joints have this name", argument="joint", value=name, place=place)
+        raise InputError(
+            "several joints have this name", argument="joint_name", value=name, place=place
+        )
     known = [each.attributes["name"] for each in joints if each.attributes.get("name")]
     says = suggestion(name, known) if known else "no joint in it has a name"
     includes = any(each.tag in ("include", "xacro:include") for each in found)
     also = "; it includes other files, which are not searched" if includes else ""
     raise InputError(
-        f"there is no such joint; {says}{also}", argument="joint", value=name, place=place
+        f"there is no such joint; {says}{also}", argument="joint_name", value=name, place=place
     )

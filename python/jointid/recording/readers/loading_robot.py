@@ -117,7 +117,9 @@ def load_robot(
             place=table.header_place,
             remedy="load those of one side",
         )
-    first = fields[0]
+    first = {key: value for key, value in fields[0].items() if key not in ROBOT_SIGNALS}
+    # Of a long log only one copy at a time: the table and its columns are no longer needed.
+    del table, tables, one, held
     return RobotRecording(
         time=first["time"],
         **_stacked(fields),  # type: ignore[arg-type]
@@ -171,18 +173,18 @@ def _of_present(values: Mapping[str, Any] | None, one: JointTable) -> Mapping[st
     return {signal: value for signal, value in values.items() if signal not in absent}
 
 
-def _stacked(fields: Sequence[Mapping[str, Any]]) -> dict[str, FloatArray]:
-    """Return each signal's columns side by side, NaN for a joint that lacks it."""
+def _stacked(fields: Sequence[dict[str, Any]]) -> dict[str, FloatArray]:
+    """Return each signal's columns side by side, NaN for a joint that lacks it, and take them out of `fields`."""
     length = len(fields[0]["time"])
     stacked = {}
     for signal in ROBOT_SIGNALS:
         if any(each.get(signal) is not None for each in fields):
-            stacked[signal] = np.column_stack(
-                [
-                    np.full(length, np.nan) if each.get(signal) is None else each[signal]
-                    for each in fields
-                ]
-            )
+            matrix = np.empty((length, len(fields)), order="F")
+            for joint, each in enumerate(fields):
+                column = each.pop(signal, None)
+                matrix[:, joint] = np.nan if column is None else column
+            matrix.flags.writeable = False
+            stacked[signal] = matrix
     return stacked
 
 

@@ -59,10 +59,18 @@ def _matrix(name: str, values: npt.ArrayLike) -> FloatArray:
             f"its shape is {array.shape}; one row a sample and one column a joint are expected",
             argument=name,
         )
+    if array is values and array.dtype == np.float64 and _frozen(array):
+        return array
     flat = signal_array(name, array.reshape(-1))
     matrix = np.array(flat.reshape(array.shape), order="F")
     matrix.flags.writeable = False
     return matrix
+
+
+def _frozen(array: FloatArray) -> bool:
+    """Whether nobody can change an array any more: it needs no copy."""
+    flags = array.flags
+    return flags.owndata and flags.f_contiguous and not flags.writeable
 
 
 def _check_absent(name: str, array: FloatArray) -> None:

@@ -1,0 +1,101 @@
+"""The command `export`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from jointid.base.errors import InputError
+from jointid.cli.arguments import TEXT
+from jointid.cli.outputs import check_folder
+
+
+def add_export(commands: Any) -> None:
+    """Add the command's grammar."""
+    from jointid.exports.registry import TARGETS, endings_text
+
+    kinds = ", ".join(f"{'/'.join(each.endings)} ({each.meaning})" for each in TARGETS)
+    export = commands.add_parser(
+        "export",
+        help="write an identified joint for a simulator, a controller, a PLC or Simulink",
+        epilog=(
+            "examples:\n"
+            "  jointid export estimate.json --to joint_friction.h\n"
+            "  jointid export joint.toml --to joint.st\n"
+            "  jointid export estimate.json --to arm.xml --into arm.xml --joint-name shoulder --approximate\n"
+            "the estimate (.json) knows how certain its values are, and the file says so; a joint file does not"
+        ),
+        formatter_class=TEXT,
+    )
+    export.add_argument(
+        "source",
+        type=Path,
+        help="estimate (.json), or joint file (.toml) with its parameters' values",
+    )
+    export.add_argument("--to", type=Path, required=True, help=f"file to write: {kinds}")
+    export.add_argument(
+        "--target",
+        metavar="NAME",
+        help=f"instead of the one that the ending {endings_text()} chooses: "
+        + ", ".join(each.name for each in TARGETS),
+    )
+    export.add_argument(
+        "--into",
+        type=Path,
+        help="MuJoCo or URDF file whose joint gets the values; all else in it stays, and it may be --to itself",
+    )
+    export.add_argument(
+        "--joint-name", help="name of the joint in --into (default: the joint's own)"
+    )
+    export.add_argument(
+        "--approximate",
+        action="store_true",
+        help="where the target has Coulomb and viscous friction only, write the nearest, and what it loses",
+    )
+    export.add_argument(
+        "--speed",
+        type=float,
+        help="largest speed for the nearest friction and for tables, rad/s or m/s (default: as recorded)",
+    )
+    export.add_argument("--json", action="store_true", help="print the outcome as JSON")
+
+
+def export(arguments: argparse.Namespace) -> None:
+    """Write a joint for another program."""
+    from jointid.estimate.estimate import Estimate
+    from jointid.exports import exporting
+    from jointid.exports.registry import target_of
+    from jointid.joint.joint import Joint
+
+    target_of(arguments.to, arguments.target)
+    check_folder("path", arguments.to)
+    source: Path = arguments.source
+    value = Estimate.load(source) if source.suffix.lower() == ".json" else Joint.load(source)
+    findings = value.findings if isinstance(value, Estimate) else ()
+    blocking = [each for each in findings if each.severity == "blocking"]
+    if blocking:  # as identify refuses to write a joint file: a controller would obey it
+        raise InputError(
+            f"the finding {blocking[0].code} is blocking: its values cannot be used",
+            place=str(source),
+            remedy="see its report",
+        )
+    path = exporting.export(
+        value,
+        arguments.to,
+        target=arguments.target,
+        into=arguments.into,
+        joint_name=arguments.joint_name,
+        approximate=arguments.approximate,
+        speed=arguments.speed,
+    )
+    warnings = [each.code for each in findings if each.severity == "warning"]
+    if arguments.json:
+        outcome = {"path": str(path), "warnings": warnings}
+        print(json.dumps(outcome, indent=1, ensure_ascii=False))
+        return
+    print(f"exported: {path}")
+    if warnings:
+        print(f"with the estimate's warnings: {', '.join(warnings)}", file=sys.stderr)
