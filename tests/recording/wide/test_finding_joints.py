@@ -2,7 +2,7 @@
 
 import pytest
 
-from jointid.recording.wide.joint_headers import joint_headers
+from jointid.recording.wide.finding_joints import joint_headers
 
 
 def meant(headers: list[str]) -> dict[str, dict[str, str]]:
