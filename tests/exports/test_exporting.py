@@ -124,7 +124,7 @@ def test_a_source_without_values_is_refused(tmp_path: Path) -> None:
 
 def test_a_model_that_moves_needs_an_inertia_that_can_be(tmp_path: Path) -> None:
     light = {"coulomb": 1.0, "viscous": 1.0}
-    bare = jid.Joint(model="coulomb_viscous").with_parameters(light)
+    bare = jid.Joint(model=jid.Model("coulomb_viscous")).with_parameters(light)
     with pytest.raises(jid.InputError, match="inertia: has no value"):
         jid.export(bare, tmp_path / "j.xml")
     jid.export(bare, tmp_path / "j.h")  # friction alone needs none

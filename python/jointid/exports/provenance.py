@@ -61,9 +61,16 @@ def statements(subject: Subject, *, notes: Sequence[str] = ()) -> list[str]:
     if subject.findings:
         lines.append("Warnings of the identification:")
         lines += [f"  {each}" for each in subject.findings]
-    if notes:
+    said = [
+        *notes,
+        *(
+            f"{key}: it needs a signal that is not this joint's, and is left out"
+            for key in subject.own
+        ),
+    ]
+    if said:
         lines.append("Notes:")
-        lines += [f"  {each}" for each in notes]
+        lines += [f"  {each}" for each in said]
     return lines
 
 

@@ -175,7 +175,9 @@ def only(
     if len(named) == 1:
         return named[0]
     if named:
-        raise InputError("several joints have this name", argument="joint_name", value=name, place=place)
+        raise InputError(
+            "several joints have this name", argument="joint_name", value=name, place=place
+        )
     known = [each.attributes["name"] for each in joints if each.attributes.get("name")]
     says = suggestion(name, known) if known else "no joint in it has a name"
     includes = any(each.tag in ("include", "xacro:include") for each in found)

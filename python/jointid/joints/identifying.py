@@ -112,9 +112,7 @@ def identify_joints(
         results[name] = JointResult(name=name, status=IDENTIFIED, estimate=estimate, side=side)
     if couplings and len(recordings) > 1:
         results = _with_couplings(results, recordings)
-    return JointEstimates(
-        results=results, name=robot.name, seconds=time.perf_counter() - started
-    )
+    return JointEstimates(results=results, name=robot.name, seconds=time.perf_counter() - started)
 
 
 def _with_couplings(

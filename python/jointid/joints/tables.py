@@ -17,9 +17,7 @@ _NO_COUPLING = "no joint's residual is explained by the others beyond chance"
 
 def shown_parameters(result: JointEstimates) -> list[str]:
     """Names of the parameters that the table shows: friction and inertia, as far as a joint has them."""
-    names = dict.fromkeys(
-        name for estimate in result.values() for name in estimate.parameters
-    )
+    names = dict.fromkeys(name for estimate in result.values() for name in estimate.parameters)
     return [
         name for first in _SHOWN for name in names if name == first or name.startswith(f"{first}_")
     ]

@@ -31,7 +31,9 @@ def joints_report(result: JointEstimates, action: Callable[[Action], str] = str)
     action : callable
         Words the advice of a finding. Default: as at a Python prompt.
     """
-    title = f"{result.name or 'robot'}: friction of {len(result.results)} joints, identified by jointid"
+    title = (
+        f"{result.name or 'robot'}: friction of {len(result.results)} joints, identified by jointid"
+    )
     body: list[Html | str] = [
         element("h1", title),
         element("p", "Each joint for itself; value ± standard error."),

@@ -31,7 +31,9 @@ def add_export(commands: Any) -> None:
         formatter_class=TEXT,
     )
     export.add_argument(
-        "source", type=Path, help="estimate (.json), or joint file (.toml) with its parameters' values"
+        "source",
+        type=Path,
+        help="estimate (.json), or joint file (.toml) with its parameters' values",
     )
     export.add_argument("--to", type=Path, required=True, help=f"file to write: {kinds}")
     export.add_argument(
@@ -45,7 +47,9 @@ def add_export(commands: Any) -> None:
         type=Path,
         help="MuJoCo or URDF file whose joint gets the values; all else in it stays, and it may be --to itself",
     )
-    export.add_argument("--joint-name", help="name of the joint in --into (default: the joint's own)")
+    export.add_argument(
+        "--joint-name", help="name of the joint in --into (default: the joint's own)"
+    )
     export.add_argument(
         "--approximate",
         action="store_true",
