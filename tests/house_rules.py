@@ -99,6 +99,9 @@ FOLDERS: dict[str, Folder] = {
         may_use={*_FOUND, "identification/inference"}, packages={"numpy"}
     ),
     "comparison": Folder(may_use=_SOUGHT, packages={"numpy"}),
+    "joints": Folder(
+        may_use={*_SOUGHT, "recording/wide", "identification/causes"}, packages={"numpy"}
+    ),
     "online": Folder(may_use={*_SOUGHT, "identification/inference"}, packages={"numpy"}),
     "simulation": Folder(may_use=_DATA, packages={"numpy"}),
     "study": Folder(may_use={*_SOUGHT, "simulation"}, packages={"numpy", "pandas", "pyarrow"}),
@@ -107,7 +110,7 @@ FOLDERS: dict[str, Folder] = {
         packages={"numpy", "matplotlib"},
     ),
     "report": Folder(
-        may_use={"base", "estimate", "plot", "identification/warnings"},
+        may_use={"base", "estimate", "joints", "plot", "identification/warnings"},
         packages={"numpy", "matplotlib"},
     ),
     "exports": Folder(
@@ -166,7 +169,8 @@ FOLDERS: dict[str, Folder] = {
     "": Folder(
         may_use={
             *(_SOUGHT - {"problem"}),
-            *("recording/readers", "comparison", "online", "simulation", "study"),
+            *("recording/readers", "recording/wide", "comparison", "joints", "online"),
+            *("simulation", "study"),
             *("plot", "exports", "hardware", "commissioning", "cli"),
         },
     ),

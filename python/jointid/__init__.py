@@ -52,6 +52,8 @@ from jointid.joint.link import Limits, Link
 from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
 from jointid.joint.thesis import thesis_joint
+from jointid.joints.identifying import identify_joints
+from jointid.joints.result import JointEstimates
 from jointid.online.online_estimate import OnlineEstimate
 from jointid.online.online_identifier import OnlineIdentifier
 from jointid.recording.readers.loading import load, load_runs
@@ -85,6 +87,7 @@ __all__ = [
     "Generation",
     "InputError",
     "Joint",
+    "JointEstimates",
     "Limits",
     "Link",
     "LugreObserver",
@@ -118,6 +121,7 @@ __all__ = [
     "export",
     "hardware",
     "identify",
+    "identify_joints",
     "load",
     "load_robot",
     "load_runs",

@@ -1,6 +1,7 @@
 """Own terms: named signals of a recording as terms of the balance, with known truth."""
 
 import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from jointid.base.errors import InputError
 from jointid.identification.search.search import Search
 from jointid.joint.own_terms import OwnTerms
 from jointid.problem.own_integrals import own_series
+from jointid.report.html import save_report
 
 TIME = np.arange(6000) * 0.002
 Q = 0.8 * np.sin(2.1 * TIME) + 0.3 * np.sin(5.3 * TIME + 1.0)
@@ -258,11 +260,30 @@ def test_load_friction_grows_with_a_known_torque_too() -> None:
 
 
 def test_what_cannot_have_own_terms_says_so() -> None:
-    joint = jid.Joint(model="coulomb_viscous:terms=q6=viscous", inertia=2.5, gear_ratio=1.0)
+    model = jid.Model.parse("coulomb_viscous:terms=q6=viscous")
+    joint = jid.Joint(model=model, inertia=2.5, gear_ratio=1.0)
     with pytest.raises(InputError, match="on line"):
         jid.OnlineIdentifier(joint)
     with pytest.raises(InputError, match="simulation does not have"):
         jid.simulate(joint, jid.Pd(), jid.Trajectory.thesis())
+
+
+def test_an_export_says_that_it_lacks_them(tmp_path: Path) -> None:
+    recording = run(3.0 * V6, q6=Q6)
+    estimate = identify(recording, {"q6": "viscous@rate"})
+    estimate.save(tmp_path / "joint.toml")
+    for source in (estimate, jid.Joint.load(tmp_path / "joint.toml")):
+        (tmp_path / "joint.h").unlink(missing_ok=True)
+        jid.export(source, tmp_path / "joint.h")
+        text = (tmp_path / "joint.h").read_text(encoding="ascii")
+        assert "of other signals is not in this file and has to be added (q6=viscous@rate)" in text
+
+
+def test_the_page_and_the_pictures_have_them(tmp_path: Path) -> None:
+    recording = run(3.0 * V6, q6=Q6)
+    estimate = identify(recording, {"q6": "viscous@rate"})
+    page = save_report(estimate, tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "viscous_of_q6_rate" in page
 
 
 def test_the_series_of_a_window_does_not_depend_on_its_samples() -> None:

@@ -1,5 +1,7 @@
 """MCAP files and ROS bags: joints by name, exact stamps, one topic of several."""
 
+import runpy
+import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,10 +18,12 @@ from message_files import (
     joint_state,
     mcap,
     motion,
+    ros2_bag,
 )
 from recording_files import assert_one_sentence, refusal
 
 from jointid.base.errors import InputError
+from jointid.recording.messages.decoding import BinaryDecoder
 from jointid.recording.readers.loading import load
 from jointid.recording.readers.loading import table_of as _table
 from jointid.recording.readers.loading_robot import load_robot
@@ -237,6 +241,43 @@ def test_a_topic_without_messages(tmp_path: Path) -> None:
     assert "no topics are found" in refusal(path)
 
 
+def test_a_topic_with_the_same_stamps_adds_columns(tmp_path: Path) -> None:
+    """A torque sensor that the same driver publishes; one with other stamps is not interpolated."""
+    states = motion(30, ["a"])
+
+    def wrench(stamp: int, value: float) -> Any:
+        def made(store: Any) -> Any:
+            t = store.types
+            header = t["std_msgs/msg/Header"](
+                t["builtin_interfaces/msg/Time"](*divmod(stamp, 10**9)), "tool"
+            )
+            none = t["geometry_msgs/msg/Vector3"](0.0, 0.0, 0.0)
+            torque = t["geometry_msgs/msg/Vector3"](0.0, 0.0, value)
+            return t["geometry_msgs/msg/WrenchStamped"](
+                header, t["geometry_msgs/msg/Wrench"](none, torque)
+            )
+
+        return made
+
+    kind = "geometry_msgs/msg/WrenchStamped"
+    messages = sent(states)
+    for k, state in enumerate(states):
+        for topic, late in (("/ft", 0), ("/slow", 1)):
+            value = wrench(state.stamp + late, 0.5 * k)
+            messages.append(Sent(topic=topic, kind=kind, log_time=state.stamp, value=value))
+    for path in (
+        mcap(tmp_path / "run.mcap", in_order(messages)),
+        ros2_bag(tmp_path / "run", in_order(messages)),
+    ):
+        headers = _table(path).headers
+        assert headers[2:5] == ("position [rad]", "velocity [rad/s]", "effort [Nm]")
+        assert "/ft.wrench.torque.z" in headers
+        assert not any(header.startswith("/slow") for header in headers)
+        loaded = load(path, columns={"sensor": "/ft.wrench.torque.z"}, units={"sensor": "Nm"})
+        assert loaded.sensor is not None
+        assert loaded.sensor.tolist() == [0.5 * k for k in range(30)]
+
+
 def test_a_plain_topic_that_was_named(tmp_path: Path) -> None:
     path = mcap(tmp_path / "run.mcap", in_order([*sent(motion()), *distractors()]))
     assert _table(path, topic="/temperature").headers == ("time [s]", "log_time [s]", "data")
@@ -329,3 +370,41 @@ def test_dynamic_joint_states_in_json(tmp_path: Path) -> None:
     path = mcap(tmp_path / "run.mcap", states, encoding="json")
     assert _table(path).headers[2:] == ("position [rad]", "motor_temperature")
     assert load(path).position.tolist() == [float(k) for k in range(20)]
+
+
+# --- Long logs ---
+
+
+@pytest.mark.parametrize(("joints", "most"), [(1, 3.0), (7, 2.5)])
+def test_a_long_log_takes_few_times_the_memory_of_its_arrays(
+    joints: int, most: float, repo: Path, tmp_path: Path
+) -> None:
+    benchmark = runpy.run_path(str(repo / "benchmarks" / "message_logs.py"))
+    messages = 200_000 // joints
+    path = benchmark["written"](tmp_path / "run.mcap", messages, joints)
+    few = benchmark["written"](tmp_path / "few.mcap", 20, joints)
+    joint = 1 if joints > 1 else None
+    load(few, joint=joint)  # imports are not counted
+    tracemalloc.start()
+    try:
+        loaded = load(path, joint=joint)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert len(loaded) == messages
+    assert peak < most * 8 * messages * (1 + 3 * joints)
+
+
+def test_loading_can_be_interrupted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl-C between two batches of messages ends it at once, as itself."""
+    path = mcap(tmp_path / "run.mcap", sent(motion(50, ["a"])))
+    read = []
+
+    def interrupted(self: BinaryDecoder, batch: Any, first: int) -> Any:
+        read.append(first)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(BinaryDecoder, "decode", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        load(path)
+    assert read == [0]

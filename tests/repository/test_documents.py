@@ -32,6 +32,16 @@ def test_the_guide_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     assert names["measured"].status == names["together"].status == "converged"
 
 
+def test_the_page_about_own_terms_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = run_python_blocks(read("docs/own_terms.md"), tmp_path, monkeypatch)
+    assert "viscous_of_again" in str(names["caught"])
+    (text,) = blocks(read("docs/own_terms.md"), "toml")
+    (tmp_path / "joint.toml").write_text(f"schema = 1\n{text}", encoding="utf-8")
+    assert jid.Joint.load(tmp_path / "joint.toml").model == jid.Model(
+        "stribeck", terms={"q6": "viscous@rate+coulomb@rate", "tau_model": "known"}
+    )
+
+
 def test_the_joint_file_in_the_guide_loads(tmp_path: Path) -> None:
     (text,) = blocks(read("docs/guide.md"), "toml")
     path = tmp_path / "joint.toml"

@@ -61,6 +61,7 @@ Term own(std::string key, std::string unit, std::string unit_prismatic, std::str
                      "motion in which this signal changes apart from the others");
   term.unit = std::move(unit);
   term.unit_prismatic = std::move(unit_prismatic);
+  term.given = term.key.starts_with("known");
   return term;
 }
 

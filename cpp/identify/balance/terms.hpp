@@ -59,6 +59,7 @@ struct Term {
   /// What adds the term: "name" is a friction model that lists it, any other text the option or
   /// property of the joint's model that switches it on; empty: every balance has it.
   std::string option{};
+  bool given = false;      ///< the gain of something known: 1, unless a call frees it
   bool simulated = false;  ///< the simulated joint has it
   Control control = Control::refused;
 };

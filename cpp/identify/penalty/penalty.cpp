@@ -128,11 +128,14 @@ void Penalty::cut(const Masked& recordings, WindowOptions wanted) {
     wanted.duration = duration_for(views, wanted.count);
   }
   std::vector<double> lengths;
+  const auto given =
+      std::count_if(terms_.begin(), terms_.end(), [](const Term& t) { return t.given; });
+  const std::int64_t unknown = std::max<std::int64_t>(1, parameters() - given);
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     const auto& time = recordings[i]->recording().time;
     // Each recording by its own noise and rate: a coarse one must not lengthen the windows of a
     // fine one.
-    const auto choice = choose_window(*recordings[i], parameters(), wanted);
+    const auto choice = choose_window(*recordings[i], unknown, wanted);
     const double length = time[time.size() - 1] - time[0];
     if (choice.duration > length) {
       throw base::InputError("duration " + std::to_string(choice.duration) +
@@ -157,10 +160,9 @@ void Penalty::cut(const Masked& recordings, WindowOptions wanted) {
   if (rows == 0) {
     throw base::InputError("the joint stands still or sticks throughout: record motion");
   }
-  if (rows < parameters()) {
+  if (rows < unknown) {
     throw base::InputError(std::to_string(rows) + " windows with motion cannot determine " +
-                               std::to_string(parameters()) +
-                               " parameters; use more or shorter windows",
+                               std::to_string(unknown) + " parameters; use more or shorter windows",
                            "windows");
   }
 }

@@ -39,6 +39,8 @@ def words_of_action(action: Action, command: str, model: str = "") -> str:
     """
     if action.kind != "call":
         return str(action)
+    if action.function in ("load", "load_robot"):
+        action = _of_reading(action)
     if action.function == "Joint":
         options: list[str] = []
         joint_file = list(_joint_fields(action.arguments))
@@ -57,6 +59,13 @@ def words_of_action(action: Action, command: str, model: str = "") -> str:
     parts += [_in_joint_file(joint_file)] * bool(joint_file)
     purpose = f" ({action.text})" if action.text and parts else ""
     return " and ".join(parts) + purpose
+
+
+def _of_reading(action: Action) -> Action:
+    """Which joint of a file is an option of its own: `--joint` is a joint file."""
+    names = {"joint": "joints"}
+    arguments = {names.get(name, name): value for name, value in action.arguments.items()}
+    return Action("call", arguments, action.text, "load")
 
 
 def option_with_value(option: str, key: str, value: Any) -> str:

@@ -56,6 +56,18 @@ def reading_arguments(command: argparse.ArgumentParser) -> None:
             name, action="append", type=pair, default=[], metavar=shown, help=explanation
         )
     command.add_argument(
+        "--joints",
+        metavar="JOINT[,JOINT...]",
+        help="of a file with several joints: which one, by number or name as in the headers; identify takes several, "
+        "and all",
+    )
+    command.add_argument(
+        "--gear-ratio",
+        metavar="RATIO[,RATIO...]",
+        help="motor's angle per angle of the joint, one for each of --joints: 32,45,-48; columns of the motor are "
+        "converted to the joint",
+    )
+    command.add_argument(
         "--topic",
         metavar="TOPIC",
         help="topic of a log of messages (.mcap, .bag, .db3) that is the recording (default: the only one with joints)",
@@ -187,6 +199,35 @@ def load_all(
     """
     from jointid.recording.readers.loading import load
 
+    several, ratios = joints_wanted(arguments), gear_ratios(arguments)
+    if several is not None and len(several) != 1:
+        raise InputError(
+            "one joint is expected here; identify takes several",
+            argument="joints",
+            value=arguments.joints,
+        )
+    if ratios is not None and len(ratios) > 1:
+        raise InputError(
+            "one ratio is expected for one joint", argument="gear_ratio", value=arguments.gear_ratio
+        )
+    reading = how_to_read(arguments, models)
+    try:
+        return [
+            load(
+                path,
+                joint=several[0] if several else None,
+                gear_ratio=ratios[0] if ratios else None,
+                drop_copies=arguments.drop_copies,
+                **reading,
+            )
+            for path in paths
+        ]
+    except InputError as error:
+        raise _of_joints(error) from None
+
+
+def how_to_read(arguments: argparse.Namespace, models: Sequence[Model] = ()) -> dict[str, Any]:
+    """How the recordings of a command are read, as arguments of `load` and `load_robot`."""
     columns = {
         signal: int(header) if header.isdigit() else None if header == "none" else header
         for signal, header in by_name("columns", arguments.column).items()
@@ -194,8 +235,6 @@ def load_all(
     where = {
         column: number_or_text(value) for column, value in by_name("where", arguments.where).items()
     }
-    units = by_name("units", arguments.unit)
-    scale = _numbers("scale", arguments.scale)
     extra: dict[str, str | int] = {
         name: int(header) if header.isdigit() else header
         for name, header in by_name("extra", arguments.extra).items()
@@ -203,20 +242,54 @@ def load_all(
     for model in models:
         for signal in model.resolved.terms.signals:
             extra.setdefault(signal, signal)
-    return [
-        load(
-            path,
-            columns=columns or None,
-            units=units or None,
-            scale=scale or None,
-            extra=extra or None,
-            where=where or None,
-            drop_copies=arguments.drop_copies,
-            topic=arguments.topic,
-            group=arguments.group,
+    return {
+        "columns": columns or None,
+        "units": by_name("units", arguments.unit) or None,
+        "scale": _numbers("scale", arguments.scale) or None,
+        "extra": extra or None,
+        "where": where or None,
+        "topic": arguments.topic,
+        "group": arguments.group,
+    }
+
+
+def joints_wanted(arguments: argparse.Namespace) -> list[str] | None:
+    """The joints of --joints; an empty list for all, None if the option is not there."""
+    text = arguments.joints
+    if text is None:
+        return None
+    names = [] if text == "all" else [name.strip() for name in text.split(",")]
+    if "" in names:
+        raise InputError(
+            "names or numbers such as 1,3,5 are expected, or all", argument="joints", value=text
         )
-        for path in paths
-    ]
+    return names
+
+
+def gear_ratios(arguments: argparse.Namespace) -> list[float] | None:
+    """The ratios of --gear-ratio; None if the option is not there."""
+    text = arguments.gear_ratio
+    if text is None:
+        return None
+    ratios = [number_or_text(part.strip()) for part in text.split(",")]
+    if any(isinstance(ratio, str) for ratio in ratios):
+        raise InputError(
+            "numbers such as 32,45,-48 are expected", argument="gear_ratio", value=text
+        )
+    return [float(ratio) for ratio in ratios]
+
+
+def _of_joints(error: InputError) -> InputError:
+    """An error about `joint`, which on the command line is --joints; --joint is a file."""
+    if error.argument != "joint":
+        return error
+    return InputError(
+        error.reason,
+        argument="joints",
+        value=error.value,
+        place=error.place,
+        remedy=error.remedy,
+    )
 
 
 def fixed_values(arguments: argparse.Namespace) -> dict[str, float]:

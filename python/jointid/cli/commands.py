@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointid.cli.arguments import fixed_values, load_all, refinements, with_terms
+from jointid.cli.arguments import fixed_values, joints_wanted, load_all, refinements, with_terms
 from jointid.cli.exports import export
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
 from jointid.cli.parser import BAD_USAGE
@@ -62,6 +62,11 @@ def identify(arguments: argparse.Namespace) -> int:
     from jointid.identification import identification
     from jointid.identification.search.search import Search
 
+    several = joints_wanted(arguments)
+    if several is not None and len(several) != 1:
+        from jointid.cli.joints import identify_several
+
+        return identify_several(arguments, several)
     changes = fixed_values(arguments)
     check_outputs(arguments)
     budget = {

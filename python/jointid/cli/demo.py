@@ -14,6 +14,9 @@ from jointid.recording.readers.loading import load
 
 # Published beside the log by its authors (Weigand et al.).
 NOMINAL = {"viscous": 2050.0, "coulomb": 355.0}
+# Known signals of the log, from the authors' model of the whole robot. Gravity does not act on a vertical axis.
+COLUMNS = {"coriolis": "model_coriolis_torque_Nm", "pose": "model_inertia_kgm2"}
+TERMS = {"coriolis": "known", "pose": "inertia"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,10 +36,9 @@ def data_folder() -> Path:
 
 
 def demonstrate(callback: Callable[[Generation], bool | None] | None = None) -> Demonstration:
-    """Identify the robot's joint 1."""
+    """Identify the robot's joint 1, with the inertia over its pose and the Coriolis torque of its authors' model."""
     folder = data_folder()
-    recording = load(folder / "kr300_joint1.csv.gz")
+    recording = load(folder / "kr300_joint1.csv.gz", extra=COLUMNS)
     joint = Joint.load(folder / "kr300_joint1.toml")
-    return Demonstration(
-        estimate=identify(recording, joint, search=Search(callback=callback)), nominal=dict(NOMINAL)
-    )
+    estimate = identify(recording, joint, terms=TERMS, search=Search(callback=callback))
+    return Demonstration(estimate=estimate, nominal=dict(NOMINAL))

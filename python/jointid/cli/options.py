@@ -9,6 +9,8 @@ _READING = {
     "units": "--unit",
     "scale": "--scale",
     "where": "--where",
+    "joints": "--joints",
+    "gear_ratio": "--gear-ratio",
     "topic": "--topic",
     "group": "--group",
     "drop_copies": "--drop-copies",

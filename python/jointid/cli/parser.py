@@ -112,7 +112,8 @@ def _add_identify(commands: Any) -> None:
             "examples:\n  jointid identify run.csv\n"
             "  jointid identify run.csv --joint joint.toml --set viscous=12 --report report.html --save joint.toml\n"
             "  jointid identify log.csv --column position=enc1_rad --unit position=deg --windows 0.05s --json\n"
-            "  jointid identify monday.csv tuesday.csv --joint joint.toml   (one fit, shared parameters)"
+            "  jointid identify monday.csv tuesday.csv --joint joint.toml   (one fit, shared parameters)\n"
+            "  jointid identify arm.csv --joints all --gear-ratio 32,32,45,-48,45,32 --report arm.html"
         ),
         formatter_class=TEXT,
     )

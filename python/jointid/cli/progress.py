@@ -77,6 +77,24 @@ class Progress(_Bar):
         )
 
 
+class JointsProgress(_Bar):
+    """A callback for `identify_joints` that says which joint is at work.
+
+    Parameters
+    ----------
+    enabled : bool
+    stream : text file, optional
+        Default: standard error.
+    """
+
+    def __init__(self, *, enabled: bool = True, stream: TextIO | None = None) -> None:
+        super().__init__(enabled=enabled, stream=stream)
+
+    def __call__(self, joint: str, number: int, count: int) -> None:
+        """Show a joint."""
+        self._draw(number / count, f"joint {joint}, {number + 1} of {count}")
+
+
 class ComparisonProgress(_Bar):
     """A callback for `compare_models` that draws a bar on a terminal, and nothing elsewhere.
 

@@ -61,16 +61,15 @@ def statements(subject: Subject, *, notes: Sequence[str] = ()) -> list[str]:
     if subject.findings:
         lines.append("Warnings of the identification:")
         lines += [f"  {each}" for each in subject.findings]
-    said = [
-        *notes,
-        *(
-            f"{key}: it needs a signal that is not this joint's, and is left out"
-            for key in subject.own
-        ),
-    ]
-    if said:
+    own = subject.joint.model.resolved.terms
+    if own:
+        notes = [
+            *notes,
+            f"the {force} of other signals is not in this file and has to be added ({own})",
+        ]
+    if notes:
         lines.append("Notes:")
-        lines += [f"  {each}" for each in said]
+        lines += [f"  {each}" for each in notes]
     return lines
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import datetime
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -69,8 +68,6 @@ class Subject:
         Warnings of the estimate.
     speed : float or None
         Largest speed of the recordings [rad/s or m/s]; None if it is not known.
-    own : tuple of str
-        Keys of the model's own terms: they need signals of other devices, and are in no export.
     """
 
     joint: Joint
@@ -82,7 +79,6 @@ class Subject:
     version: str
     findings: tuple[str, ...]
     speed: float | None
-    own: tuple[str, ...] = ()
 
     @property
     def undetermined(self) -> tuple[str, ...]:
@@ -132,7 +128,7 @@ def _with_speed(subject: Subject, speed: float) -> Subject:
 
 def _of_estimate(estimate: Estimate) -> Subject:
     settings = estimate.settings
-    terms, own = _divided(settings["terms"])
+    terms = tuple(key for key in settings["terms"] if not _core.term(key).own)
     weak = {
         name
         for found in estimate.findings
@@ -160,14 +156,7 @@ def _of_estimate(estimate: Estimate) -> Subject:
             f"{each.code} ({each.severity}): {each.cause}" for each in estimate.warnings
         ),
         speed=float(speeds.max()) if len(speeds) else None,
-        own=own,
     )
-
-
-def _divided(keys: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Keys of the joint's terms, and of the model's own terms."""
-    own = tuple(key for key in keys if _core.term(key).own)
-    return tuple(key for key in keys if key not in own), own
 
 
 def _today() -> str:
@@ -261,7 +250,6 @@ def _of_joint(joint: Joint) -> Subject:
         version=_core.__version__,
         findings=(),
         speed=joint.limits.velocity,
-        own=tuple(joint.model.resolved.terms.keys_in_core),
     )
 
 
@@ -289,7 +277,7 @@ def _terms_of(joint: Joint) -> tuple[str, ...]:
     return tuple(
         key
         for term in _core.terms()
-        if not term.own
+        if not term.own  # of signals that the joint has not: the model's text names them
         for key in (
             [f"{term.key}_{order:g}" for order in orders[term.option]]
             if term.family

@@ -111,6 +111,10 @@ def infer(
     effect = velocity_systematic(problem, penalty, best, domain.lower, domain.upper)
     if effect is not None:
         parts["velocity"] = np.where(np.isin(np.arange(len(best)), free), effect.systematic, 0.0)
+        if "windows" in parts:
+            # Other windows have other noise at their edges: what the velocity shows is not counted twice.
+            beyond = np.square(parts["windows"]) - np.square(parts["velocity"])
+            parts["windows"] = np.sqrt(np.maximum(0.0, beyond))
     parts |= {name: moved for name, moved in beside.items() if moved is not None}
     del free_jacobian
     if not penalty.is_linear:

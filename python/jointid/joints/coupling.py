@@ -25,7 +25,7 @@ _LEAST, _LEAST_OF_ALL = 0.1, 0.05  # of what is left of the residual, and of all
 _LEAST_EXPECTED = 0.05  # of what is left, where the coupling is known from the other side
 _SURE = 2.0  # errors of the mean fall of the blocks' misfit
 _SHIFTS = 24  # of the other joints' motion in time: by chance, one of 25 is the best
-_ALIKE = 0.9  # of the best score: hardly worse
+_ALIKE, _NEARLY = 0.9, 0.6  # of the best score: hardly worse, and not much
 _WINDOWS = 20_000
 
 
@@ -47,6 +47,8 @@ class Share:
         Length of the sums of windows at which it shows most [s].
     alike : tuple of str
         Other joints that explain nearly as much, because they move alike.
+    own_too : bool
+        Whether the joint's own motion, beyond the model, explains much of it as well.
     certain : bool
         Whether it stands out by itself. A share that does not is told only where the other joint's residual
         owes a certain one to this joint: what couples two joints acts on both.
@@ -57,6 +59,7 @@ class Share:
     share: float
     scale: float
     alike: tuple[str, ...] = ()
+    own_too: bool = False
     certain: bool = True
 
 
@@ -144,7 +147,8 @@ class _Search:
                 continue
             if not self._is_certain(base, others, best, scores[best]):
                 break
-            found.append(self._share(base, whole, best, scores))
+            own_too = bool(mine) and max(mine) > _NEARLY * scores[best].total
+            found.append(replace(self._share(base, whole, best, scores), own_too=own_too))
             if found[-1].share < _LEAST_OF_ALL:
                 return tuple(found[:-1])
             base = [*base, *others.pop(best)]

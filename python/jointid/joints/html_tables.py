@@ -9,7 +9,7 @@ from jointid.joints.tables import couplings, head, notes, rows
 
 def html_table(result: JointEstimates) -> Html:
     """The table of all joints."""
-    return table([list(row) for row in rows(result)], head=head(result))
+    return table([list(row) for row in rows(result)], head=head(result), class_="joints")
 
 
 def html_couplings(result: JointEstimates) -> Html:
@@ -32,7 +32,9 @@ def html_shares(result: JointEstimates) -> Html:
             )
             cells.append(text or "–")
         body.append(cells)
-    return table(body, head=["residual of", *(f"by joint {name}" for name in others)])
+    return table(
+        body, head=["residual of", *(f"by joint {name}" for name in others)], class_="joints"
+    )
 
 
 def html_summary(result: JointEstimates) -> Html:

@@ -59,7 +59,12 @@ class JointResult:
 
 
 def _sentence(name: str, share: Share) -> str:
-    alike = f"; {' and '.join(share.alike)} would do as well, moving alike" if share.alike else ""
+    alike = ""
+    if share.alike:
+        others = " and ".join(f"joint {each}" for each in share.alike)
+        alike = f"; {others} would do as well: they move alike"
+    if share.own_too:
+        alike += f"; joint {name}'s own motion explains nearly as much"
     verb = "explains" if share.certain else "explains perhaps"
     percent = max(1, round(100.0 * share.share))
     return (

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from jointid.base.advice import Action
 from jointid.base.error_text import printable
+from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import two_digits
@@ -86,7 +87,11 @@ def couplings(result: JointEstimates) -> list[str]:
     return list(result.sentences()) or [_NO_COUPLING]
 
 
-def text_report(result: JointEstimates, action: Callable[[Action], str] = str) -> str:
+def text_report(
+    result: JointEstimates,
+    action: Callable[[Action], str] = str,
+    error: Callable[[InputError], str] = str,
+) -> str:
     """The result as text.
 
     Parameters
@@ -94,6 +99,8 @@ def text_report(result: JointEstimates, action: Callable[[Action], str] = str) -
     result : JointEstimates
     action : callable
         Words the advice of a finding. Default: as at a Python prompt.
+    error : callable
+        Words why a joint failed. Default: as Python does.
     """
     table = [head(result), *rows(result)]
     widths = [max(len(row[column]) for row in table) for column in range(len(table[0]))]
@@ -106,7 +113,7 @@ def text_report(result: JointEstimates, action: Callable[[Action], str] = str) -
     lines += ["", *notes(result), *couplings(result), ""]
     for each in result.results.values():
         if each.error is not None:
-            lines.append(f"joint {each.name} failed: {each.error}")
+            lines.append(f"joint {each.name} failed: {error(each.error)}")
         if each.estimate is not None:
             lines += [
                 f"joint {each.name}, {found.severity} ({found.code}): {found.worded(action)}"

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_CSS = """
+STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; color: #222; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2rem; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
@@ -57,7 +57,7 @@ def html_report(estimate: Estimate, action: Callable[[Action], str] = str) -> st
         element("h2", "Parameters"),
         html_table(estimate),
         element("h2", "Warnings"),
-        html_findings(estimate, _shown_by(estimate), action),
+        html_findings(estimate, shown_by(estimate), action),
         *_pictures(estimate),
         element("h2", "Uncertainty"),
         element(
@@ -75,10 +75,10 @@ def html_report(estimate: Estimate, action: Callable[[Action], str] = str) -> st
         html_quality(estimate),
         _footer(estimate),
     ]
-    return page(title, _CSS, *body)
+    return page(title, STYLE, *body)
 
 
-def _shown_by(estimate: Estimate) -> dict[str, str]:
+def shown_by(estimate: Estimate) -> dict[str, str]:
     """The picture that shows each kind of finding."""
     types = finding_types().items()
     searched = estimate.convergence is not None
@@ -89,21 +89,9 @@ def _shown_by(estimate: Estimate) -> dict[str, str]:
 def _pictures(estimate: Estimate) -> list[Html]:
     parts = [
         element("h2", "Friction map", id="friction-map"),
-        _picture(
-            "Friction map: a grey point is the friction that the recording shows over one window, the line is the "
-            "identified model with its 95 % band.",
-            lambda axes: plot.friction_map(None, estimate, axes[0]),
-        ),
+        friction_picture(estimate),
         element("h2", "Windows", id="windows"),
-        _picture(
-            "Above: measured and fitted mean over each window. Below: the residual. Windows "
-            "in which the joint stands still are left out.",
-            lambda axes: (
-                plot.window_means(estimate, axes[0]),
-                plot.residuals(estimate, axes[1]),
-            ),
-            rows=2,
-        ),
+        windows_picture(estimate),
     ]
     if estimate.convergence is not None:
         parts += [
@@ -114,6 +102,28 @@ def _pictures(estimate: Estimate) -> list[Html]:
             ),
         ]
     return parts
+
+
+def friction_picture(estimate: Estimate) -> Html:
+    """The friction map, with what it shows."""
+    return _picture(
+        "Friction map: a grey point is the friction that the recording shows over one window, the line is the "
+        "identified model with its 95 % band.",
+        lambda axes: plot.friction_map(None, estimate, axes[0]),
+    )
+
+
+def windows_picture(estimate: Estimate) -> Html:
+    """Measured and fitted windows above their residuals."""
+    return _picture(
+        "Above: measured and fitted mean over each window. Below: the residual. Windows "
+        "in which the joint stands still are left out.",
+        lambda axes: (
+            plot.window_means(estimate, axes[0]),
+            plot.residuals(estimate, axes[1]),
+        ),
+        rows=2,
+    )
 
 
 def save_report(

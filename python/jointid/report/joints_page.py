@@ -19,7 +19,11 @@ from jointid.report.html import STYLE, friction_picture, shown_by, windows_pictu
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
 
-_WIDE = "table { font-size: .92rem; } .wide { overflow-x: auto; }"
+_WIDE = """
+table { font-size: .92rem; } .wide { overflow-x: auto; }
+table.joints td { white-space: nowrap; } table.joints td:last-child { white-space: normal; }
+table.joints td:nth-child(2), table.joints td:nth-child(3) { text-align: left; }
+"""
 
 
 def joints_report(result: JointEstimates, action: Callable[[Action], str] = str) -> str:

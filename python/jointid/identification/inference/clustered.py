@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 # Residuals that are white are refused as such in one of a hundred cases, by each of two tests.
 _CERTAIN = 0.01
 _CERTAIN_NORMAL = 2.326
+_OPPOSED = 0.2  # correlation of neighbours; by their noise alone it is -0.5
 # A parameter that fewer segments determine borrows the missing degrees of freedom from the others.
 _FEWEST = 5.0
 # What is left of a direction's freedom outside a segment that determines it all.
@@ -116,14 +117,18 @@ def _correlation(clustered: Array, classical: Array, weight: float) -> Array:
 
 
 def _contradicted(residual: Array, pooled: float, freedom: float) -> bool:
-    """Whether neighbouring windows, or windows of a segment, agree more than independent ones would."""
+    """Whether neighbouring windows, or windows of a segment, agree more than independent ones would, or far less.
+
+    What the velocity's noise adds to one window it takes from the next, and sums over a segment know it.
+    """
     from scipy.special import chdtri
 
     power = float(np.einsum("i,i->", residual, residual))
     neighbours = float(np.einsum("i,i->", residual[1:], residual[:-1])) / power
     freedom = max(freedom - 1.0, 1.0)
     limit = float(chdtri(freedom, _CERTAIN)) / freedom
-    return neighbours * np.sqrt(len(residual)) > _CERTAIN_NORMAL or pooled > limit
+    alike = neighbours * np.sqrt(len(residual))
+    return alike > _CERTAIN_NORMAL or neighbours < -_OPPOSED or pooled > limit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""What the noise of the velocity does to each parameter, found by adding as much again."""
+"""What the noise of the velocity does to each parameter, found by measuring it once more."""
 
 from __future__ import annotations
 
@@ -66,9 +66,10 @@ def velocity_systematic(
 ) -> VelocityEffect | None:
     """Return the effect of the velocity's noise, or None where that noise is harmless.
 
-    A derived velocity is derived again from a position with as much noise as it has, so that its
-    smoothing is part of what is tried; a recorded one gets noise of its own size. The parameters are
-    then fitted again over the same windows (simulation and extrapolation, Cook and Stefanski 1994).
+    A derived velocity is derived again, so that its smoothing is part of what is tried: from the smooth position,
+    rounded to the encoder's steps once more, or, where the position has no steps, from one with as much noise as it
+    has. A recorded velocity gets noise of its own size. The parameters are then fitted again over the same windows
+    (simulation and extrapolation, Cook and Stefanski 1994).
 
     Parameters
     ----------
@@ -120,14 +121,31 @@ def _is_noisy(run: Recording, share: float) -> bool:
 
 
 def _noisier(run: Recording, draw: int, number: int) -> Recording:
-    """Return a recording with as much noise again in its velocity."""
+    """Return a recording whose velocity has been measured once more."""
+    random = np.random.default_rng((draw, number))
     # Uniform noise: the generator's bits are the same on every host.
-    unit = np.sqrt(3.0) * (2.0 * np.random.default_rng((draw, number)).random(len(run)) - 1.0)
-    if follows_position(run):
-        noise = run.derived.position_noise
+    unit = np.sqrt(3.0) * (2.0 * random.random(len(run)) - 1.0)
+    if not follows_position(run):
+        return run.with_velocity(run.velocity + noise_of_velocity(run) * unit)
+    noise = run.derived.position_noise
+    step = noise.quantum
+    if not step > 0.0:
         scale = np.hypot(noise.sigma, noise.timing * run.velocity)
-        moved = Recording(time=run.time, position=run.position + scale * unit, kind=run.kind)
-        velocity = moved.velocity
+        position = run.position + scale * unit
     else:
-        velocity = run.velocity + noise_of_velocity(run) * unit
-    return run.with_velocity(velocity)
+        # At low speed the position stays within a step for many samples: no white noise does that. So the smooth
+        # position is rounded again, its steps being elsewhere.
+        others = np.sqrt(max(0.0, noise.sigma**2 - step**2 / 12.0))
+        scale = np.hypot(others, noise.timing * run.velocity)
+        place = random.random()
+        position = (np.floor((_smooth(run) + scale * unit) / step + place) - place + 0.5) * step
+    moved = Recording(time=run.time, position=position, kind=run.kind)
+    return run.with_velocity(moved.velocity)
+
+
+def _smooth(run: Recording) -> Array:
+    """The position that the velocity gives; between two pieces of the recording as far as the positions are apart."""
+    step = 0.5 * (run.velocity[1:] + run.velocity[:-1]) * np.diff(run.time)
+    for gap in run.gaps:
+        step[gap.index] = run.position[gap.index + 1] - run.position[gap.index]
+    return np.asarray(run.position[0] + np.concatenate([[0.0], np.cumsum(step)]))

@@ -12,6 +12,7 @@ from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.inspection import Inspected
+from jointid.identification.warnings.undetermined import with_partners
 from jointid.recording.velocity_noise import noise_of_velocity
 
 NOISY_VELOCITY = FindingType(
@@ -55,7 +56,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if moved:
         sizes = ", ".join(f"{name} by {percent(share)}" for name, share in moved.items())
         causes.append(
-            f"noise of the velocity moves {sizes}, found by adding as much again"
+            f"noise of the velocity moves {sizes}, found by measuring once more"
             + _resolution(evidence)
         )
         measured |= {f"{name}.moved": Measured(share) for name, share in moved.items()}
@@ -69,7 +70,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         *((_DERIVED,) if quieter else ()),
         _FINER,
         evidence=measured,
-        parameters=tuple(named),
+        parameters=with_partners(evidence, named),
     )
 
 

@@ -43,24 +43,26 @@ class MessageTable:
     ) -> None:
         self.source = f"{path}, topic {topic.name}"
         self.header_place = self.source
-        self._collected = collected
-        self._rows: Rows = rows_of(collected)
-        columns = list(dict.fromkeys(c for block in collected.blocks for c in block.columns))
+        self._blocks = collected.blocks
+        self._rows, stamps, self._logged = rows_of(collected)
+        self._time = _seconds(stamps)  # once: each joint of a robot asks for it
+        columns = list(dict.fromkeys(c for block in self._blocks for c in block.columns))
         self._columns = [column for column in columns if self._holds_numbers(column)]
-        joints = dict.fromkeys(joint for joint, _ in self._columns)
+        joints = dict.fromkeys(joint for joint, _ in self._columns if joint)
         named = is_joint_kind(topic.kind)
         self.headers = (
             "time [s]",
             "log_time [s]",
-            *(_header(c, kind, alone=len(joints) == 1, named=named) for c in self._columns),
+            *(_header(c, kind, alone=len(joints) < 2, named=named) for c in self._columns),
         )
         self.other_names = {
             f"{joint}.{signal}" if joint else signal: k
             for k, (joint, signal) in enumerate(self._columns, start=2)
         }
-        self._time = _seconds(self._rows.time)  # once: each joint of a robot asks for it
         self._shown: npt.NDArray[np.intp] | None = None  # rows of the last numbers
-        self.notes = _notes(topic, collected, self._rows, incomplete)
+        self.notes = _notes(topic, collected, self._rows, incomplete) | {
+            "first_stamp_ns": int(stamps.min())
+        }
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
         """Return columns as arrays of shape (n,).
@@ -93,17 +95,17 @@ class MessageTable:
         """Return file, topic, message and column of a value."""
         if self._shown is not None:
             row = int(self._shown[row])
-        message = int(np.flatnonzero(self._rows.row == row)[0])
+        message = self._rows.message(row)
         return f"{self.source}, message {message}, column {self.headers[column]!r}"
 
     def _values(self, column: int) -> FloatArray:
         if column in (TIME, LOG_TIME):
-            return self._time if column == TIME else _seconds(self._rows.log_time)
-        values = np.full(self._rows.count, np.nan)
+            return self._time if column == TIME else _seconds(self._logged)
+        values = np.full(len(self._time), np.nan)
         wanted = self._columns[column - 2]
-        for block in self._collected.blocks:
+        for block in self._blocks:
             if wanted in block.columns:
-                rows = self._rows.row[block.messages]
+                rows = self._rows.of(block.messages)
                 kept = rows >= 0
                 values[rows[kept]] = block.values[block.columns.index(wanted)][kept]
         return values
@@ -112,15 +114,14 @@ class MessageTable:
         """Return the rows that hold any of some columns; None for all rows."""
         numbers = [column for column in columns if column > LOG_TIME]
         wanted = {self._columns[column - 2] for column in numbers}
-        blocks = self._collected.blocks
-        if all(wanted.issubset(block.columns) for block in blocks):
+        if all(wanted.issubset(block.columns) for block in self._blocks):
             return None if len(numbers) < len(columns) else self._shown
         there = np.array([self._present(column) for column in numbers])
         alone = len(numbers) == len(columns)  # their time was asked for before
         if not alone:
             kept = np.flatnonzero(there.any(axis=0))
         else:
-            kept = np.arange(self._rows.count) if self._shown is None else self._shown
+            kept = np.arange(len(self._time)) if self._shown is None else self._shown
         lacking = ~there[:, kept]
         if lacking.any():
             row = int(np.argmax(lacking.any(axis=0)))
@@ -130,10 +131,10 @@ class MessageTable:
 
     def _present(self, column: int) -> npt.NDArray[np.bool_]:
         """Whether each row's messages hold a column."""
-        present = np.zeros(self._rows.count, dtype=np.bool_)
-        for block in self._collected.blocks:
+        present = np.zeros(len(self._time), dtype=np.bool_)
+        for block in self._blocks:
             if self._columns[column - 2] in block.columns:
-                rows = self._rows.row[block.messages]
+                rows = self._rows.of(block.messages)
                 present[rows[rows >= 0]] = True
         return present
 
@@ -149,7 +150,7 @@ class MessageTable:
         """Whether any value is a number: drivers fill what they do not measure with NaN."""
         return any(
             bool(np.isfinite(block.values[block.columns.index(column)]).any())
-            for block in self._collected.blocks
+            for block in self._blocks
             if column in block.columns
         )
 
@@ -161,10 +162,10 @@ def _seconds(times: npt.NDArray[np.int64]) -> FloatArray:
 
 def _header(column: Column, kind: str, *, alone: bool, named: bool) -> str:
     joint, signal = column
-    if not named:
+    if not named or not joint:
         return signal
     unit = unit_of(signal, kind)
-    name = signal if alone or not joint else f"{joint}.{signal}"
+    name = signal if alone else f"{joint}.{signal}"
     return f"{name} [{unit}]" if unit else name
 
 
@@ -172,7 +173,6 @@ def _notes(topic: Topic, collected: Collected, rows: Rows, incomplete: str) -> d
     notes: dict[str, Any] = {
         "topic": topic.name,
         "stamps": "log time" if collected.stamps is None else "header",
-        "first_stamp_ns": int(rows.time.min()),
     }
     if rows.repeated:
         notes["repeated_messages"] = rows.repeated

@@ -6,6 +6,7 @@ from pathlib import Path
 from jointid.base.errors import InputError
 from jointid.recording.messages.choice import chosen_topic
 from jointid.recording.messages.collecting import collect
+from jointid.recording.messages.companions import with_companions
 from jointid.recording.messages.message_table import MessageTable, no_messages
 from jointid.recording.messages.topic import DamageError, Source
 
@@ -35,7 +36,7 @@ def opened(
         messages = source(path)
         chosen = chosen_topic(path, messages.topics, topic, messages.incomplete)
         place = f"{path}, topic {chosen.name}"
-        collected = collect(messages, chosen)
+        collected = with_companions(messages, chosen, collect(messages, chosen))
     except DamageError as error:
         raise InputError(str(error), place=place) from None
     if not len(collected.log_times):

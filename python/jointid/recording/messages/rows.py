@@ -19,30 +19,29 @@ class Rows:
 
     Attributes
     ----------
-    row : ndarray of int, shape (messages,)
-        The row of each message, -1 for a repeated one.
-    time, log_time : ndarray of int, shape (rows,)
-        Stamp and log time [ns].
+    row : ndarray of int, shape (messages,), optional
+        The row of each message, -1 for a repeated one. None: its own number.
     repeated : int
         Messages left out because they repeat another one.
     reordered : int
         Messages that stand behind a younger one.
     """
 
-    row: Integers
-    time: Integers
-    log_time: Integers
+    row: Integers | None
     repeated: int
     reordered: int
 
-    @property
-    def count(self) -> int:
-        """Number of rows."""
-        return len(self.time)
+    def of(self, messages: Integers) -> Integers:
+        """Return the rows of messages."""
+        return messages if self.row is None else self.row[messages]
+
+    def message(self, row: int) -> int:
+        """Return the first message of a row."""
+        return row if self.row is None else int(np.flatnonzero(self.row == row)[0])
 
 
-def rows_of(collected: Collected) -> Rows:
-    """Return the rows of messages.
+def rows_of(collected: Collected) -> tuple[Rows, Integers, Integers]:
+    """Return the rows of messages, and the stamp and log time of each row [ns].
 
     Messages that stand a little behind a younger one (less than 1 s) are put in order; what goes back further is
     left as it is, and refused later. Messages with equal stamps become one row if they hold
@@ -55,6 +54,8 @@ def rows_of(collected: Collected) -> Rows:
     """
     logged = collected.log_times
     stamps = logged if collected.stamps is None else collected.stamps
+    if (stamps[1:] > stamps[:-1]).all():
+        return Rows(None, 0, 0), stamps, logged
     behind = np.maximum.accumulate(stamps) - stamps
     late = (behind > 0) & (behind < _LATE)
     reordered = int(np.count_nonzero(late)) if not (behind >= _LATE).any() else 0
@@ -72,7 +73,7 @@ def rows_of(collected: Collected) -> Rows:
     else:
         row[order] = np.arange(len(stamps))
         first = order
-    return Rows(row, stamps[first], logged[first], repeated, reordered)
+    return Rows(row, repeated, reordered), stamps[first], logged[first]
 
 
 def _joined(

@@ -1,18 +1,17 @@
 """Loading all joints of a file."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
-from jointid.recording.column_lookup import column_index
-from jointid.recording.contents import Contents, read_contents
+from jointid.recording.contents import read_contents
+from jointid.recording.extra import named_extra
 from jointid.recording.readers.loading import file_name, table_of
 from jointid.recording.signals import FloatArray
-from jointid.recording.table import Table
 from jointid.recording.wide.joint_table import (
     JointTable,
     joint_named,
@@ -35,7 +34,7 @@ def load_robot(
     where: Mapping[str, float | str] | None = None,
     kind: str | None = None,
     torque_hold: str | None = None,
-    extra: Mapping[str, str] | None = None,
+    extra: Collection[str] | Mapping[str, str | int] | None = None,
     name: str | None = None,
     topic: str | None = None,
     group: str | None = None,
@@ -57,8 +56,9 @@ def load_robot(
         One a joint, in the order of `joints`, or one for all; signed. Default: not known.
     where, kind, torque_hold
         As in `load`.
-    extra : mapping of str to str, optional
-        Name → header of further columns; with ``{joint}`` in the header one of each joint. Default: none.
+    extra : collection of str, or mapping of str to str or int, optional
+        Further columns, as in `load`; with ``{joint}`` in the header one of each joint:
+        ``{"model_torque": "model_torque_{joint}_Nm"}``. Default: none.
     name : str, optional
         Default: as saved, else the file's name without its ending.
     topic, group : str, optional
@@ -90,8 +90,8 @@ def load_robot(
     if not known:
         raise nothing_named(table, "all" if joints is None else joints)
     names = _wanted(joints, known, table.header_place)
-    tables = [JointTable(table, each, columns or {}) for each in names]
-    contents = []
+    wanted = named_extra(extra)
+    tables = [JointTable(table, each, columns or {}, wanted) for each in names]
     fields = []
     for each, one in zip(names, tables, strict=True):
         try:
@@ -100,13 +100,13 @@ def load_robot(
                 columns=one.columns,
                 units=_of_present(units, one),
                 scale=_of_present(scale, one),
+                extra=one.extra,
                 kind=kind,
                 torque_hold=torque_hold,
             )
             fields.append(held.fields(held.rows_where(where) if where else None))
         except InputError as error:
             raise error.at(f"joint {each}") from None
-        contents.append(held)
     _check_times(names, fields, table.source)
     sides = {one.side for one in tables}
     if len(sides) > 1:
@@ -117,14 +117,16 @@ def load_robot(
             place=table.header_place,
             remedy="load those of one side",
         )
-    first = fields[0]
+    first = {key: value for key, value in fields[0].items() if key not in ROBOT_SIGNALS}
+    # Of a long log only one copy at a time: the table and its columns are no longer needed.
+    del table, tables, one, held
     return RobotRecording(
         time=first["time"],
         **_stacked(fields),  # type: ignore[arg-type]
         side=sides.pop(),
         gear_ratio=gear_ratio,
         names=names,
-        extra=_extra(table, names, extra or {}, contents[0], where),
+        extra=_extra(wanted, fields),
         kind=first["kind"],
         torque_hold=first.get("torque_hold"),
         name=file_name(file, first, name),
@@ -171,36 +173,29 @@ def _of_present(values: Mapping[str, Any] | None, one: JointTable) -> Mapping[st
     return {signal: value for signal, value in values.items() if signal not in absent}
 
 
-def _stacked(fields: Sequence[Mapping[str, Any]]) -> dict[str, FloatArray]:
-    """Return each signal's columns side by side, NaN for a joint that lacks it."""
+def _stacked(fields: Sequence[dict[str, Any]]) -> dict[str, FloatArray]:
+    """Return each signal's columns side by side, NaN for a joint that lacks it, and take them out of `fields`."""
     length = len(fields[0]["time"])
     stacked = {}
     for signal in ROBOT_SIGNALS:
         if any(each.get(signal) is not None for each in fields):
-            stacked[signal] = np.column_stack(
-                [
-                    np.full(length, np.nan) if each.get(signal) is None else each[signal]
-                    for each in fields
-                ]
-            )
+            matrix = np.empty((length, len(fields)), order="F")
+            for joint, each in enumerate(fields):
+                column = each.pop(signal, None)
+                matrix[:, joint] = np.nan if column is None else column
+            matrix.flags.writeable = False
+            stacked[signal] = matrix
     return stacked
 
 
 def _extra(
-    table: Table,
-    names: Sequence[str],
-    extra: Mapping[str, str],
-    contents: Contents,
-    where: Mapping[str, float | str] | None,
+    wanted: Mapping[str, str | int], fields: Sequence[Mapping[str, Any]]
 ) -> dict[str, FloatArray]:
-    rows = contents.rows_where(where) if where else slice(None)
+    """Return each further signal: side by side where every joint has its own."""
     found = {}
-    for key, header in extra.items():
-        each = isinstance(header, str) and "{joint}" in header
-        headers = [header.replace("{joint}", name) for name in names] if each else [header]
-        indices = [column_index(table, one, f"extra.{key}") for one in headers]
-        values = [column[rows] for column in table.numbers(indices)]
-        found[key] = np.column_stack(values) if each else values[0]
+    for name, header in wanted.items():
+        each = [own["extra"][name] for own in fields]
+        found[name] = np.column_stack(each) if "{joint}" in str(header) else each[0]
     return found
 
 

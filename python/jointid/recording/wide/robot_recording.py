@@ -17,9 +17,9 @@ from jointid.recording.slicing import slice_between
 from jointid.recording.wide.joint_table import joint_named
 from jointid.recording.wide.robot_signals import (
     ROBOT_SIGNALS,
-    checked_extra,
     checked_names,
     checked_ratios,
+    extra_arrays,
     joint_arrays,
 )
 from jointid.recording.wide.sides import at_joint
@@ -142,7 +142,7 @@ class RobotRecording(Mapping[str, Recording]):
             side=side,
             gear_ratio=checked_ratios(gear_ratio, joints),
             names=checked_names(names, joints),
-            extra=MappingProxyType(checked_extra(extra or {}, clock, joints)),
+            extra=MappingProxyType(extra_arrays(extra or {}, clock, joints)),
             kind=kind,
             torque_hold=torque_hold,
             velocity_derived=velocity_derived,
@@ -203,6 +203,10 @@ class RobotRecording(Mapping[str, Recording]):
                 fields[signal] = np.ascontiguousarray(values[:, column])
         ratio = None if self.gear_ratio is None else self.gear_ratio[column]
         fields["metadata"] = {**self.metadata, "joint": name}
+        fields["extra"] = {
+            key: values if values.ndim == 1 else np.ascontiguousarray(values[:, column])
+            for key, values in self.extra.items()
+        }
         found = at_joint(fields, self.side, ratio)
         shown = f"{self.name} joint {name}".lstrip() if self.name or name.isdigit() else name
         try:

@@ -12,13 +12,12 @@ from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.file_endings import ending_of
 from jointid.base.files import write_whole
+from jointid.recording.extra import PREFIX as EXTRA
 from jointid.recording.saving import CSV_MARK, ENDINGS, NPZ_MEMBER, SCHEMA
 from jointid.recording.signals import FloatArray, header_unit
 
 if TYPE_CHECKING:
     from jointid.recording.wide.robot_recording import RobotRecording
-
-EXTRA = "extra_"
 
 
 def save_robot(robot: "RobotRecording", path: str | os.PathLike[str]) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from jointid.base.errors import InputError
+from jointid.recording.extra import check_extra_name
 from jointid.recording.signals import FloatArray, signal_array
 from jointid.recording.wide.sides import checked_ratio
 
@@ -58,10 +59,18 @@ def _matrix(name: str, values: npt.ArrayLike) -> FloatArray:
             f"its shape is {array.shape}; one row a sample and one column a joint are expected",
             argument=name,
         )
+    if array is values and array.dtype == np.float64 and _frozen(array):
+        return array
     flat = signal_array(name, array.reshape(-1))
     matrix = np.array(flat.reshape(array.shape), order="F")
     matrix.flags.writeable = False
     return matrix
+
+
+def _frozen(array: FloatArray) -> bool:
+    """Whether nobody can change an array any more: it needs no copy."""
+    flags = array.flags
+    return flags.owndata and flags.f_contiguous and not flags.writeable
 
 
 def _check_absent(name: str, array: FloatArray) -> None:
@@ -78,7 +87,7 @@ def _check_absent(name: str, array: FloatArray) -> None:
         )
 
 
-def checked_extra(
+def extra_arrays(
     extra: Mapping[str, npt.ArrayLike], time: FloatArray, joints: int
 ) -> dict[str, FloatArray]:
     """Return further signals as read-only arrays of shape (n,) or (n, joints)."""
@@ -87,10 +96,7 @@ def checked_extra(
     found = {}
     for name, values in extra.items():
         place = f"extra.{name}"
-        if not isinstance(name, str) or not _IN_HEADERS.fullmatch(name):
-            raise InputError(
-                "a name without brackets, commas or quotes is expected", argument=place
-            )
+        check_extra_name(name, "extra")
         array = np.asarray(values)
         fitted = signal_array(place, array) if array.ndim == 1 else _matrix(place, array)
         if fitted.shape not in ((len(time),), (len(time), joints)):

@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 
 from jointid.base.errors import InputError
+from jointid.recording.extra import PREFIX as EXTRA
 from jointid.recording.signals import KINDS, header_unit
 from jointid.recording.table import Table
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.recording.wide.robot_saving import EXTRA
 from jointid.recording.wide.robot_signals import ROBOT_SIGNALS
 
 

@@ -1,0 +1,113 @@
+"""`jointid identify --joints`: several joints of one file."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+
+from jointid.base.errors import InputError
+from jointid.cli.arguments import fixed_values, gear_ratios, how_to_read, refinements, with_terms
+from jointid.cli.outputs import check_folder, check_page
+from jointid.cli.parser import BAD_USAGE
+from jointid.cli.progress import JointsProgress
+from jointid.cli.wording import ADVICE, Wording
+
+_OF_ONE_JOINT = ("checkpoint", "resume", "selftest", "bootstrap", "causes")
+
+
+def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> int:
+    """Identify several joints of one file, each for itself.
+
+    Parameters
+    ----------
+    arguments : Namespace
+        Of `jointid identify`.
+    joints : sequence of str
+        Empty: all.
+    """
+    from jointid._core import GaOptions
+    from jointid.identification.search.search import Search
+    from jointid.joint.joint import Joint
+    from jointid.joints.identifying import identify_joints
+    from jointid.recording.readers.loading_robot import load_robot
+    from jointid.report.joints_page import save_joints_report
+
+    _check(arguments)
+    changes = fixed_values(arguments)
+    budget = {
+        name: getattr(arguments, name)
+        for name in ("population", "generations")
+        if getattr(arguments, name) is not None
+    }
+    joint = None if arguments.joint is None else Joint.load(arguments.joint)
+    model = with_terms(arguments.model, arguments)
+    merged = model if joint is None else model.over(joint.model)
+    ratios = gear_ratios(arguments)
+    robot = load_robot(
+        arguments.recordings[0],
+        list(joints) or None,
+        gear_ratio=ratios[0] if ratios is not None and len(ratios) == 1 else ratios,
+        **how_to_read(arguments, [merged]),
+    )
+    with JointsProgress(enabled=not arguments.quiet) as progress:
+        found = identify_joints(
+            robot,
+            joint=joint,
+            model=model,
+            parameters=changes or None,
+            search=Search(
+                arguments.method,
+                ga=GaOptions(**budget),
+                seed=arguments.seed,
+                threads=arguments.threads,
+            ),
+            residual=arguments.residual,
+            windows=arguments.windows,
+            torque_hold=arguments.torque_hold,
+            callback=progress,
+            **refinements(arguments),
+        )
+    if arguments.report is not None:
+        save_joints_report(found, arguments.report, action=ADVICE.of_action)
+    if arguments.save is not None:
+        found.save(arguments.save)
+    wording = Wording.of(arguments)
+    if arguments.json:
+        print(found.to_json())
+    else:
+        from jointid.joints.tables import text_report
+
+        print(text_report(found, action=wording.of_action, error=wording.of_error))
+        lines = [
+            f"{what}: {path}"
+            for what, path in (("report", arguments.report), ("estimates", arguments.save))
+            if path is not None
+        ]
+        if lines:
+            print("", *lines, sep="\n")
+    return 0 if len(found) else BAD_USAGE
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    """Refuse what holds for one joint only, before the work."""
+    if len(arguments.recordings) > 1:
+        raise InputError(
+            "several joints are identified from one recording",
+            argument="joints",
+            value=arguments.joints,
+        )
+    for name in _OF_ONE_JOINT:
+        if getattr(arguments, name) not in (None, False):
+            raise InputError(
+                "this is for one joint; name it with --joints",
+                argument="n" if name == "bootstrap" else name,
+            )
+    if arguments.drop_copies:
+        raise InputError("this is for one joint", argument="drop_copies", value=True)
+    save = arguments.save
+    if save is not None and save.suffix != ".json":
+        raise InputError(
+            "the estimates of several joints are saved as .json", argument="save", value=save
+        )
+    check_folder("save", save)
+    check_page("report", arguments.report)

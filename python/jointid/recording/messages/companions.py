@@ -1,0 +1,70 @@
+"""Other topics whose messages have the same stamps: more columns of the same rows."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import islice
+
+import numpy as np
+
+from jointid.recording.messages.collecting import READ, Collected, collect
+from jointid.recording.messages.decoding import Block
+from jointid.recording.messages.joints import is_joint_kind
+from jointid.recording.messages.topic import DamageError, Message, Source, Topic
+
+_TRIED = 16  # messages whose stamps are compared before a topic is read
+
+
+def with_companions(source: Source, chosen: Topic, collected: Collected) -> Collected:
+    """Return a topic's messages with the numbers of those topics that have exactly its stamps.
+
+    Their columns are ``TOPIC.FIELD``. Other topics are not put on the rows of this one: that would be
+    interpolation.
+
+    Parameters
+    ----------
+    source : Source
+    chosen : Topic
+    collected : Collected
+        Its messages.
+    """
+    if collected.stamps is None or not is_joint_kind(chosen.kind):
+        return collected
+    blocks = list(collected.blocks)
+    for topic in source.topics:
+        if topic.name == chosen.name or is_joint_kind(topic.kind):
+            continue
+        if topic.count == len(collected.stamps) and topic.encoding in READ:
+            blocks += _blocks(source, topic, collected)
+    return replace(collected, blocks=tuple(blocks))
+
+
+def _blocks(source: Source, topic: Topic, collected: Collected) -> list[Block]:
+    try:
+        for some in (_Beginning(source), source):
+            found = collect(some, topic)
+            if found.stamps is None or collected.stamps is None:
+                return []
+            if not np.array_equal(found.stamps, collected.stamps[: len(found.stamps)]):
+                return []
+    except DamageError:  # of a topic that nobody asked for
+        return []
+    if len(found.stamps) != len(collected.stamps):
+        return []
+    return [
+        replace(block, columns=tuple(("", f"{topic.name}.{field}") for _, field in block.columns))
+        for block in found.blocks
+    ]
+
+
+class _Beginning:
+    """The first messages of a file."""
+
+    incomplete = ""
+
+    def __init__(self, source: Source) -> None:
+        self._source = source
+        self.topics = source.topics
+
+    def messages(self, topic: Topic) -> Iterator[Message]:
+        """Yield the first messages of a topic."""
+        return islice(self._source.messages(topic), _TRIED)
