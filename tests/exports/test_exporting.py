@@ -136,6 +136,13 @@ def test_a_model_that_moves_needs_an_inertia_that_can_be(tmp_path: Path) -> None
         jid.export(thin, tmp_path / "j.xml")
 
 
+def test_negative_friction_is_refused_where_a_simulator_refuses_it(tmp_path: Path) -> None:
+    joint = LOADED.with_parameters({"viscous": -0.1})
+    with pytest.raises(jid.InputError, match=r"parameters.viscous is -0.1: mujoco has no negative"):
+        jid.export(joint, tmp_path / "j.xml")
+    jid.export(joint, tmp_path / "j.h")
+
+
 def test_the_nearest_friction_needs_a_range_of_speeds(tmp_path: Path) -> None:
     with pytest.raises(jid.InputError, match="needs the range of speeds"):
         jid.export(THESIS, tmp_path / "j.xml", approximate=True)

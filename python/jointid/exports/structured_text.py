@@ -30,8 +30,7 @@ def _write(subject: Subject, order: Order) -> bytes:
     ]
     if subject.law.inertia is None:
         notes.append("inertia: it is not known, and taken as 0")
-    if any(each.basis == "load" for each in subject.law.friction):
-        loads = "behind the gear" if "link" in subject.model else "of the drive"
+    if loads := subject.law.loaded_by:
         notes.append(f"load is the torque {loads}; its sign does not matter")
     lines = [
         *_comment(statements(subject, notes=notes)),
