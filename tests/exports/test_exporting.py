@@ -12,6 +12,7 @@ import pytest
 from exported_joints import EVERYTHING, LOADED, THESIS, shipped_estimate
 
 import jointid as jid
+from jointid.estimate.findings import Finding
 from jointid.exports import registry
 from jointid.exports.identifiers import identifier
 from jointid.exports.structured_text import literal
@@ -50,11 +51,17 @@ def test_a_file_states_what_was_not_determined(tmp_path: Path, ending: str) -> N
     )
     doubtful = dataclasses.replace(estimate, parameters={**estimate.parameters, "static": weak})
     text = text_of(doubtful, tmp_path / f"joint{ending}")
-    assert "Without a known uncertainty, do not rely on: static." in text
+    assert "The recording did not determine, or not well: static." in text
     assert "held at its bound max" in text
-    assert "do not rely" not in text_of(estimate, tmp_path / f"other{ending}")
+    assert "did not determine" not in text_of(estimate, tmp_path / f"other{ending}")
+    # What the identification warns of keeps its error.
+    finding = Finding(code="undetermined", parameters=("viscous",), cause="one reversal")
+    warned = text_of(dataclasses.replace(estimate, findings=(finding,)), tmp_path / f"w{ending}")
+    assert "did not determine, or not well: viscous." in warned
+    assert "19.9932 to 20.0045, not well determined by the recording" in warned
+    assert "undetermined (warning): one reversal" in warned
     # A joint file holds no uncertainty at all.
-    assert "do not rely on: coulomb, static" in text_of(
+    assert "Of unknown uncertainty: coulomb, static" in text_of(
         THESIS.replace(limits=jid.Limits(velocity=1.0)), tmp_path / f"third{ending}"
     )
 
@@ -191,4 +198,4 @@ def test_fixed_values_are_not_doubtful(tmp_path: Path) -> None:
         },
         limits=jid.Limits(velocity=1.0),
     )
-    assert "do not rely" not in text_of(fixed, tmp_path / "j.st")
+    assert "Of unknown uncertainty" not in text_of(fixed, tmp_path / "j.st")
