@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.cli.arguments import fixed_values, joints_wanted, load_all, refinements, with_terms
-from jointid.cli.export import export
+from jointid.cli.exports import export
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
 from jointid.cli.parser import BAD_USAGE
 from jointid.cli.proof import check, first_motion
