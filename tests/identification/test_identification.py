@@ -101,10 +101,13 @@ def test_another_seed_searches_elsewhere(well_excited: jid.Recording) -> None:
 def test_demo_reproduces_the_authors_values_and_an_independent_fit() -> None:
     estimate = demonstrate().estimate
     for name, nominal in NOMINAL.items():
-        assert estimate.parameters[name].value == pytest.approx(nominal, rel=0.15), name
+        assert estimate.parameters[name].value == pytest.approx(nominal, rel=0.08), name
 
     recording = jid.load(data_folder() / "kr300_joint1.csv.gz")
     joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
+    estimate = jid.identify(
+        recording, joint
+    )  # without the known signals, which the other code does not have
     # Mask and windows are the core's, as the comparison asks; everything else is other code.
     windows = estimate.windows
     bounds = np.searchsorted(recording.time, np.column_stack([windows.start, windows.stop]))
