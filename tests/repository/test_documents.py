@@ -43,6 +43,11 @@ def test_the_page_about_own_terms_runs(tmp_path: Path, monkeypatch: pytest.Monke
     )
 
 
+def test_the_page_on_exports_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run_python_blocks(read("docs/exports.md"), tmp_path, monkeypatch)
+    assert 'frictionloss="' in (tmp_path / "arm.xml").read_text(encoding="utf-8")
+
+
 def test_the_joint_file_in_the_guide_loads(tmp_path: Path) -> None:
     (text,) = blocks(read("docs/guide.md"), "toml")
     path = tmp_path / "joint.toml"
