@@ -86,6 +86,21 @@ def test_independent_joints_are_not_coupled(seed: int, unmodelled: float, alike:
     assert found.sentences() == ()
 
 
+def test_what_the_own_motion_explains_is_not_credited_to_another_joint() -> None:
+    motion = sines(2, 7)
+    first = motion.position[:, 0]
+    # The second joint follows the first one, as in a motion that is planned for both.
+    for array in (motion.position, motion.velocity, motion.acceleration):
+        array[:, 1] = 0.8 * array[:, 0] + 0.05 * array[:, 1]
+    torque = torques(motion, 7)
+    torque[:, 0] += 3.0 * np.sin(2.0 * first)  # of the first joint alone, and no model here has it
+    found = jid.identify_joints(
+        recorded(motion, torque), model="coulomb_viscous", search="separable"
+    )
+    assert found["1"].residuals.relative > 0.1
+    assert found.results["1"].explained == 0.0
+
+
 def test_one_joint_that_fails_does_not_lose_the_others() -> None:
     motion = sines(3, 2)
     position = motion.position.copy()
