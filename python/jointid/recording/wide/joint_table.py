@@ -11,7 +11,7 @@ from jointid.recording.column_lookup import column_index, listed
 from jointid.recording.headers import ALIASES, parsed
 from jointid.recording.signals import FloatArray, check_signal_name, closest, dimensions
 from jointid.recording.table import Table, first_cell
-from jointid.recording.wide.joint_headers import JointHeader, joint_headers
+from jointid.recording.wide.finding_joints import JointHeader, joint_headers
 from jointid.recording.wide.words import JOINT, MOTOR
 
 Columns = Mapping[str, str | int | None]
