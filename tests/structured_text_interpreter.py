@@ -9,7 +9,13 @@ from typing import Any
 import blark.parse
 from blark import transform as tree
 
-FUNCTIONS = {"ABS": abs, "EXP": math.exp, "LN": math.log, "SIN": math.sin, "COS": math.cos}
+FUNCTIONS: dict[str, Any] = {
+    "ABS": abs,
+    "EXP": math.exp,
+    "LN": math.log,
+    "SIN": math.sin,
+    "COS": math.cos,
+}
 OPERATORS: dict[str, Any] = {
     "+": lambda a, b: a + b,
     "-": lambda a, b: a - b,

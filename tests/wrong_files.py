@@ -78,6 +78,8 @@ def _joint_files(folder: Path) -> None:
     joint = jid.thesis_joint()
     joint.save(folder / "unknown.toml")
     joint.with_parameters(_TRUTH).save(folder / "true.toml")
+    plain = {name: _TRUTH[name] for name in ("coulomb", "viscous")}
+    jid.Joint(model=jid.Model("coulomb_viscous")).with_parameters(plain).save(folder / "plain.toml")
     bench = Path(__file__).resolve().parents[1] / "examples" / "hardware" / "joint.toml"
     text = bench.read_text(encoding="utf-8")
     texts = {
@@ -98,6 +100,8 @@ def _others(folder: Path) -> None:
     estimate = jid.identify(jid.load(folder / "good.csv"), jid.Joint())
     estimate.save(folder / "estimate.json")
     (folder / "other.json").write_text(json.dumps({"schema": 1}), encoding="utf-8")
+    arm = '<robot name="arm"><joint name="elbow" type="fixed"><parent link="a"/></joint></robot>'
+    (folder / "arm.urdf").write_text(arm, encoding="utf-8")
     (folder / "study.jsonl").write_text("{}\n", encoding="utf-8")
     (folder / "full").mkdir()
     (folder / "full" / "cycle_1.json").touch()

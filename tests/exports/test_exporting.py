@@ -12,6 +12,7 @@ import pytest
 from exported_joints import EVERYTHING, LOADED, THESIS, shipped_estimate
 
 import jointid as jid
+from jointid.estimate.findings import Finding
 from jointid.exports import registry
 from jointid.exports.identifiers import identifier
 from jointid.exports.structured_text import literal
@@ -50,11 +51,17 @@ def test_a_file_states_what_was_not_determined(tmp_path: Path, ending: str) -> N
     )
     doubtful = dataclasses.replace(estimate, parameters={**estimate.parameters, "static": weak})
     text = text_of(doubtful, tmp_path / f"joint{ending}")
-    assert "Without a known uncertainty, do not rely on: static." in text
+    assert "The recording did not determine, or not well: static." in text
     assert "held at its bound max" in text
-    assert "do not rely" not in text_of(estimate, tmp_path / f"other{ending}")
+    assert "did not determine" not in text_of(estimate, tmp_path / f"other{ending}")
+    # What the identification warns of keeps its error.
+    finding = Finding(code="undetermined", parameters=("viscous",), cause="one reversal")
+    warned = text_of(dataclasses.replace(estimate, findings=(finding,)), tmp_path / f"w{ending}")
+    assert "did not determine, or not well: viscous." in warned
+    assert "19.9932 to 20.0045, not well determined by the recording" in warned
+    assert "undetermined (warning): one reversal" in warned
     # A joint file holds no uncertainty at all.
-    assert "do not rely on: coulomb, static" in text_of(
+    assert "Of unknown uncertainty: coulomb, static" in text_of(
         THESIS.replace(limits=jid.Limits(velocity=1.0)), tmp_path / f"third{ending}"
     )
 
@@ -124,7 +131,7 @@ def test_a_source_without_values_is_refused(tmp_path: Path) -> None:
 
 def test_a_model_that_moves_needs_an_inertia_that_can_be(tmp_path: Path) -> None:
     light = {"coulomb": 1.0, "viscous": 1.0}
-    bare = jid.Joint(model="coulomb_viscous").with_parameters(light)
+    bare = jid.Joint(model=jid.Model("coulomb_viscous")).with_parameters(light)
     with pytest.raises(jid.InputError, match="inertia: has no value"):
         jid.export(bare, tmp_path / "j.xml")
     jid.export(bare, tmp_path / "j.h")  # friction alone needs none
@@ -134,6 +141,13 @@ def test_a_model_that_moves_needs_an_inertia_that_can_be(tmp_path: Path) -> None
     thin = LOADED.replace(link=jid.Link(mass=2.5, centre_of_mass=0.5, inertia=0.1))
     with pytest.raises(jid.InputError, match="which no body has"):
         jid.export(thin, tmp_path / "j.xml")
+
+
+def test_negative_friction_is_refused_where_a_simulator_refuses_it(tmp_path: Path) -> None:
+    joint = LOADED.with_parameters({"viscous": -0.1})
+    with pytest.raises(jid.InputError, match=r"parameters.viscous is -0.1: mujoco has no negative"):
+        jid.export(joint, tmp_path / "j.xml")
+    jid.export(joint, tmp_path / "j.h")
 
 
 def test_the_nearest_friction_needs_a_range_of_speeds(tmp_path: Path) -> None:
@@ -184,4 +198,4 @@ def test_fixed_values_are_not_doubtful(tmp_path: Path) -> None:
         },
         limits=jid.Limits(velocity=1.0),
     )
-    assert "do not rely" not in text_of(fixed, tmp_path / "j.st")
+    assert "Of unknown uncertainty" not in text_of(fixed, tmp_path / "j.st")

@@ -186,7 +186,7 @@ def test_a_joint_of_a_model_is_edited_in_place(tmp_path: Path, newline: str) -> 
 def test_the_armature_is_kept_where_the_links_inertia_is_in_it(tmp_path: Path) -> None:
     source = tmp_path / "arm.xml"
     source.write_text(ARM.replace("damping = '1'", "armature='0.07'"), encoding="utf-8")
-    joint = jid.Joint(name="elbow", model="coulomb_viscous").with_parameters(
+    joint = jid.Joint(name="elbow", model=jid.Model("coulomb_viscous")).with_parameters(
         {"inertia": 3.0, "coulomb": 1.0, "viscous": 2.0}
     )
     text = jid.export(joint, tmp_path / "new.xml", into=source, joint_name="shoulder").read_text(

@@ -41,14 +41,14 @@ def test_mujoco_reads_the_robot(tmp_path: Path) -> None:
     mujoco: Any = pytest.importorskip("mujoco")
     for joint in (LOADED, SLIDING):
         model = mujoco.MjModel.from_xml_path(str(jid.export(joint, tmp_path / "joint.urdf")))
-        values = joint.parameters
-        assert model.dof_damping[0] == values["viscous"].value
-        assert model.dof_frictionloss[0] == values["coulomb"].value
+        viscous, coulomb = (joint.parameters[name].value or 0.0 for name in ("viscous", "coulomb"))
+        assert model.dof_damping[0] == viscous > 0.0
+        assert model.dof_frictionloss[0] == coulomb > 0.0
         state = mujoco.MjData(model)
         position, velocity, acceleration = 0.3, 0.5, 2.0
         state.qpos[0], state.qvel[0], state.qacc[0] = position, velocity, acceleration
         mujoco.mj_inverse(model, state)
-        friction = 0.5 * values["viscous"].value + values["coulomb"].value
+        friction = 0.5 * viscous + coulomb
         gravity = 0.0
         if joint.link is not None:
             known = joint.gravity_coefficients
@@ -106,7 +106,7 @@ def test_dynamics_and_limits_are_added(tmp_path: Path) -> None:
 
 
 def test_what_urdf_cannot_express(tmp_path: Path) -> None:
-    with pytest.raises(jid.InputError, match="URDF has Coulomb and viscous friction only"):
+    with pytest.raises(jid.InputError, match="urdf has Coulomb and viscous friction only"):
         jid.export(shipped_estimate(), tmp_path / "j.urdf")
     path = jid.export(shipped_estimate(), tmp_path / "j.urdf", approximate=True)
     assert "lost: Stribeck friction" in path.read_text(encoding="utf-8")

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.cli.arguments import fixed_values, joints_wanted, load_all, refinements, with_terms
-from jointid.cli.export import export
+from jointid.cli.exports import export
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
 from jointid.cli.parser import BAD_USAGE
 from jointid.cli.proof import check, first_motion
@@ -250,6 +250,9 @@ def _contents(recording: Recording) -> dict[str, Any]:
     assumed, left_out = (recording.metadata.get(key) for key in ("assumed_units", "left_out"))
     if assumed and isinstance(assumed, list | tuple):
         contents["SI units assumed"] = ", ".join(map(str, assumed))
+    recognised = recording.metadata.get("recognised_units")
+    if recognised and isinstance(recognised, Mapping):
+        contents["units recognised"] = ", ".join(f"{k} in {v}" for k, v in recognised.items())
     if left_out and isinstance(left_out, list | tuple):
         columns = [each for each in left_out if isinstance(each, Mapping)]
         contents["not read"] = "; ".join(f"{x.get('column')} ({x.get('reason')})" for x in columns)

@@ -19,7 +19,7 @@ from jointid.cli.arguments import (
     whole_seed,
     windows,
 )
-from jointid.cli.export import add_export
+from jointid.cli.exports import add_export
 from jointid.cli.proof import add_check, add_first_motion
 from jointid.cli.session import add_emulate, add_run
 from jointid.cli.simulation import add_simulate

@@ -41,8 +41,7 @@ def _write(subject: Subject, order: Order) -> bytes:
     ]
     if law.inertia is None:
         notes.append("inertia: it is not known, and taken as 0")
-    if any(each.basis == "load" for each in law.friction):
-        loads = "behind the gear" if "link" in subject.model else "of the drive"
+    if loads := subject.law.loaded_by:
         notes.append(
             f"load is the torque {loads} ({plain(subject.torque_unit)}); its sign does not matter"
         )

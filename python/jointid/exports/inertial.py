@@ -89,9 +89,8 @@ def body_of(subject: Subject) -> Body:
         # Sliding, dry friction is judged by the body's mass: all of it is there.
         mass, drive = (total, 0.0) if slides else (least, total)
         return Body(mass=mass, distance=0.0, angle=0.0, inertia=least, gravity=0.0, drive=drive)
-    drive = law.inertia if joint.sensor else None
-    if drive is None:
-        drive = _left(joint, total)
+    sensed = law.inertia if joint.sensor else None
+    drive = _left(joint, total) if sensed is None else sensed
     link = joint.link
     if slides:
         mass = max(link.mass, _SHARE * total)

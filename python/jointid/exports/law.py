@@ -101,6 +101,14 @@ class Law:
         """Inertia of drive and link together."""
         return None if self.inertia is None else self.inertia + self.link_inertia
 
+    @property
+    def loaded_by(self) -> str:
+        """Which torque load friction grows with, in words; "" without load friction."""
+        keys = [each.key for each in self.friction if each.basis == "load"]
+        if not keys:
+            return ""
+        return "behind the gear" if "load_friction_link" in keys else "of the drive"
+
     def over(self, kind: Over) -> tuple[Harmonic, ...]:
         """Return the harmonics of one kind."""
         return tuple(each for each in self.harmonics if each.over == kind)

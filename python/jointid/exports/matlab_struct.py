@@ -46,6 +46,7 @@ def _write(subject: Subject, order: Order) -> bytes:
             parameter_identifier(each.name)[:_LONGEST]: _parameter(each) for each in subject.values
         },
         "undetermined": np.array(subject.undetermined, dtype=object),
+        "findings": np.array(subject.findings, dtype=object),
         "gear_ratio": law.gear_ratio,
         "torque_constant": _known(subject.joint.torque_constant),
         "inertia": _known(law.inertia),

@@ -28,7 +28,7 @@ _CONSTANT, _SOFTNESS = 0.002, 0.01
 
 
 def _write(subject: Subject, order: Order) -> bytes:
-    nearest = nearest_friction(subject, approximate=order.approximate, target="MuJoCo")
+    nearest = nearest_friction(subject, approximate=order.approximate, target="mujoco")
     if order.into is not None:
         return _edited(subject, nearest, order.into)
     return _model(subject, nearest, order.name).encode()

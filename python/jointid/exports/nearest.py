@@ -83,6 +83,13 @@ def nearest_friction(subject: Subject, *, approximate: bool, target: str) -> Nea
         Something would be lost and must not, or no range of speeds is known.
     """
     law, lost = subject.law, lost_terms(subject)
+    for each in law.friction:
+        if each.value < 0.0:  # a simulator refuses it, or gains energy
+            raise InputError(
+                f"{target} has no negative friction",
+                argument=f"parameters.{each.name}",
+                value=each.value,
+            )
     if not lost:
         return Nearest(
             constant=sum(each.value for each in law.friction if each.basis == "constant"),

@@ -22,6 +22,9 @@ _PLAIN = str.maketrans(
         "≤": "<=",
         "°": " deg",
         "Ω": "ohm",
+        "×": "x",
+        "→": "->",
+        "’": "'",
     }
 )
 
@@ -55,9 +58,10 @@ def statements(subject: Subject, *, notes: Sequence[str] = ()) -> list[str]:
     lines.append("Parameters:")
     lines += [f"  {value_line(each)}" for each in subject.values]
     if subject.undetermined:
-        lines.append(
-            f"Without a known uncertainty, do not rely on: {', '.join(subject.undetermined)}."
-        )
+        names = ", ".join(subject.undetermined)
+        lines.append(f"The recording did not determine, or not well: {names}.")
+    if subject.unknown:
+        lines.append(f"Of unknown uncertainty: {', '.join(subject.unknown)}.")
     if subject.findings:
         lines.append("Warnings of the identification:")
         lines += [f"  {each}" for each in subject.findings]

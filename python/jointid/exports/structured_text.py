@@ -30,8 +30,7 @@ def _write(subject: Subject, order: Order) -> bytes:
     ]
     if subject.law.inertia is None:
         notes.append("inertia: it is not known, and taken as 0")
-    if any(each.basis == "load" for each in subject.law.friction):
-        loads = "behind the gear" if "link" in subject.model else "of the drive"
+    if loads := subject.law.loaded_by:
         notes.append(f"load is the torque {loads}; its sign does not matter")
     lines = [
         *_comment(statements(subject, notes=notes)),
@@ -74,13 +73,13 @@ def _block(subject: Subject, name: str) -> list[str]:
     law = subject.law
     position, torque = subject.position_unit, plain(subject.torque_unit)
     language = Language(name=_constant, number=literal, exp="EXP", log="LN", sin="SIN", cos="COS")
-    periods: dict[Over, str] = {
-        kind: total(periodic(law, kind, angle, language), "0.0")
-        for kind, angle in (
-            ("gravity", "position"),
-            ("harmonics", "position"),
-            ("ripple", "motor_angle"),
-        )
+    turned: dict[Over, str] = {
+        "gravity": "position",
+        "harmonics": "position",
+        "ripple": "motor_angle",
+    }
+    periods = {
+        kind: total(periodic(law, kind, angle, language), "0.0") for kind, angle in turned.items()
     }
     sensor = "0.0" if law.sensor is None else "P_SENSOR_GAIN * reading + P_SENSOR_OFFSET"
     sides = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import datetime
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,7 +34,9 @@ class ExportedValue:
     interval : tuple of float or None
         95 % interval; None if it is not known.
     remark : str
-        "fixed", "not determined by the recording", …; "" where nothing is to be said.
+        "fixed", "not well determined by the recording", …; "" where nothing is to be said.
+    doubtful : bool
+        Whether the recording did not determine it, or not well.
     """
 
     name: str
@@ -44,6 +46,7 @@ class ExportedValue:
     stderr: float | None = None
     interval: tuple[float, float] | None = None
     remark: str = ""
+    doubtful: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,8 +85,17 @@ class Subject:
 
     @property
     def undetermined(self) -> tuple[str, ...]:
-        """Names of the parameters that no recording is known to have determined."""
-        return tuple(v.name for v in self.values if v.interval is None and v.remark != "fixed")
+        """Names of the parameters that the recording did not determine, or not well."""
+        return tuple(each.name for each in self.values if each.doubtful)
+
+    @property
+    def unknown(self) -> tuple[str, ...]:
+        """Names of the other parameters whose uncertainty is not known."""
+        return tuple(
+            each.name
+            for each in self.values
+            if each.interval is None and each.remark != "fixed" and not each.doubtful
+        )
 
     @property
     def torque_unit(self) -> str:
@@ -123,14 +135,12 @@ def subject_of(value: Estimate | Joint, speed: float | None = None) -> Subject:
 
 
 def _with_speed(subject: Subject, speed: float) -> Subject:
-    from dataclasses import replace
-
     return replace(subject, speed=speed)
 
 
 def _of_estimate(estimate: Estimate) -> Subject:
     settings = estimate.settings
-    terms = tuple(settings["terms"])
+    terms = tuple(key for key in settings["terms"] if not _core.term(key).own)
     weak = {
         name
         for found in estimate.findings
@@ -172,9 +182,11 @@ def _estimated(found: ParameterEstimate, weak: bool) -> ExportedValue:
         remark = "fixed"
     elif found.at_bound is not None:
         remark = f"held at its bound {found.at_bound}: not determined by the recording"
-    elif weak or interval is None or not all(map(math.isfinite, interval)):
+    elif interval is None or not all(map(math.isfinite, interval)):
         remark = "not determined by the recording"
     sound = not remark and found.stderr is not None and math.isfinite(found.stderr)
+    if sound and weak:
+        remark = "not well determined by the recording"
     return ExportedValue(
         name=found.name,
         meaning=found.meaning,
@@ -183,6 +195,7 @@ def _estimated(found: ParameterEstimate, weak: bool) -> ExportedValue:
         stderr=found.stderr if sound else None,
         interval=interval if sound else None,
         remark=remark,
+        doubtful=found.vary and bool(remark),
     )
 
 
@@ -203,6 +216,7 @@ def _shared(entries: list[ExportedValue]) -> list[ExportedValue]:
                 f"mean of {len(own)} recordings, each with its own value: "
                 f"{min(each.value for each in own):.6g} to {max(each.value for each in own):.6g}"
             ),
+            doubtful=any(each.doubtful for each in own),
         )
         for name, own in shared.items()
     ]

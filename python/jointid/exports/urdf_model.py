@@ -27,7 +27,7 @@ from jointid.simulation.plant import torque_limit
 
 
 def _write(subject: Subject, order: Order) -> bytes:
-    nearest = nearest_friction(subject, approximate=order.approximate, target="URDF")
+    nearest = nearest_friction(subject, approximate=order.approximate, target="urdf")
     if order.into is not None:
         return _edited(subject, nearest, order.into)
     return _robot(subject, nearest, order.name).encode()
