@@ -97,6 +97,7 @@ def test_joints_change_places_and_stay_away(encoding: str, tmp_path: Path) -> No
                 State(stamp=START + 10_000_000 * k + 500, name=["gripper"], position=[0.1 * k])
             )
     path = mcap(tmp_path / "run.mcap", sent(states), encoding=encoding)
+    assert load(path, joint="a").metadata["topic"] == "/joint_states"
     for joint, sign in (("a", 1.0), ("bb", -1.0)):
         loaded = load(path, columns={"position": f"{joint}.position", "torque": f"{joint}.effort"})
         assert loaded.position.tolist() == [sign * (1.0 + k) for k in range(40)]

@@ -52,9 +52,21 @@ def test_no_topic_with_joints(tmp_path: Path) -> None:
     assert "/temperature (std_msgs/msg/Float64)" in message
 
 
-def test_a_topic_without_messages(tmp_path: Path) -> None:
-    path = mcap(tmp_path / "run.mcap", [])
-    assert "no topics are found" in refusal(path)
+def test_topics_without_messages_do_not_count(tmp_path: Path) -> None:
+    from mcap.writer import Writer
+
+    path = tmp_path / "run.mcap"
+    assert "no topics are found" in refusal(mcap(path, []))
+    writer = Writer(str(path))
+    writer.start()
+    schema = writer.register_schema("sensor_msgs/msg/JointState", "jsonschema", b"{}")
+    writer.register_channel("/silent/joint_states", "json", schema)
+    channel = writer.register_channel("/joint_states", "json", schema)
+    for k in range(20):
+        writer.add_message(channel, k, b'{"name": ["a"], "position": [%d]}' % k, k)
+    writer.finish()  # type: ignore[no-untyped-call]
+    assert load(path).metadata["topic"] == "/joint_states"
+    assert "/silent/joint_states: it has no messages" in refusal(path, topic="/silent/joint_states")
 
 
 def test_a_topic_with_the_same_stamps_adds_columns(tmp_path: Path) -> None:
