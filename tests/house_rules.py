@@ -154,6 +154,7 @@ FOLDERS: dict[str, Folder] = {
             *(
                 "recording/readers",
                 "comparison",
+                "joints",
                 "simulation",
                 "study",
                 "plot",

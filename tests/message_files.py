@@ -208,6 +208,9 @@ FORMS: dict[str, Callable[[Path, Sequence[Sent]], Path]] = {
     "ROS 2 in SQLite, compressed messages": lambda folder, sent: ros2_bag(
         folder / "run", sent, mode="MESSAGE"
     ),
+    "ROS 2 in SQLite, compressed files": lambda folder, sent: ros2_bag(
+        folder / "run", sent, mode="FILE"
+    ),
     "ROS 2 in MCAP": lambda folder, sent: ros2_bag(folder / "run", sent, storage="MCAP"),
     "one .db3": lambda folder, sent: next(ros2_bag(folder / "run", sent).glob("*.db3")).rename(
         folder / "run.db3"

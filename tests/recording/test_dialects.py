@@ -166,8 +166,8 @@ BAD: list[Bad] = [
         "line 1: the cells may be separated by commas or semicolons; put texts",
     ),
     (
-        *("a.csv", [line.replace(",", " ") for line in GOOD], {}),
-        "line 1: 'time_s position_rad .*' has no separator; commas, semicolons or tabs",
+        *("a.csv", [line.replace(",", "|") for line in GOOD], {}),
+        "line 1: 'time_s.position_rad.*' has no separator; commas, semicolons, tabs or blanks",
     ),
     ("a.csv", ["sep=;"], {}, "the file has no header and no rows"),
     ("a.csv", with_line(5, '0.03,"1,5",1,2'), {}, "'1,5' is not a number; decimal commas are read"),
@@ -208,7 +208,7 @@ def test_bad_text_gives_one_sentence(
     assert re.search(message.replace("^", r"\^"), error_text), error_text
 
 
-finite = st.floats(allow_nan=False, allow_infinity=False).map(repr)
+finite = st.floats(-1e15, 1e15).map(repr)
 
 
 @given(

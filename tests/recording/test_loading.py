@@ -258,7 +258,6 @@ def test_several_axes_are_refused_with_a_remedy(shared_data: Path) -> None:
     error_text = refusal(shared_data / "kr300" / "kr300_A.csv.gz")
     assert "6 joints (1, 2, 3, 4, 5, 6)" in error_text
     assert "load with joint=1" in error_text
-    assert f"columns={{'position': '{POSITION}'}}" in error_text
 
 
 def test_several_runs_are_refused_with_a_remedy(shared_data: Path) -> None:

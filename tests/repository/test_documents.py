@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from documents import ROOT, blocks, enter, read, run_python_blocks
+from moving_joints import recorded, sines, torques
 
 import jointid as jid
 from jointid.cli import main
@@ -69,6 +70,10 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     shipped.save(folder / "kr300.toml")
     for name in ("run", "monday", "tuesday"):
         recording.save(folder / f"{name}.csv")
+    motion = sines(2, 1, duration=8.0)
+    ratios = [50.0, -30.0]
+    torque = torques(motion, 1) / ratios
+    recorded(motion, torque).save(folder / "arm.csv")
     text = (folder / "run.csv").read_text(encoding="utf-8")
     (folder / "log.csv").write_text(text.replace("position_rad", "enc1", 1), encoding="utf-8")
     return folder

@@ -244,13 +244,22 @@ def _exit_code(refused: str, arguments: argparse.Namespace) -> int:
 
 
 def _contents(recording: Recording) -> dict[str, Any]:
+    from jointid.recording.file_remarks import remarks
+
     contents = _facts(recording)
     assumed, left_out = (recording.metadata.get(key) for key in ("assumed_units", "left_out"))
     if assumed and isinstance(assumed, list | tuple):
         contents["SI units assumed"] = ", ".join(map(str, assumed))
+    recognised = recording.metadata.get("recognised_units")
+    if recognised and isinstance(recognised, Mapping):
+        contents["units recognised"] = ", ".join(f"{k} in {v}" for k, v in recognised.items())
     if left_out and isinstance(left_out, list | tuple):
         columns = [each for each in left_out if isinstance(each, Mapping)]
         contents["not read"] = "; ".join(f"{x.get('column')} ({x.get('reason')})" for x in columns)
+    if recording.metadata.get("topic"):
+        contents["topic"] = recording.metadata["topic"]
+    if said := remarks(recording.metadata):
+        contents["read"] = "; ".join(said)
     return contents
 
 

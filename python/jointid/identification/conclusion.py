@@ -28,6 +28,7 @@ from jointid.identification.inference.lag import of_lags
 from jointid.identification.inference.segments import Motion, motion_segments
 from jointid.identification.inference.systematic import systematic_errors
 from jointid.identification.inference.undivided import divided, with_undivided
+from jointid.identification.inference.velocity_misfit import beyond_velocity_noise
 from jointid.identification.inference.velocity_noise import velocity_systematic
 from jointid.identification.refinements.refinements import Refinements
 from jointid.identification.search.domain import SearchDomain
@@ -143,6 +144,9 @@ def infer(
             torque_level=torque_level,
             delays=refinements.delays,
         )
+        if effect is not None:
+            real = beyond_velocity_noise(problem, penalty, best, free, causes.found)
+            causes = replace(causes, found=real)
         explained = statistics.r_squared >= 0.0 or (
             not any(freedom.at_bound)
             and (

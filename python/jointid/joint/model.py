@@ -5,14 +5,14 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import KW_ONLY, dataclass, field, fields, replace
+from dataclasses import KW_ONLY, dataclass, fields, replace
 from typing import Any, Literal, Self, get_args
 
 from jointid import _core
 from jointid.base.argument_checks import number_in
 from jointid.base.errors import InputError
 from jointid.joint.checks import check_choice, check_flag, finite_number, suggestion
-from jointid.joint.own_terms import OwnTerms
+from jointid.joint.own_terms import NO_TERMS, OwnTerms
 
 Gravity = Literal["none", "known", "free"]
 Load = Literal["drive", "link"]
@@ -227,7 +227,7 @@ class ResolvedModel:
     harmonics: tuple[float, ...] = ()
     load_friction: bool | Load = False
     per_recording: tuple[str, ...] = ()
-    terms: OwnTerms = field(default_factory=OwnTerms)
+    terms: OwnTerms = NO_TERMS
 
     def __str__(self) -> str:
         """Return the name and the fields that differ from their defaults, as text that `Model.parse` reads."""

@@ -174,6 +174,9 @@ class OwnTerms(Mapping[str, str]):
         return functools.partial(OwnTerms, self.each), ()
 
 
+NO_TERMS = OwnTerms()
+
+
 def is_fixed(name: str) -> bool:
     """Whether a parameter is the gain of something known, which is 1 unless a call frees it."""
     return name.startswith(_FIXED)

@@ -65,6 +65,8 @@ def value_with_error(parameter: ParameterEstimate | None) -> str:
         fixed = "" if parameter.vary else " (fixed)"
         return f"{parameter.value:.4g}{fixed}"
     error = two_digits(parameter.stderr)
+    if "e" in error:
+        return f"{parameter.value:.3g} ± {error}"
     digits = len(error.partition(".")[2])
     return f"{parameter.value:.{digits}f} ± {error}"
 
@@ -75,7 +77,8 @@ def notes(result: JointEstimates) -> list[str]:
     at_motor = [name for name, each in result.results.items() if each.side == "motor"]
     if at_motor:
         lines.append(
-            f"joint {', '.join(at_motor)}: no gear ratio is known; the values are on the motor's side"
+            f"no gear ratio is known: the values of joint{'s' * (len(at_motor) > 1)} {', '.join(at_motor)} are on the "
+            "motor's side"
         )
     return lines
 

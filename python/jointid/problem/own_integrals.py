@@ -94,6 +94,8 @@ def centred(own: OwnTerms, recordings: Sequence[Recording]) -> OwnTerms:
     InputError
         A recording lacks a signal, or the joint slides.
     """
+    if not own.each:
+        return own
     made = []
     for each in own.each:
         signals = [signal_of(each, recording) for recording in recordings]

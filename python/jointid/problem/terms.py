@@ -1,5 +1,6 @@
 """The terms of a joint's torque balance, chosen from the joint, the recordings and the call."""
 
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -216,17 +217,21 @@ def _ordered(
     """Return keys in the core's order; the orders of a family replace the family's row."""
     orders = {"ripple": ripple, "position": harmonics}
     keys: list[str] = []
-    known = {term.key for term in _core.terms()}
-    for key in sorted(wanted - known):
+    rows = _rows()
+    for key in sorted(wanted - rows.keys()):
         raise InputError("the core has no such term", argument="model", value=key)
-    for term in _core.terms():
-        if term.own:
-            continue
-        if term.family:
-            keys += [f"{term.key}_{order:g}" for order in orders[term.key.split("_")[0]]]
-        elif term.key in wanted:
-            keys.append(term.key)
+    for row, family in rows.items():
+        if family:
+            keys += [f"{row}_{order:g}" for order in orders[row.split("_")[0]]]
+        elif row in wanted:
+            keys.append(row)
     return tuple(keys)
+
+
+@functools.cache
+def _rows() -> dict[str, bool]:
+    """Keys of the core's rows but those of own terms, and whether each stands for a term an order."""
+    return {term.key: term.family for term in _core.terms() if not term.own}
 
 
 def _coefficients(terms: tuple[str, ...]) -> dict[str, str]:

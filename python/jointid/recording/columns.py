@@ -12,6 +12,7 @@ from jointid.recording.column_lookup import column_index
 from jointid.recording.header_words import OF_A_JOINT, PLAIN
 from jointid.recording.headers import understood
 from jointid.recording.signals import FloatArray, check_signal_name, dimensions
+from jointid.recording.stamps import fractions
 from jointid.recording.table import Table
 from jointid.recording.units import Unit, unit_named
 
@@ -176,13 +177,14 @@ def _candidates(table: Table, columns: Mapping[str, str | int | None]) -> dict[s
             )
         chosen[index] = signal
     candidates: dict[str, list[Column]] = {}
+    parts = fractions(table.headers) if table.saved is None else frozenset()
     for index, header in enumerate(table.headers):
         read = understood(header)
         meaning = read.meaning
         if index in chosen:
             column_here = Column(index=index, unit=read.unit, unknown=read.unknown, chosen=True)
             candidates.setdefault(chosen[index], []).append(column_here)
-        elif meaning is not None and meaning.signal not in columns:
+        elif index not in parts and meaning is not None and meaning.signal not in columns:
             if table.saved is None:
                 if meaning.signal == "late":
                     continue  # elsewhere a column of this name may be anything

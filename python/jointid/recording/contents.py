@@ -15,6 +15,8 @@ from jointid.recording.column_lookup import column_index
 from jointid.recording.columns import Column
 from jointid.recording.extra import UNITS_KEY, ExtraColumn, extra_columns
 from jointid.recording.matching import match_columns
+from jointid.recording.plausibility import too_large
+from jointid.recording.reading import MOTION, read_values, with_remedy
 from jointid.recording.signals import FloatArray, check_signals
 from jointid.recording.table import Table
 from jointid.recording.truncated import unrecorded
@@ -41,6 +43,8 @@ class Contents:
         Name of an extra signal → its column, and the values in the column's own unit. Default: none.
     left_out : sequence of mapping of str to str
         Columns that a header assigns to a signal and that are not read, as in `Match`. Default: none.
+    notes : mapping of str to object
+        Further entries of the recording's metadata. Default: none.
     """
 
     table: Table
@@ -50,6 +54,7 @@ class Contents:
     kind: str
     extra: Mapping[str, tuple[ExtraColumn, FloatArray]] = field(default_factory=dict)
     left_out: Sequence[Mapping[str, str]] = ()
+    notes: Mapping[str, Any] = field(default_factory=dict)
 
     def fields(
         self,
@@ -90,7 +95,21 @@ class Contents:
             return self.table.place(column.index, row)
 
         every = signals | {f"extra.{name}": values for name, values in extra.items()}
-        check_signals(every, place=place, source=self.table.source, time_remedy=time_remedy)
+        try:
+            check_signals(every, place=place, source=self.table.source, time_remedy=time_remedy)
+        except InputError as error:
+            if error.argument in MOTION and self.table.saved is None:
+                raise with_remedy(error, error.argument) from None
+            raise
+        if self.table.saved is None and (large := too_large(signals)) is not None:
+            signal, index = large
+            raise InputError(
+                "no joint has such a value; it is damaged, or stands for a value that is missing",
+                argument=signal,
+                value=float(signals[signal][index]),
+                place=place(signal, index),
+                remedy="leave such rows out",
+            )
         fields = {**self.saved, **signals, "kind": self.kind}
         if extra:
             fields["extra"] = extra
@@ -168,6 +187,7 @@ class Contents:
         left_out = [dict(each) for each in self.left_out]
         metadata = {"assumed_units": assumed, "scale": scaled, "left_out": left_out}
         metadata |= getattr(self.table, "notes", {})  # how a log of messages was read
+        metadata |= self.notes
         return {name: value for name, value in metadata.items() if value}
 
 
@@ -218,9 +238,8 @@ def read_contents(
     found = match.found
     read = {table.headers[column.index] for column in own.values()}
     left_out = [each for each in match.left_out if each["column"] not in read]
-    values = dict(
-        zip(found, table.numbers([column.index for column in found.values()]), strict=True)
-    )
+    notes: dict[str, Any] = {}
+    values = read_values(table, found, left_out, notes)
     for missing in unrecorded(saved, values):
         found = {signal: column for signal, column in found.items() if signal != missing}
         del values[missing]
@@ -237,4 +256,5 @@ def read_contents(
         extra={name: (own[name], values) for name, values in zip(own, arrays, strict=True)},
         kind=match.kind,
         left_out=left_out,
+        notes=notes,
     )

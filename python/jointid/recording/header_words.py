@@ -65,6 +65,7 @@ _TIMES = frozenset(
             "header stamp sec",
             "stamp secs",
             "stamp sec",
+            "tv",
         ),
         *("elapsed", "elapsed time", "time elapsed", "ros time", "robot time", "controller time"),
         *("unix time", "epoch", "epoch time", "rosbag timestamp", "date time", "datetime", "zeit"),

@@ -37,3 +37,9 @@ class Table(Protocol):
 
     def place(self, column: int, row: int) -> str:
         """Return where a cell is, for messages."""
+
+
+def first_cell(table: Table, column: int) -> str:
+    """Return the first cell of a column as it stands in the file; empty where cells are no text."""
+    found: str = table.first_cell(column) if hasattr(table, "first_cell") else ""
+    return found

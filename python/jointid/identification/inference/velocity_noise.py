@@ -81,7 +81,7 @@ def velocity_systematic(
     repeats : int
         Draws. Default 4.
     """
-    noisy = [_is_noisy(run, penalty.noise_share) for run in problem.recordings]
+    noisy = [is_noisy(run, penalty.noise_share) for run in problem.recordings]
     if not any(noisy):
         return None
     options = _core.WindowOptions(
@@ -90,7 +90,7 @@ def velocity_systematic(
     moved = []
     for draw in range(repeats):
         runs = tuple(
-            _noisier(run, draw, number) if too else run
+            measured_again(run, draw, number) if too else run
             for number, (run, too) in enumerate(zip(problem.recordings, noisy, strict=True))
         )
         other = dataclasses.replace(problem, recordings=runs)
@@ -113,14 +113,15 @@ def velocity_systematic(
     )
 
 
-def _is_noisy(run: Recording, share: float) -> bool:
+def is_noisy(run: Recording, share: float) -> bool:
+    """Whether a velocity's noise may matter; `share` is that of its change over a window."""
     if follows_position(run):
         return run.derived.refined
     peak = float(np.abs(run.velocity).max())
     return share > _SHARE and noise_of_velocity(run) > _HARMLESS * peak
 
 
-def _noisier(run: Recording, draw: int, number: int) -> Recording:
+def measured_again(run: Recording, draw: int, number: int) -> Recording:
     """Return a recording whose velocity has been measured once more."""
     random = np.random.default_rng((draw, number))
     # Uniform noise: the generator's bits are the same on every host.

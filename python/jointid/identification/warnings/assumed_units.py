@@ -1,6 +1,6 @@
 """Signals whose unit no header states."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding
@@ -31,6 +31,22 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         yield ASSUMED_UNITS.finding(
             f"no unit is stated for {', '.join(signals)}; SI is assumed", *advice
         )
+    recognised = {
+        str(signal): str(unit)
+        for recording in evidence.recordings
+        for signal, unit in _pairs(recording.metadata.get("recognised_units"))
+    }
+    if recognised:
+        shown = ", ".join(f"{signal} is read in {unit}" for signal, unit in recognised.items())
+        yield ASSUMED_UNITS.finding(
+            f"no unit is stated, but the numbers show it: {shown}",
+            Action("inspect", text="the header, and name the unit there (time_ns)"),
+            severity="info",
+        )
+
+
+def _pairs(value: object) -> tuple[tuple[object, object], ...]:
+    return tuple(value.items()) if isinstance(value, Mapping) else ()
 
 
 def _sequence(value: object) -> tuple[object, ...]:

@@ -34,6 +34,7 @@ FILES = (
     "late",
     "assumed_units",
     "left_out",
+    "message_log",
 )
 
 

@@ -40,7 +40,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             speed = peak * gear * 60.0 / (2.0 * np.pi)
             seen, shown = f"the motor would turn at {speed:.0f} rpm", Measured(speed, "rpm")
             measured = {"motor_speed": shown}
-        elif swing > _SWING and travel < 0.5 * swing:
+        elif swing > _SWING and travel < 0.5 * swing and not _of_the_motor(recording):
             turns = swing / (2.0 * np.pi)
             seen = f"the joint would swing through {turns:.0f} turns and back"
             measured = {"swing": Measured(turns, "turns")}
@@ -53,6 +53,11 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             Action("inspect", text="the gear ratio"),
             evidence=measured,
         )
+
+
+def _of_the_motor(recording: Recording) -> bool:
+    """Whether the position is that of a motor without a known gear ratio, which may turn often."""
+    return recording.metadata.get("side") == "motor"
 
 
 def _slow_stamps(recording: Recording) -> Finding:

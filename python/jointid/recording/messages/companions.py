@@ -39,16 +39,15 @@ def with_companions(source: Source, chosen: Topic, collected: Collected) -> Coll
 
 
 def _blocks(source: Source, topic: Topic, collected: Collected) -> list[Block]:
+    stamps = collected.stamps
     try:
-        for some in (_Beginning(source), source):
-            found = collect(some, topic)
-            if found.stamps is None or collected.stamps is None:
-                return []
-            if not np.array_equal(found.stamps, collected.stamps[: len(found.stamps)]):
-                return []
+        some = collect(_Beginning(source), topic).stamps
+        if some is None or stamps is None or not np.array_equal(some, stamps[: len(some)]):
+            return []
+        found = collect(source, topic)
     except DamageError:  # of a topic that nobody asked for
         return []
-    if len(found.stamps) != len(collected.stamps):
+    if found.stamps is None or not np.array_equal(found.stamps, stamps):
         return []
     return [
         replace(block, columns=tuple(("", f"{topic.name}.{field}") for _, field in block.columns))

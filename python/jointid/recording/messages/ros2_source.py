@@ -1,14 +1,19 @@
 """ROS 2 bags: a .db3 file (SQLite), and a folder of .db3 or .mcap files."""
 
+import re
+import shutil
 import sqlite3
+import weakref
 from collections.abc import Iterator
 from pathlib import Path
+from tempfile import mkdtemp
 
 from jointid.base.error_text import reason_of
 from jointid.recording.messages.definitions import normal_kind
 from jointid.recording.messages.mcap_source import McapSource
 from jointid.recording.messages.topic import DamageError, Message, Source, Topic
 
+_ENDING = re.compile(r"\.(db3|mcap)(\.zstd)?$", re.IGNORECASE)
 _ZSTANDARD = b"\x28\xb5\x2f\xfd"  # how a compressed message begins; CDR begins with 0
 
 
@@ -119,8 +124,9 @@ class FolderSource:
     """
 
     def __init__(self, path: Path) -> None:
+        self._folder: Path | None = None  # of files that were compressed as a whole
         files = sorted(
-            (each for each in path.iterdir() if each.suffix.lower() in (".db3", ".mcap")),
+            (self._unpacked(each) for each in path.iterdir() if _ENDING.search(each.name)),
             key=lambda each: (len(each.name), each.name),  # bag_2 before bag_10
         )
         self._sources: list[Source] = [
@@ -145,6 +151,22 @@ class FolderSource:
                     count=count,
                 )
         self.topics = tuple(found.values())
+
+    def _unpacked(self, path: Path) -> Path:
+        if path.suffix.lower() != ".zstd":
+            return path
+        import zstandard
+
+        if self._folder is None:
+            self._folder = Path(mkdtemp())
+            weakref.finalize(self, shutil.rmtree, self._folder, ignore_errors=True)
+        file = self._folder / path.stem
+        try:
+            with path.open("rb") as packed, file.open("wb") as unpacked:
+                zstandard.ZstdDecompressor().copy_stream(packed, unpacked)
+        except zstandard.ZstdError as error:
+            raise DamageError(f"{path.name} is damaged ({reason_of(error)})") from None
+        return file
 
     @property
     def incomplete(self) -> str:

@@ -7,6 +7,10 @@ from collections.abc import Sequence
 from jointid.base.errors import InputError
 
 _SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
+BLANK = " "  # separates the cells of controllers' logs, one or several of them
+_TOKEN = re.compile(r'"[^"]*"|\S+')
+_UNITS = re.compile(r"[\[(][^\])]*[\])]|\S+")
+_OPEN = re.compile(r"[\[(][^\[\]()]*$")
 _DECIMAL_COMMA = re.compile(r"[+-]?(\d+,\d*|,\d+)(e[+-]?\d+)?", re.IGNORECASE)
 # 1,234 may mean 1234 or 1.234; 0,25 and 1,5 and 1234,567 are unambiguous.
 _AMBIGUOUS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
@@ -20,9 +24,26 @@ def cells_of(line: str, separator: str) -> list[str]:
     csv.Error
         Quotation marks do not match.
     """
+    if separator == BLANK:
+        return _between_blanks(line)
     if '"' not in line:
         return [cell.strip() for cell in line.split(separator)]
     return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, strict=True))]
+
+
+def _between_blanks(line: str) -> list[str]:
+    """Return what stands between blanks; a bracket belongs to the word before it: `time [s]`."""
+    if not any(sign in line for sign in '"[('):
+        return line.split()
+    if line.lstrip()[:1] in ("[", "("):  # a row of units
+        return _UNITS.findall(line)
+    cells: list[str] = []
+    for token in _TOKEN.findall(line):
+        if cells and (token[0] in "[(" or _OPEN.search(cells[-1])):
+            cells[-1] += f" {token}"
+        else:
+            cells.append(token.strip('"'))
+    return cells
 
 
 def number_of(cell: str, separator: str = ",") -> float | None:
@@ -61,6 +82,14 @@ def separator_of(header: str, row: str, place: str) -> str:
         above, below = _cells_or_none(header, separator), _cells_or_none(row, separator)
         if above and below and len(above) == len(below) > 1:
             fitting[separator] = sum(number_of(cell, separator) is not None for cell in below)
+    by_blanks = _between_blanks(row)
+    numbers = sum(number_of(cell, BLANK) is not None for cell in by_blanks)
+    if (
+        1 < len(by_blanks) == len(_between_blanks(header))
+        and (not fitting or numbers == len(by_blanks))
+        and (not fitting or max(fitting.values()) < numbers)
+    ):
+        return BLANK
     if fitting:
         most = max(fitting.values())
         best = [separator for separator, numbers in fitting.items() if numbers == most]
@@ -74,8 +103,10 @@ def separator_of(header: str, row: str, place: str) -> str:
         )
     by_header = max(_SEPARATORS, key=lambda separator: header.count(separator))
     if by_header not in header:
+        if len(by_blanks) > 1 and len(_between_blanks(header)) > 1:
+            return BLANK
         raise InputError(
-            f"{header.strip()[:60]!r} has no separator; commas, semicolons or tabs are expected, "
+            f"{header.strip()[:60]!r} has no separator; commas, semicolons, tabs or blanks are expected, "
             "between at least time and position",
             place=place,
         )

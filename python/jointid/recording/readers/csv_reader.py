@@ -13,32 +13,38 @@ import numpy as np
 
 from jointid.base.errors import InputError
 from jointid.recording.readers.csv_dialect import (
+    BLANK,
     cells_of,
     decimal_comma,
     number_of,
-    separator_named,
-    separator_of,
 )
+from jointid.recording.readers.csv_layout import is_comment, layout_of
+from jointid.recording.readers.csv_stream import even_rows, plain_numbers
 from jointid.recording.readers.csv_text import text_of
 from jointid.recording.readers.reader import Reader
+from jointid.recording.readers.twincat_scope import ScopeTable, separator_of_scope
 from jointid.recording.saving import CSV_MARK, saved_attributes
 from jointid.recording.signals import FloatArray
+from jointid.recording.table import Table
 from jointid.recording.truncated import no_sample, session_text, with_metadata
 
 _LONG = 1 << 20  # characters: a longer file is read as a stream if it holds only numbers
+_FEW = 12  # columns: of more, only those used are converted
 _INNER = "\x1f"  # separates cells that are joined again: no text file contains it
 
 
 class CsvTable:
     """A .csv or .csv.gz file as a table of columns with one header.
 
-    Commas, semicolons or tabs separate the cells; where commas do not, they may be the decimal
-    sign. Lines above the header may begin with ``#``; if numbers follow without a header, the last
-    of these lines may be the header. Without a header the headers are ``"column 0"``, ``"column 1"``, ...
+    Commas, semicolons, tabs or blanks separate the cells; where commas do not, they may be the decimal
+    sign. Comments begin with ``#``, ``%`` or ``//``; if numbers follow without a header, the last
+    of those above may be the header. Without a header the headers are ``"column 0"``, ``"column 1"``, ...
 
     Parameters
     ----------
     path : Path
+    text : str
+        What it holds, where it was read before. Default: the file is read.
 
     Raises
     ------
@@ -48,9 +54,9 @@ class CsvTable:
 
     other_names: Mapping[str, int] = MappingProxyType({})
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, text: str = "") -> None:
         self.source = str(path)
-        self._content = text_of(path)
+        self._content = text or text_of(path)
         ending: Mapping[str, Any] | None = None  # of a session's file
         if self._content.startswith(CSV_MARK):
             self._content, ending = session_text(self._content)
@@ -62,24 +68,30 @@ class CsvTable:
             self.saved = saved_attributes(lines[0][len(CSV_MARK) :], f"{self.source}, line 1")
             if ending is not None:
                 self.saved = with_metadata(self.saved, ending)
-        filled = (k for k, line in enumerate(lines) if line.strip() and line[0] != "#")
-        first = next(filled, None)
-        named = None if first is None else separator_named(lines[first])
-        if named:
-            first = next(filled, None)
-        if first is None:
-            raise InputError("the file has no header and no rows", place=self.source)
-        self._separator = named or separator_of(
-            lines[first], lines[next(filled, first)], f"{self.source}, line {first + 1}"
-        )
-        self._below = self._read_header(lines, first)
+        layout = layout_of(lines, self.source, CSV_MARK)
+        self._separator, self._below = layout.separator, layout.below
+        self.headers = layout.headers
+        self.header_place = f"{self.source}, line {layout.header_line}"
+        if layout.bare:
+            self.header_place += " (numbers, no header)"
+        self._stream: Path | None = None
         if long and '"' not in self._content:
-            self._table = _plain_numbers(
-                path if ending is None else StringIO(self._content),
-                self._below,
-                self._separator,
-                len(self.headers),
-            )
+            if len(self.headers) <= _FEW:
+                self._table = plain_numbers(
+                    path if ending is None else StringIO(self._content),
+                    self._below,
+                    self._separator,
+                    len(self.headers),
+                )
+            if (
+                self._table is None
+                and ending is None
+                and self._separator != BLANK
+                and even_rows(self._content, self._below, self._separator, len(self.headers))
+            ):
+                self._stream = path
+        if self._stream is not None:
+            return
         if self._table is None:
             if not self._rows and ending is not None:
                 raise InputError(no_sample(ending), place=self.source)
@@ -91,6 +103,12 @@ class CsvTable:
         """Return columns as arrays of shape (n,), or raise `InputError` for the cell that is no number."""
         if self._table is not None:
             return [np.ascontiguousarray(self._table[:, column]) for column in columns]
+        if self._stream is not None:
+            table = plain_numbers(
+                self._stream, self._below, self._separator, len(columns), list(columns)
+            )
+            if table is not None:
+                return list(table.T.copy())
         rows, separator, used = self._rows, self._separator, list(columns)
         if separator != "," and any("," in row for row in rows):
             rows, separator, used = self._with_points(columns), _INNER, list(range(len(columns)))
@@ -98,7 +116,7 @@ class CsvTable:
             # NOTE: without `comments=None` a '#' would cut a line short.
             table = np.loadtxt(
                 rows,
-                delimiter=separator,
+                delimiter=None if separator == BLANK else separator,
                 usecols=used,
                 dtype=np.float64,
                 comments=None,
@@ -115,6 +133,13 @@ class CsvTable:
         """Return the cells of a column, without blanks around them."""
         return self._columns([column])[0]
 
+    def first_cell(self, column: int) -> str:
+        """Return the first cell of a column."""
+        lines = _lines(self._content[:_LONG])[self._below :]
+        first = next((line for line in lines if line.strip()), "")
+        cells = self._cells(first, self._below + 1)
+        return cells[column] if column < len(cells) else ""
+
     def place(self, column: int, row: int) -> str:
         """Return file, line and column of a cell."""
         line = self._line_numbers[row]
@@ -124,30 +149,16 @@ class CsvTable:
     def _line_numbers(self) -> list[int]:
         """1-based line number of each row; blank lines are no rows."""
         below = _lines(self._content)[self._below :]
-        return [number for number, line in enumerate(below, self._below + 1) if line.strip()]
+        return [
+            number
+            for number, line in enumerate(below, self._below + 1)
+            if line.strip() and not is_comment(line)
+        ]
 
     @cached_property
     def _rows(self) -> list[str]:
         lines = _lines(self._content)
         return [lines[number - 1] for number in self._line_numbers]
-
-    def _read_header(self, lines: list[str], first: int) -> int:
-        """Find the headers; return the index of the first line below them."""
-        cells = self._cells(lines[first], first + 1)
-        self.headers = tuple(cells)
-        self.header_place = f"{self.source}, line {first + 1}"
-        if any(number_of(cell, self._separator) is None for cell in cells):
-            return first + 1
-        above = next((k for k in reversed(range(first)) if lines[k].strip()), None)
-        if above is not None and not lines[above].startswith(CSV_MARK):
-            comment = self._cells(lines[above].lstrip("#"), above + 1)
-            if len(comment) == len(cells):
-                self.headers = tuple(comment)
-                self.header_place = f"{self.source}, line {above + 1}"
-                return first
-        self.headers = tuple(f"column {k}" for k in range(len(cells)))
-        self.header_place += " (numbers, no header)"
-        return first
 
     def _with_points(self, columns: Sequence[int]) -> list[str]:
         """Return the rows with these columns only, decimal points for decimal commas."""
@@ -171,6 +182,7 @@ class CsvTable:
     def _refuse_ragged_rows(self) -> None:
         for row, number in zip(self._rows, self._line_numbers, strict=True):
             plain = '"' not in row
+            plain = plain and self._separator != BLANK
             count = row.count(self._separator) + 1 if plain else len(self._cells(row, number))
             if count != len(self.headers):
                 hint = ""
@@ -207,29 +219,6 @@ def _lines(text: str) -> list[str]:
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
-def _plain_numbers(
-    path: Path | StringIO, below: int, separator: str, count: int
-) -> FloatArray | None:
-    """Return all cells below the header of a file that holds only numbers, else None.
-
-    The parser is the same as for other files, but it reads the file as a stream: a million rows as
-    separate texts take more time and memory than their numbers.
-    """
-    try:
-        table = np.loadtxt(
-            path,
-            delimiter=separator,
-            dtype=np.float64,
-            comments=None,
-            skiprows=below,
-            ndmin=2,
-            encoding="latin-1",  # numbers are ASCII, whatever the header is
-        )
-    except ValueError:
-        return None
-    return table if table.shape[1] == count and len(table) > 0 else None
-
-
 def _no_number(cell: str) -> str:
     what = f"{cell[:40]!r} is not a number" if cell else "the cell is empty"
     if re.fullmatch(r"[+-]?\d*,\d+", cell):
@@ -239,4 +228,11 @@ def _no_number(cell: str) -> str:
     return f"{what}; a number such as 0.25 is expected"
 
 
-READER = Reader(endings=(".csv", ".csv.gz"), open=CsvTable)
+def _opened(path: Path) -> Table:
+    """Return a text file as a table, whichever program wrote it."""
+    text = text_of(path)
+    separator = separator_of_scope(text[:_LONG].splitlines()[:100])
+    return CsvTable(path, text) if separator is None else ScopeTable(str(path), text, separator)
+
+
+READER = Reader(endings=(".csv", ".csv.gz", ".txt", ".tsv", ".log", ".dat"), open=_opened)

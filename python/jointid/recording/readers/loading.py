@@ -18,7 +18,7 @@ from jointid.recording.readers.registry import endings, reader_of
 from jointid.recording.recording import Recording
 from jointid.recording.runs import one_run
 from jointid.recording.table import Table
-from jointid.recording.wide.one_joint import OneJoint, one_joint
+from jointid.recording.wide.choosing import OneJoint, one_joint
 from jointid.recording.wide.sides import at_joint, checked_ratio
 
 _SURROGATE = re.compile("[\ud800-\udfff]")

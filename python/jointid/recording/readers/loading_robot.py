@@ -18,9 +18,9 @@ from jointid.recording.wide.joint_table import (
     joints_of,
     nothing_named,
 )
+from jointid.recording.wide.reading_back import saved_robot
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.recording.wide.robot_signals import ROBOT_SIGNALS
-from jointid.recording.wide.saved_robot import saved_robot
 
 
 def load_robot(

@@ -22,5 +22,5 @@ READER = Reader(
     package=("rosbags", "mcap", "lz4", "zstandard"),
     extra="ros",
     part="topic",
-    folder=(".db3", ".mcap"),
+    folder=(".db3", ".mcap", ".db3.zstd", ".mcap.zstd"),
 )

@@ -10,8 +10,8 @@ from jointid.base.errors import InputError
 from jointid.recording.column_lookup import column_index, listed
 from jointid.recording.headers import ALIASES, parsed
 from jointid.recording.signals import FloatArray, check_signal_name, closest, dimensions
-from jointid.recording.table import Table
-from jointid.recording.wide.joint_headers import JointHeader, joint_headers
+from jointid.recording.table import Table, first_cell
+from jointid.recording.wide.finding_joints import JointHeader, joint_headers
 from jointid.recording.wide.words import JOINT, MOTOR
 
 Columns = Mapping[str, str | int | None]
@@ -91,6 +91,10 @@ class JointTable:
         """Return a column as text."""
         return self._table.text(self._indices[column])
 
+    def first_cell(self, column: int) -> str:
+        """Return the first cell of a column as it stands in the file."""
+        return first_cell(self._table, self._indices[column])
+
     def place(self, column: int, row: int) -> str:
         """Return where a cell is."""
         return self._table.place(self._indices[column], row)
@@ -150,7 +154,10 @@ def several_joints(table: Table, columns: Columns | None) -> tuple[str, ...]:
         return ()
     if any(ALIASES.get(parsed(header)[0]) == "position" for header in table.headers):
         return ()
-    return joints_of(table)
+    joints = joint_headers(table.headers)
+    if sum(map(len, joints.values())) == len(table.headers):  # a matrix: one of them is the time
+        return ()
+    return tuple(joints)
 
 
 def which_joint(table: Table, joints: Sequence[str]) -> InputError:

@@ -38,7 +38,7 @@ def joint_arrays(
         array = _matrix(name, values)
         joints = arrays["position"].shape[1] if arrays else array.shape[1]
         if array.shape != (len(time), joints):
-            hint = "; are samples and joints exchanged?" if array.shape[0] == joints else ""
+            hint = "; are samples and joints exchanged?" if array.shape[1] == len(time) else ""
             raise InputError(
                 f"its shape is {array.shape}; {(len(time), joints)} is expected, one row a sample and one column "
                 f"a joint{hint}",

@@ -13,7 +13,7 @@ from jointid.recording.wide.joint_table import (
     several_joints,
     which_joint,
 )
-from jointid.recording.wide.saved_robot import saved_robot
+from jointid.recording.wide.reading_back import saved_robot
 from jointid.recording.wide.words import JOINT
 
 

@@ -1,0 +1,102 @@
+"""Causes that the velocity's own noise imitates: near a reversal a coarse position leaves a misfit that lasts."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.base.errors import InputError
+from jointid.estimate.causes import Cause
+from jointid.identification.inference.velocity_noise import is_noisy, measured_again
+from jointid.problem.inner_products import inner
+from jointid.problem.problem import Problem
+
+Array = NDArray[np.float64]
+
+IMITATED = ("slow_motion", "presliding", "stribeck_exponent", "delay")
+_DRAWS = 4
+
+
+def beyond_velocity_noise(
+    problem: Problem,
+    penalty: _core.Penalty,
+    best: Array,
+    free: Sequence[int],
+    causes: Sequence[Cause],
+) -> tuple[Cause, ...]:
+    """Return the causes without those that it imitates and that explain no more than what measuring once more adds.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its velocities are noisy.
+    penalty : Penalty
+        Over the windows used.
+    best : ndarray, shape (p,)
+    free : sequence of int
+        Parameters that vary.
+    causes : sequence of Cause
+
+    Notes
+    -----
+    A velocity that is measured once more has the same noise once more, and adds to the misfit what that noise has
+    added before. A cause that explains a smaller share of the misfit is not told from it.
+    """
+    if not any(each.name in IMITATED for each in causes):
+        return tuple(causes)
+    scales = {each: max(1, round(each.scale / penalty.window_duration)) for each in causes}
+    wanted = sorted({scales[each] for each in causes if each.name in IMITATED})
+    added = _added(problem, penalty, best, list(free), wanted)
+    return tuple(
+        each for each in causes if each.name not in IMITATED or each.share > added[scales[each]]
+    )
+
+
+def _added(
+    problem: Problem, penalty: _core.Penalty, best: Array, free: list[int], factors: list[int]
+) -> dict[int, float]:
+    """What measuring once more adds to the misfit at each scale, as a share of the misfit."""
+    before = _misfits(penalty, best, free, factors)
+    after = []
+    options = _core.WindowOptions(
+        duration=penalty.window_duration, cumulative=bool(penalty.cumulative)
+    )
+    for draw in range(_DRAWS):
+        runs = tuple(
+            measured_again(run, draw, number) if is_noisy(run, penalty.noise_share) else run
+            for number, run in enumerate(problem.recordings)
+        )
+        try:
+            other = dataclasses.replace(problem, recordings=runs).penalty(options)
+            if penalty.residual == _core.Residual.instruments:
+                other.project_reading(free, threads=problem.threads)
+        except InputError:  # with this noise the joint seems to stand still
+            continue
+        after.append(_misfits(other, best, free, factors))
+    return {
+        factor: float(np.median([each[factor] for each in after])) / before[factor] - 1.0
+        if after and before[factor] > 0.0
+        else 0.0
+        for factor in factors
+    }
+
+
+def _misfits(
+    penalty: _core.Penalty, best: Array, free: list[int], factors: list[int]
+) -> dict[int, float]:
+    """Mean square of the residual's sums over so many windows, the parameters being refitted to first order."""
+    _, residual, jacobian = penalty.linearised(best)
+    columns = jacobian[:, free]
+    size = np.sqrt(np.einsum("ij,ij->j", columns, columns))
+    columns = columns / np.where(size > 0.0, size, 1.0)
+    square = np.einsum("ni,nj->ij", columns, columns) + 1e-12 * np.eye(len(free))
+    left = residual - columns @ np.linalg.solve(square, np.einsum("ni,n->i", columns, residual))
+    found = {}
+    for factor in factors:
+        sums = np.add.reduceat(left, np.arange(0, len(left), factor))
+        found[factor] = inner(sums, sums) / len(left)
+    return found

@@ -1,0 +1,43 @@
+"""How a log of messages was read, where that is not as everybody expects it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.identification.warnings.check import Check, FindingType
+from jointid.identification.warnings.evidence import Evidence
+from jointid.recording.file_remarks import remarks
+
+MESSAGE_LOG = FindingType(
+    code="message_log",
+    severity="info",
+    meaning="a log of messages is unfinished, has no stamps of its own, or repeated or late messages; or a file holds "
+    "objects that are not read",
+    advice="nothing, if that is known; else record again, with stamps taken where the samples are",
+)
+
+
+def _find(evidence: Evidence) -> Iterator[Finding]:
+    found: dict[str, None] = {}
+    for recording in evidence.recordings:
+        metadata = recording.metadata
+        found |= dict.fromkeys(remarks(metadata) if isinstance(metadata, Mapping) else ())
+    if found:
+        yield MESSAGE_LOG.finding(
+            "; ".join(found),
+            Action("inspect", text="the recorder, if that is not on purpose"),
+            evidence={
+                name: Measured(count)
+                for name in ("repeated_messages", "reordered_messages")
+                if (count := sum(_count(each.metadata.get(name)) for each in evidence.recordings))
+            },
+        )
+
+
+def _count(value: object) -> int:
+    return value if isinstance(value, int) else 0
+
+
+CHECK = Check(_find, (MESSAGE_LOG,))

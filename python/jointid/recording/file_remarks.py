@@ -1,0 +1,38 @@
+"""What is said about how a file was read, from the metadata of its recording."""
+
+from collections.abc import Mapping
+from typing import Any
+
+_SHOWN = 4
+
+
+def remarks(metadata: Mapping[str, Any]) -> list[str]:
+    """Return what is worth knowing about how a log was read; empty if it was as everybody expects.
+
+    Parameters
+    ----------
+    metadata : mapping
+        Of a recording.
+
+    Examples
+    --------
+    >>> remarks({"topic": "/joint_states", "stamps": "log time"})
+    ['times are those of the logger: the messages have no stamps']
+    """
+    found = []
+    if metadata.get("incomplete"):
+        found.append(str(metadata["incomplete"]))
+    if "topic" in metadata and metadata.get("stamps") == "log time":
+        found.append("times are those of the logger: the messages have no stamps")
+    for name, what in (
+        ("repeated_messages", "repeat another one and are left out"),
+        ("reordered_messages", "stand behind a younger one and are put in order"),
+    ):
+        count = metadata.get(name)
+        if isinstance(count, int) and count:
+            found.append(f"{count} messages {what}")
+    skipped = metadata.get("not_read")
+    if isinstance(skipped, list | tuple) and skipped:
+        more = f" and {len(skipped) - _SHOWN} more" if len(skipped) > _SHOWN else ""
+        found.append(f"objects that are not read: {', '.join(map(str, skipped[:_SHOWN]))}{more}")
+    return found

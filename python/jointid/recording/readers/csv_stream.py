@@ -1,0 +1,89 @@
+"""Long text files read as a stream: a million rows as separate texts take more time and memory than their numbers."""
+
+from collections.abc import Sequence
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+
+from jointid.recording.readers.csv_dialect import BLANK
+from jointid.recording.signals import FloatArray
+
+_BLOCK = 1 << 23  # characters
+
+
+def plain_numbers(
+    source: Path | StringIO,
+    below: int,
+    separator: str,
+    count: int,
+    columns: Sequence[int] | None = None,
+) -> FloatArray | None:
+    """Return cells below the header of a file in which they are only numbers, else None.
+
+    The parser is the same as for other files, but it reads the file as a stream.
+
+    Parameters
+    ----------
+    source : Path or StringIO
+    below : int
+        Lines above the rows.
+    separator : str
+    count : int
+        Columns that are expected.
+    columns : sequence of int, optional
+        Those to read. Default: all.
+    """
+    try:
+        table = np.loadtxt(
+            source,
+            delimiter=None if separator == BLANK else separator,
+            dtype=np.float64,
+            comments=None,
+            skiprows=below,
+            usecols=columns,
+            ndmin=2,
+            encoding="latin-1",  # numbers are ASCII, whatever the header is
+        )
+    except ValueError:
+        return None
+    return table if table.shape[1] == count and len(table) > 0 else None
+
+
+def even_rows(text: str, below: int, separator: str, count: int) -> bool:
+    """Whether every line below the header has as many separators as the header, none is blank.
+
+    Parameters
+    ----------
+    text : str
+        The whole file.
+    below : int
+        Lines above the rows.
+    separator : str
+    count : int
+        Cells of a row.
+    """
+    if "\r" in text and "\r\n" not in text:
+        return False
+    start = 0
+    for _ in range(below):
+        start = text.find("\n", start) + 1
+    wanted = count - 1
+    while start < len(text):
+        end = (
+            len(text)
+            if start + _BLOCK >= len(text)
+            else text.rfind("\n", start, start + _BLOCK) + 1
+        )
+        if end <= start:
+            return False
+        block = np.frombuffer(text[start:end].rstrip("\n").encode("utf-8"), dtype=np.uint8)
+        lines = np.concatenate([[0], np.flatnonzero(block == ord("\n")) + 1])
+        lines = lines[lines < len(block)]
+        if not len(lines):
+            return False
+        cells = np.add.reduceat(block == ord(separator), lines, dtype=np.intp)
+        if not (cells == wanted).all():
+            return False
+        start = end
+    return True

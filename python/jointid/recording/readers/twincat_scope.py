@@ -1,0 +1,217 @@
+"""Text that TwinCAT Scope exports: a block of keys above the rows, and a time column for each group of channels."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from io import StringIO
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from jointid.base.errors import InputError
+from jointid.recording.readers.csv_dialect import number_of
+from jointid.recording.signals import FloatArray
+from jointid.recording.stamps import looks_exact, stamps_of
+from jointid.recording.units import find_unit
+
+_BLOCK = 80  # lines: no export has more above its rows
+_KEYS = ("Data-Type", "SampleTime[ms]", "SymbolName", "VariableSize", "Starttime of export")
+_COPY = re.compile(r"(.*\S) \((\d+)\)")
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Group:
+    """Channels with one time column."""
+
+    time: int  # 0-based number of its column
+    channels: tuple[int, ...]
+
+
+def separator_of_scope(lines: Sequence[str]) -> str | None:
+    """Return the separator of an export of TwinCAT Scope; None for any other text."""
+    block = lines[:_BLOCK]
+    for key in _KEYS:
+        for line in block:
+            separator = line[len(key) : len(key) + 1]
+            if line.startswith(key) and separator and separator in "\t;,":
+                named = any(each.startswith(f"Name{separator}") for each in block)
+                return separator if named else None
+    return None
+
+
+class ScopeTable:
+    """An export of TwinCAT Scope as a table with one time column.
+
+    Channels that were sampled with another period than the fastest of those read are interpolated
+    linearly at its samples, where all overlap; `notes` names them.
+
+    Parameters
+    ----------
+    source : str
+        The file.
+    text : str
+    separator : str
+        As `separator_of_scope` found it.
+
+    Raises
+    ------
+    InputError
+        There are no rows, or cells are no numbers.
+    """
+
+    saved: Mapping[str, Any] | None = None
+
+    def __init__(self, source: str, text: str, separator: str) -> None:
+        self.source = source
+        lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+        self._separator = separator
+        keys: dict[str, list[str]] = {}
+        name_line = first = -1
+        for k, line in enumerate(lines[:_BLOCK]):
+            cells = self._cells(line)
+            if len(cells) > 1 and all(self._number(cell) is not None for cell in cells[:2]):
+                first = k
+                break
+            if cells[0]:
+                keys[cells[0]] = cells
+                name_line = k if cells[0] == "Name" else name_line
+        if first < 0 or name_line < 0:
+            raise InputError("TwinCAT Scope's header, but no rows below it", place=source)
+        self.header_place = f"{source}, line {name_line + 1}"
+        self._first = first
+        self._groups = _groups(keys["Name"])
+        if not self._groups:
+            raise InputError("TwinCAT Scope's header names no channel", place=self.header_place)
+        self._of = {channel: group for group in self._groups for channel in group.channels}
+        self._channels = tuple(self._of)
+        self.headers = ("time [ms]", *(_header(keys, k) for k in self._channels))
+        symbols = keys.get("SymbolName", [])
+        self.other_names: Mapping[str, int] = MappingProxyType(
+            {
+                symbols[k]: n
+                for n, k in enumerate(self._channels, 1)
+                if k < len(symbols) and symbols[k]
+            }
+        )
+        self.notes: dict[str, Any] = {}
+        self._rows = [line for line in lines[first:] if line.strip() and not line.startswith("EOF")]
+        self._table = self._plain()
+        self._base: FloatArray | None = None
+
+    def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
+        """Return columns as arrays of shape (n,), all at the same instants."""
+        channels = [self._channels[column - 1] for column in columns if column > 0]
+        groups = {self._of[channel].time: self._of[channel] for channel in channels}
+        times = {time: self._samples(group)[0] for time, group in groups.items()}
+        base = self._base
+        if base is None:
+            every = times or {g.time: self._samples(g)[0] for g in self._groups}
+            base = min(
+                every.values(), key=lambda t: float(np.median(np.diff(t))) if len(t) > 1 else np.inf
+            )
+            for time in every.values():
+                if len(time) and len(base):
+                    base = base[(base >= time[0]) & (base <= time[-1])]
+            if 0 in columns:
+                self._base = base
+        found = []
+        for column in columns:
+            if column == 0:
+                found.append(base.copy())
+                continue
+            time, values = self._samples(self._of[self._channels[column - 1]], column)
+            if len(time) != len(base) or not np.array_equal(time, base):
+                if not np.isin(base, time).all():
+                    period = f"{np.median(np.diff(time)):g} ms" if len(time) > 1 else "one sample"
+                    self.notes.setdefault("interpolated", {})[self.headers[column]] = period
+                values = np.interp(base, time, values) if len(time) else np.full(len(base), np.nan)
+            found.append(values)
+        return found
+
+    def text(self, column: int) -> list[str]:
+        """Return the values of a column as text."""
+        return [repr(value) for value in self.numbers([column])[0].tolist()]
+
+    def place(self, column: int, row: int) -> str:
+        """Return file, channel and number of a sample."""
+        return f"{self.source}, channel {self.headers[column]!r}, sample {row}"
+
+    def _samples(self, group: _Group, column: int = 0) -> tuple[FloatArray, FloatArray]:
+        """Return the time [ms] of a group and one of its columns, each sample once."""
+        index = self._channels[column - 1] if column else group.time
+        if self._table is not None:
+            time, values = self._table[:, group.time], self._table[:, index]
+        else:
+            cells = [
+                row
+                for row in map(self._cells, self._rows)
+                if len(row) > group.time and row[group.time]
+            ]
+            stamps = [row[group.time] for row in cells]
+            values = self._column(cells, index)
+            exact = stamps_of(stamps, None) if stamps and looks_exact(stamps[0]) else None
+            time = self._column(cells, group.time) if exact is None else exact.seconds * 1000.0
+        new = (
+            np.concatenate([[True], np.diff(time) != 0.0]) if len(time) else np.zeros(0, dtype=bool)
+        )
+        return time[new], values[new]
+
+    def _column(self, rows: list[list[str]], index: int) -> FloatArray:
+        found = [self._number(row[index] if index < len(row) else "") for row in rows]
+        if None in found:
+            row = found.index(None)
+            cell = rows[row][index] if index < len(rows[row]) else ""
+            raise InputError(
+                f"{cell[:40]!r} is not a number" if cell else "the cell is empty",
+                place=f"{self.source}, row {row + 1} below the header",
+            )
+        return np.array(found, dtype=np.float64)
+
+    def _plain(self) -> FloatArray | None:
+        """Return all rows, if they are whole and only numbers."""
+        if looks_exact(self._cells(self._rows[0])[0]):
+            return None
+        text = "\n".join(self._rows)
+        if self._separator != ",":
+            if "," in text and "." in text:
+                return None
+            text = text.replace(",", ".")
+        try:
+            table = np.loadtxt(StringIO(text), delimiter=self._separator, comments=None, ndmin=2)
+        except ValueError:
+            return None
+        return table if table.shape[1] > max(self._channels) else None
+
+    def _cells(self, line: str) -> list[str]:
+        return [cell.strip().strip('"') for cell in line.split(self._separator)]
+
+    def _number(self, cell: str) -> float | None:
+        return number_of(cell, self._separator)
+
+
+def _groups(names: Sequence[str]) -> tuple[_Group, ...]:
+    """Return the groups: each begins where the row of names repeats its key."""
+    starts = [k for k, cell in enumerate(names) if cell == "Name"]
+    found = []
+    for start, end in zip(starts, [*starts[1:], len(names)], strict=True):
+        channels = tuple(k for k in range(start + 1, end) if names[k])
+        if channels:
+            found.append(_Group(time=start, channels=channels))
+    return tuple(found)
+
+
+def _header(keys: Mapping[str, list[str]], channel: int) -> str:
+    """Return a channel's name, with its unit where the export states one for the values as they are."""
+
+    def entry(key: str) -> str:
+        cells = keys.get(key, [])
+        return cells[channel] if channel < len(cells) else ""
+
+    name = entry("Name")
+    copied = _COPY.fullmatch(name)  # the second time a channel is drawn; not a unit
+    if copied:
+        name = f"{copied[1]} copy {copied[2]}"
+    unit = entry("Unit").strip("()[] ")
+    scaled = entry("ScaleFactor").replace(",", ".") not in ("", "1", "1.0")
+    return f"{name} [{unit}]" if find_unit(unit) and not scaled else name

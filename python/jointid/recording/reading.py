@@ -1,0 +1,100 @@
+"""The numbers of the columns that were matched: exact stamps, units that the numbers show, columns without numbers."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
+from jointid.recording.column_problems import TORQUES
+from jointid.recording.columns import Column
+from jointid.recording.plausibility import unit_of_steps
+from jointid.recording.signals import FloatArray
+from jointid.recording.table import Table
+from jointid.recording.time_column import exact_time, stamps_note
+from jointid.recording.units import UNITS
+
+_NEEDED = ("time", "position", "torque")
+MOTION = ("velocity", "sensor")  # without them the estimate is another: the user decides
+
+
+def read_values(
+    table: Table, found: dict[str, Column], left_out: list[dict[str, str]], notes: dict[str, Any]
+) -> dict[str, FloatArray]:
+    """Return signal → values of its column, in the column's own unit.
+
+    Parameters
+    ----------
+    table : Table
+    found : dict of str to Column
+        Signal → its column. Changed: a time column whose unit was recognised, columns left out.
+    left_out : list of dict
+        As in `Match`; what cannot be read and is not needed is appended.
+    notes : dict
+        Entries of the metadata; what was recognised is entered.
+
+    Raises
+    ------
+    InputError
+        A cell that is needed is no number, or stamps may be in either of two units.
+    """
+    values: dict[str, FloatArray] = {}
+    if table.saved is None and found["time"].scale is None:
+        stamps = exact_time(table, found["time"])
+        if stamps is not None:
+            values["time"] = stamps.seconds
+            found["time"] = replace(found["time"], unit=UNITS["s"], unknown="")
+            notes |= stamps_note(stamps)
+    numbers = {signal: column.index for signal, column in found.items() if signal not in values}
+    try:
+        values |= dict(zip(numbers, table.numbers(list(numbers.values())), strict=True))
+    except InputError:
+        values |= _readable(table, found, numbers, left_out)
+    time = found["time"]
+    if table.saved is None and time.unit is None and time.scale is None:
+        unit = unit_of_steps(
+            values["time"], f"{table.header_place}, column {table.headers[time.index]!r}"
+        )
+        if unit != "s":
+            found["time"] = replace(time, unit=UNITS[unit])
+            notes["recognised_units"] = {"time": unit}
+    return {signal: values[signal] for signal in found}
+
+
+def with_remedy(error: InputError, signal: str) -> InputError:
+    """Return the error with the advice to leave the signal out."""
+    return InputError(
+        error.reason,
+        argument=error.argument,
+        value=error.value,
+        place=error.place,
+        remedy=(*error.remedy, Action("call", {"columns": {signal: None}}, function="load")),
+    )
+
+
+def _readable(
+    table: Table,
+    found: dict[str, Column],
+    numbers: Mapping[str, int],
+    left_out: list[dict[str, str]],
+) -> dict[str, FloatArray]:
+    """Read columns of which one holds no numbers: one that is not needed is left out."""
+    for signal, index in numbers.items():
+        column = found[signal]
+        if table.saved is not None or column.chosen or signal in _NEEDED:
+            continue
+        try:
+            table.numbers([index])
+        except InputError as error:
+            if signal in MOTION or (signal in TORQUES and not _other_torque(signal, found)):
+                raise with_remedy(error, signal) from None
+            left_out.append(
+                {"column": table.headers[index], "signal": signal, "reason": error.reason}
+            )
+            del found[signal]
+    left = {signal: index for signal, index in numbers.items() if signal in found}
+    return dict(zip(left, table.numbers(list(left.values())), strict=True))
+
+
+def _other_torque(signal: str, found: Mapping[str, Column]) -> bool:
+    return any(other in found for other in TORQUES if other != signal)

@@ -1,0 +1,187 @@
+"""Time stamps that no float holds: ISO 8601, integers since an epoch, seconds with nanoseconds beside them."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+import numpy as np
+
+from jointid.recording.headers import plain
+from jointid.recording.signals import FloatArray
+from jointid.recording.units import UNITS, Unit
+
+_ISO = re.compile(
+    r"(\d{4}-\d\d-\d\d)[T ](\d\d:\d\d:\d\d)(?:[.,](\d+))?\s*(Z|UTC|[+-]\d\d(?::?\d\d)?)?",
+    re.IGNORECASE,
+)
+_NUMBER = re.compile(r"(-?\d+)(?:[.,](\d+))?")
+_EPOCH = datetime(1970, 1, 1)
+_LONGEST = 25  # digits: more are no stamps
+_WHOLE = re.compile(r"(.*?)_?(tv_)?(?:secs?|seconds)")
+_PARTS = (
+    (re.compile(r"(.*?)_?(tv_)?(?:n(?:ano)?secs?|nanoseconds)"), 1e9),
+    (re.compile(r"(.*?)_?(tv_)?(?:u(?:s|sec)s?|microseconds)"), 1e6),
+)
+# Sizes of stamps since 1970 between 2001 and 2286, by unit; of Windows' file times, 100 ns since 1601.
+_SINCE_1970 = {"s": 10, "ms": 13, "us": 16, "ns": 19}
+_FILE_TIME = Unit(name="100 ns", dimension="time", factor=1e-7)
+_SECOND = 10**9
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stamps:
+    """Time stamps as seconds.
+
+    Attributes
+    ----------
+    seconds : ndarray, shape (n,)
+        Since the first stamp [s], exact to 1 ns.
+    first : str
+        The first stamp, as the file has it.
+    recognised : str
+        Unit that their size shows. Default: the file states it.
+    """
+
+    seconds: FloatArray
+    first: str
+    recognised: str = ""
+
+
+def looks_exact(cell: str) -> bool:
+    """Whether a cell is a stamp that a float would round, or no number at all but a date with a time."""
+    number = _NUMBER.fullmatch(cell.strip())
+    if number is None:
+        return _ISO.fullmatch(cell.strip()) is not None
+    whole, fraction = len(number[1].lstrip("-")), len(number[2] or "")
+    return 13 <= whole <= _LONGEST or (whole in (9, 10) and whole + fraction >= 16)
+
+
+def stamps_of(cells: Sequence[str], unit: Unit | None) -> Stamps | None:
+    """Return stamps as seconds since the first, or None for cells that are no such stamps.
+
+    They are subtracted as integers. A time of day without a zone is taken as UTC throughout.
+
+    Parameters
+    ----------
+    cells : sequence of str
+    unit : Unit or None
+        As stated for numbers. None: recognised by their size.
+
+    Examples
+    --------
+    >>> stamps_of(["2024-05-01T12:00:00Z", "2024-05-01T14:00:00.001+02:00"], None).seconds.tolist()
+    [0.0, 0.001]
+    """
+    if not cells:
+        return None
+    if _ISO.fullmatch(cells[0].strip()):
+        nanoseconds = _of_dates(cells)
+        if nanoseconds is None:
+            return None
+        first = nanoseconds[0]
+        return Stamps(
+            seconds=np.array([each - first for each in nanoseconds], dtype=np.float64) / _SECOND,
+            first=cells[0].strip(),
+        )
+    recognised = "" if unit else _unit_by_size(cells[0])
+    if recognised:
+        unit = _FILE_TIME if recognised == _FILE_TIME.name else UNITS[recognised]
+    numbers = _of_numbers(cells)
+    if unit is None or numbers is None:
+        return None
+    values, parts = numbers
+    differences = np.array([each - values[0] for each in values], dtype=np.float64)
+    return Stamps(
+        seconds=differences / (parts * round(1.0 / unit.factor)),
+        first=cells[0].strip(),
+        recognised=recognised,
+    )
+
+
+def fraction_of(headers: Sequence[str], whole: int) -> tuple[int, float] | None:
+    """Return the column beside one of whole seconds that has their fraction, and its parts in a second.
+
+    Examples
+    --------
+    >>> fraction_of(("header.stamp.secs", "header.stamp.nsecs"), 0)
+    (1, 1000000000.0)
+    """
+    name = _WHOLE.fullmatch(plain(headers[whole]))
+    if name is None:
+        return None
+    for index, header in enumerate(headers):
+        for pattern, parts in _PARTS:
+            other = pattern.fullmatch(plain(header))
+            if index != whole and other and other.groups() == name.groups():
+                return index, parts
+    return None
+
+
+def fractions(headers: Sequence[str]) -> frozenset[int]:
+    """Return the columns that are the fraction of another's seconds."""
+    found = (fraction_of(headers, k) for k, each in enumerate(headers) if "sec" in each.casefold())
+    return frozenset(each[0] for each in found if each)
+
+
+def with_fraction(whole: FloatArray, fraction: FloatArray, parts: float) -> FloatArray | None:
+    """Return seconds since the first stamp; None where one is no fraction, or the other not whole."""
+    with np.errstate(invalid="ignore"):
+        plain_parts = (fraction >= 0.0) & (fraction < parts) & (whole == np.floor(whole))
+    if len(whole) != len(fraction) or not len(whole) or not plain_parts.all():
+        return None
+    return np.asarray((whole - whole[0]) + (fraction - fraction[0]) / parts)
+
+
+def _of_dates(cells: Sequence[str]) -> list[int] | None:
+    seconds: dict[str, int] = {}  # of a date and time without fraction: few among many stamps
+    zones: dict[str, int] = {"": 0}
+    found = []
+    for cell in cells:
+        stamp = _ISO.fullmatch(cell.strip())
+        if stamp is None:
+            return None
+        day, clock, fraction, zone = stamp[1], stamp[2], stamp[3] or "0", stamp[4] or ""
+        whole = seconds.get(base := f"{day} {clock}")
+        if whole is None:
+            try:
+                since = datetime.fromisoformat(base) - _EPOCH
+            except ValueError:  # 30 February
+                return None
+            whole = seconds[base] = (since.days * 86400 + since.seconds) * _SECOND
+        if zone not in zones:
+            zones[zone] = _zone(zone)
+        found.append(whole + int(fraction[:9].ljust(9, "0")) - zones[zone])
+    return found
+
+
+def _zone(text: str) -> int:
+    """Nanoseconds that a zone is ahead of UTC."""
+    digits = re.sub(r"\D", "", text)
+    if not digits:
+        return 0
+    minutes = int(digits[:2]) * 60 + int(digits[2:] or 0)
+    return (-minutes if text.startswith("-") else minutes) * 60 * _SECOND
+
+
+def _of_numbers(cells: Sequence[str]) -> tuple[list[int], int] | None:
+    """Return numbers as integers, and how many of these make one of the file's unit."""
+    matches = [_NUMBER.fullmatch(cell.strip()) for cell in cells]
+    if not all(matches):
+        return None
+    pairs = [(each[1], each[2] or "") for each in matches if each]
+    digits = max(len(fraction) for _, fraction in pairs)
+    if digits > _LONGEST or max(len(whole) for whole, _ in pairs) > _LONGEST:
+        return None
+    return [int(whole + fraction.ljust(digits, "0")) for whole, fraction in pairs], 10**digits
+
+
+def _unit_by_size(cell: str) -> str:
+    number = _NUMBER.fullmatch(cell.strip())
+    if number is None:
+        return ""
+    if 1.2e17 < int(number[1]) < 1.5e17:  # 1981 to 2076
+        return _FILE_TIME.name
+    if 5e17 < int(number[1]) < 1e18:  # EtherCAT's clocks: ns since 2000
+        return "ns"
+    return next((unit for unit, size in _SINCE_1970.items() if len(number[1]) == size), "")

@@ -1,0 +1,118 @@
+"""Several joints on the command line: `identify --joints`, and one of them for the other commands."""
+
+import json
+from pathlib import Path
+
+import pytest
+from moving_joints import recorded, sines, torques
+
+import jointid as jid
+from jointid.cli import main
+
+
+@pytest.fixture(scope="module")
+def arm(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A file with two joints, the second one's friction acting on the first."""
+    motion = sines(2, 1, duration=8.0)
+    torque = torques(motion, 1)
+    torque[:, 0] += motion.velocity[:, 1]
+    path = tmp_path_factory.mktemp("arm") / "arm.csv"
+    recorded(motion, torque).save(path)
+    return path
+
+
+def ran(capsys: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str, str]:
+    code = main([str(each) for each in arguments])
+    shown = capsys.readouterr()
+    return code, shown.out, shown.err
+
+
+def test_all_joints(arm: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    page, saved = tmp_path / "arm.html", tmp_path / "arm.json"
+    code, out, _ = ran(
+        capsys, "identify", arm, "--joints", "all", "--report", page, "--save", saved
+    )
+    assert code == 0
+    assert out.startswith("jointid estimates — ")
+    assert "joint 2's speed explains" in out
+    assert f"report: {page}" in out
+    assert json.loads(saved.read_text(encoding="utf-8"))["joints"].keys() == {"1", "2"}
+    text = page.read_text(encoding="utf-8")
+    assert text.count("data:image/png;base64,") == 4
+    assert '<h2 id="joint-2">Joint 2</h2>' in text
+    assert "joint 2&#x27;s speed explains" in text
+
+
+def test_the_same_as_from_python(arm: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, _ = ran(capsys, "identify", arm, "--joints", "2,1", "--json")
+    found = jid.identify_joints(jid.load_robot(arm), joints=[2, 1])
+    document = json.loads(out)
+    assert code == 0
+    assert list(document["joints"]) == ["2", "1"]
+    for name, estimate in found.items():
+        value = document["joints"][name]["estimate"]["parameters"]["coulomb"]["value"]
+        assert value == estimate.parameters["coulomb"].value
+
+
+def test_one_joint_has_the_usual_report(arm: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, _ = ran(capsys, "identify", arm, "--joints", "2")
+    assert code == 0
+    assert out.startswith("jointid estimate — ")
+    code, out, _ = ran(capsys, "info", arm, "--joints", "2")
+    assert code == 0
+    assert "position" in out
+
+
+def test_gear_ratios(arm: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    whole = jid.load_robot(arm)
+    at_motor = tmp_path / "motor.csv"
+    lines = ["time_s,motor_position_1_rad,motor_position_2_rad,motor_torque_1_Nm,motor_torque_2_Nm"]
+    for time, q, torque in zip(whole.time, whole.position, whole.torque, strict=True):  # type: ignore[arg-type]
+        row = (time, 10.0 * q[0], -20.0 * q[1], torque[0] / 10.0, torque[1] / -20.0)
+        lines.append(",".join(repr(float(each)) for each in row))
+    at_motor.write_text("\n".join([*lines, ""]), encoding="utf-8")
+    arguments = ("identify", at_motor, "--joints", "all", "--json", "--gear-ratio")
+    code, out, _ = ran(capsys, *arguments, "10,-20")
+    assert code == 0
+    expected = jid.identify_joints(whole, couplings=False)
+    for name, each in json.loads(out)["joints"].items():
+        value = expected[name].parameters["coulomb"].value
+        assert each["estimate"]["parameters"]["coulomb"]["value"] == pytest.approx(value, rel=1e-6)
+    code, _, error = ran(capsys, *arguments, "1,2,3")
+    assert (code, "--gear-ratio" in error) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("identify",), "load with --joints 1 (or another one) or load with --joints all"),
+        (("compare",), "2 joints (1, 2)"),
+        (("info",), "--joints 1"),
+        (("identify", "--joints", "7"), "--joints 7: there is no such joint"),
+        (("identify", "--joints", "1,7"), "there is no such joint"),
+        (("identify", "--joints", "1,,2"), "names or numbers"),
+        (("compare", "--joints", "all"), "one joint is expected here"),
+        (("info", "--joints", "1,2"), "one joint is expected here"),
+        (("identify", "--joints", "all", "--causes"), "this is for one joint"),
+        (("identify", "--joints", "all", "--selftest"), "this is for one joint"),
+        (("identify", "--joints", "all", "--bootstrap"), "this is for one joint"),
+        (("identify", "--joints", "all", "--save", "x.toml"), "saved as .json"),
+        (("identify", "--joints", "all", "--report", "x.txt"), "HTML"),
+        (("identify", "--joints", "all", "--gear-ratio", "1,x"), "numbers such as"),
+        (("identify", "--joints", "2", "--gear-ratio", "1,2"), "one ratio is expected"),
+    ],
+)
+def test_what_cannot_be_done(
+    arguments: tuple[str, ...], says: str, arm: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command, *rest = arguments
+    code, _, error = ran(capsys, command, arm, *rest)
+    assert code == 2
+    assert says in error
+    assert error.count("\n") == 1
+
+
+def test_the_advice_works(arm: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    _, _, error = ran(capsys, "identify", arm)
+    assert "--joints 1" in error
+    assert ran(capsys, "identify", arm, "--joints", "1")[0] == 0

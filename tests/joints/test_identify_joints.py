@@ -1,0 +1,226 @@
+"""Several joints identified from one recording: each as if alone, and what couples them."""
+
+import _thread
+import json
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from moving_joints import recorded, sines, torques
+
+import jointid as jid
+from jointid.joints.result import JointResult
+
+
+def coupled(seed: int, strength: float = 1.0) -> jid.RobotRecording:
+    """Two joints; the second one's friction acts on the first, too."""
+    motion = sines(2, seed)
+    torque = torques(motion, seed, unmodelled=0.3)
+    other = motion.velocity[:, 1]
+    torque[:, 0] += strength * (np.sign(other) + 0.5 * other)
+    return recorded(motion, torque, names=["elbow", "wrist"])
+
+
+@pytest.fixture(scope="module")
+def robot() -> jid.RobotRecording:
+    motion = sines(3, 5)
+    return recorded(motion, torques(motion, 5), name="arm")
+
+
+@pytest.fixture(scope="module")
+def found(robot: jid.RobotRecording) -> jid.JointEstimates:
+    return jid.identify_joints(robot)
+
+
+def test_each_joint_as_if_alone(robot: jid.RobotRecording, found: jid.JointEstimates) -> None:
+    assert list(found) == ["1", "2", "3"]
+    for name, estimate in found.items():
+        alone = jid.identify(robot[name])
+        values = {each: p.value for each, p in estimate.parameters.items()}
+        assert values == {each: p.value for each, p in alone.parameters.items()}
+
+
+def test_known_parameters_come_back(found: jid.JointEstimates) -> None:
+    random = np.random.default_rng([5, 1])
+    inertia, coulomb = random.uniform(0.5, 2.0, 3), random.uniform(3.0, 8.0, 3)
+    viscous = random.uniform(2.0, 8.0, 3)
+    for number, estimate in enumerate(found.values()):
+        for name, truth in (("inertia", inertia), ("coulomb", coulomb), ("viscous", viscous)):
+            assert estimate.parameters[name].value == pytest.approx(truth[number], rel=0.03)
+
+
+def test_the_threads_do_not_change_a_bit(
+    robot: jid.RobotRecording, found: jid.JointEstimates
+) -> None:
+    again = jid.identify_joints(robot, search=jid.Search(threads=1))
+    for name, estimate in again.items():
+        values = [p.value for p in estimate.parameters.values()]
+        assert values == [p.value for p in found[name].parameters.values()]
+        assert again.results[name].others == found.results[name].others
+
+
+def test_a_coupled_pair_is_found_and_named() -> None:
+    found = jid.identify_joints(coupled(1))
+    (share, *_) = found.results["elbow"].others
+    assert (share.joint, share.by, share.certain) == ("wrist", "speed", True)
+    assert 0.5 < share.share <= 1.0
+    assert any(
+        text.startswith("joint wrist's speed explains") and "of joint elbow's residual" in text
+        for text in found.sentences()
+    )
+    assert not any(each.certain for each in found.results["wrist"].others)
+
+
+def test_independent_joints_are_not_coupled() -> None:
+    """Of 300 joints with effects that no model here has, 10 were said to owe something to another one."""
+    claims = 0
+    for seed in (1000, 1001, 1002, 1003):
+        motion = sines(3, seed)
+        robot = recorded(motion, torques(motion, seed, unmodelled=1.0))
+        found = jid.identify_joints(robot, search="separable")
+        claims += sum(bool(each.explained) for each in found.results.values())
+    assert claims == 0
+
+
+def test_one_joint_that_fails_does_not_lose_the_others() -> None:
+    motion = sines(3, 2)
+    position = motion.position.copy()
+    position[:, 1] = 0.25  # it stands still
+    robot = jid.RobotRecording(time=motion.time, position=position, torque=torques(motion, 2))
+    found = jid.identify_joints(robot)
+    assert found.failed == ("2",)
+    assert [each.status for each in found.results.values()] == [
+        "identified",
+        "failed",
+        "identified",
+    ]
+    assert "joint 2" in str(found.results["2"].error)
+    assert "joint 2 failed: joint 2" in found.report()
+    assert list(found) == ["1", "3"]
+    with pytest.raises(KeyError, match="failed"):
+        found["2"]
+
+
+def test_some_joints_of_a_recording(robot: jid.RobotRecording) -> None:
+    found = jid.identify_joints(robot, joints=[3], couplings=False)
+    assert list(found) == ["3"]
+    with pytest.raises(jid.InputError, match="no such joint"):
+        jid.identify_joints(robot, joints=[4])
+    with pytest.raises(jid.InputError, match="at least one"):
+        jid.identify_joints(robot, joints=[])
+
+
+def test_gear_ratios_of_the_joints_are_used_once() -> None:
+    motion = sines(2, 3)
+    torque = torques(motion, 3)
+    ratios = np.array([50.0, -30.0])
+    at_motor = jid.RobotRecording(
+        time=motion.time, position=motion.position * ratios, torque=torque / ratios, side="motor"
+    )
+    at_joint = recorded(motion, torque)
+    expected = jid.identify_joints(at_joint, couplings=False)
+    joints = {"1": jid.Joint(gear_ratio=50.0), "2": jid.Joint(gear_ratio=-30.0)}
+    for found in (
+        jid.identify_joints(at_motor, joint=joints, couplings=False),
+        jid.identify_joints(at_motor.with_gear_ratio(ratios), couplings=False),
+        jid.identify_joints(at_motor.with_gear_ratio(ratios), joint=joints, couplings=False),
+    ):
+        for name, estimate in found.items():
+            for each in ("coulomb", "viscous", "inertia"):
+                value = expected[name].parameters[each].value
+                assert estimate.parameters[each].value == pytest.approx(value, rel=1e-6)
+    with pytest.raises(jid.InputError, match="give it once"):
+        jid.identify_joints(at_motor.with_gear_ratio([50.0, 30.0]), joint=joints)
+
+
+def test_without_ratios_the_motors_side_is_told() -> None:
+    motion = sines(2, 3)
+    robot = recorded(motion, torques(motion, 3), side="motor")
+    found = jid.identify_joints(robot)
+    assert {each.side for each in found.results.values()} == {"motor"}
+    assert (
+        "no gear ratio is known: the values of joints 1, 2 are on the motor's side"
+        in found.report()
+    )
+
+
+def test_the_result_as_json(found: jid.JointEstimates, tmp_path: Path) -> None:
+    document = json.loads(found.to_json())
+    assert document == found.document()
+    assert (document["kind"], document["schema"]) == ("jointid joints", 1)
+    first = document["joints"]["1"]
+    assert first["status"] == "identified"
+    assert (
+        first["estimate"]["parameters"]["coulomb"]["value"]
+        == found["1"].parameters["coulomb"].value
+    )
+    path = found.save(tmp_path / "arm.json")
+    assert json.loads(path.read_text(encoding="utf-8")) == document
+    with pytest.raises(jid.InputError, match="json"):
+        found.save(tmp_path / "arm.toml")
+
+
+def test_the_table(found: jid.JointEstimates) -> None:
+    lines = found.report().splitlines()
+    assert lines[0] == "jointid estimates — arm"
+    assert lines[2].split()[:3] == ["joint", "model", "coulomb"]
+    assert [line.split()[0] for line in lines[4:7]] == ["1", "2", "3"]
+    assert "±" in lines[4]
+
+
+def test_no_recording_of_a_robot() -> None:
+    with pytest.raises(jid.InputError, match="RobotRecording"):
+        jid.identify_joints("arm.csv")  # type: ignore[arg-type]
+
+
+def test_a_failed_joint_says_nothing_of_others() -> None:
+    assert JointResult(name="1", status="failed").sentences() == ()
+
+
+def test_ctrl_c_ends_it(robot: jid.RobotRecording) -> None:
+    ended: list[float] = []
+
+    def interrupt(joint: str, number: int, count: int) -> None:
+        if number == 0:
+            threading.Timer(0.5, end).start()
+
+    def end() -> None:
+        ended.append(time.perf_counter())
+        _thread.interrupt_main()
+
+    slow = jid.Search(ga=jid.GaOptions(population=400, generations=100_000))
+    with pytest.raises(KeyboardInterrupt):
+        jid.identify_joints(
+            robot,
+            model="stribeck",
+            search=slow,
+            callback=interrupt,
+        )
+    assert time.perf_counter() - ended[0] < 2.0  # 0.1 s on a machine with nothing else to do
+
+
+def test_tx40(shared_data: Path) -> None:
+    """The wrist is coupled: the drive of joint 6 turns with joints 5 and 6."""
+    robot = jid.load_robot(
+        shared_data / "tx40" / "tx40.csv.gz", gear_ratio=[32, 32, 45, -48, 45, 32]
+    )
+    found = jid.identify_joints(robot, search="separable")
+    assert list(found) == ["1", "2", "3", "4", "5", "6"]
+    shares = {name: each.others for name, each in found.results.items()}
+    assert next((each.joint, each.by) for each in shares["5"] if each.certain) == ("6", "speed")
+    assert "5" in {each.joint for each in shares["6"]}
+    # Gravity of the two parallel links, and the inertia about the vertical axis.
+    assert {each.joint for each in shares["1"]} == {"2", "3"}
+    assert (shares["2"][0].joint, shares["2"][0].by) == ("3", "position")
+    assert shares["3"][0].joint == "2"
+
+
+def test_kr300(shared_data: Path) -> None:
+    robot = jid.load_robot(
+        shared_data / "kr300" / "kr300_A.csv.gz", [1, 2, 3], gear_ratio=[256.86, 267.43, 252.33]
+    )
+    found = jid.identify_joints(robot)
+    assert found["1"].parameters["coulomb"].value == pytest.approx(388.0, rel=0.05)
+    assert "explains" in "".join(found.sentences())
