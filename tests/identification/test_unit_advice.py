@@ -52,3 +52,28 @@ def test_a_stated_unit_is_not_overruled(both: bool, tmp_path: Path) -> None:
     (warning,) = about_units(written(tmp_path, "position_rad", "velocity_rad_s", both=both))
     assert all(advice.kind == "inspect" for advice in warning.advice)
     assert "the header or the program that made the recording" in warning.message
+
+
+@pytest.mark.parametrize(
+    ("signal", "factor", "unit"),
+    [
+        ("position", 1.0 / (2.0 * np.pi), "rev"),
+        ("velocity", 1.0 / (2.0 * np.pi), "rev_s"),
+        ("velocity", 30.0 / np.pi, "rpm"),
+        ("position", 1e3, "mrad"),
+    ],
+)
+def test_turns_are_recognised_by_position_and_velocity(
+    signal: str, factor: float, unit: str, tmp_path: Path
+) -> None:
+    run = jid.load(data_folder() / "well_excited.csv.gz")
+    columns = {"time_s": run.time, "position": run.position, "velocity": run.velocity}
+    columns["torque_Nm"], columns["sensor_raw"] = run.torque, run.sensor  # type: ignore[assignment]
+    columns[signal] = columns[signal] * factor
+    path = tmp_path / "log.csv"
+    table = np.column_stack(list(columns.values()))
+    np.savetxt(path, table, delimiter=",", header=",".join(columns), comments="")
+    found = jid.identify(jid.load(path), jid.thesis_joint()).warnings
+    (warning,) = (each for each in found if each.code == "velocity_mismatch")
+    assert f"the {signal}, of which no unit is stated, seems to be in {unit}" in warning.message
+    assert warning.advice[0].arguments == {"units": {signal: unit}}

@@ -106,8 +106,8 @@ def test_an_ending_without_a_reader_is_refused(
     left = tuple(each for each in registry.READERS if ".parquet" not in each.endings)
     monkeypatch.setattr(registry, "READERS", left)
     assert refusal(path) == (
-        f"{path}: a file name that ends in .csv, .csv.gz, .txt, .tsv, .log, .dat, .npz, .mat, "
-        ".mcap, .bag, .db3, .h5 or .hdf5 is expected"
+        f"{path}: a file name that ends in .csv, .csv.gz, .txt, .tsv, .log, .dat, .npz, .mat, .mcap, "
+        ".bag, .db3, .h5 or .hdf5 is expected"
     )
 
 

@@ -135,6 +135,23 @@ def test_a_plural_is_not_taken_for_a_velocity(text: str, meant: str) -> None:
     assert unit_named(text, dimensions=("angular velocity",)).name == f"{meant}_s"
 
 
+@pytest.mark.parametrize("text", ["MNm", "MN·m", "Mrad", "MN m", "MNmm"])
+def test_mega_is_not_milli(text: str) -> None:
+    assert find_unit(text) is None
+    if find_unit(f"m{text[1:]}"):
+        with pytest.raises(
+            InputError, match=f"the prefix M is mega, a million; milli is m{text[1:]}"
+        ):
+            unit_named(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "name"), [("MNM", "mNm"), ("MRAD", "mrad"), ("MS", "ms"), ("mnm", "mNm")]
+)
+def test_capitals_alone_are_no_prefix(text: str, name: str) -> None:
+    assert find_unit(text) is UNITS[name]
+
+
 def test_names_by_dimension() -> None:
     assert unit_names(("current",)) == ("A", "mA")
     assert unit_names() == tuple(UNITS)

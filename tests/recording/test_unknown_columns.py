@@ -156,3 +156,16 @@ def test_several_joints_are_nobodys(tmp_path: Path) -> None:
     assert "2 joints (1, 2)" in message
     loaded = load(path, columns={"position": "joint2_pos"})
     assert loaded.position.tolist() == column(2)
+
+
+@pytest.mark.parametrize("header", ["torque_MNm", "torque [MNm]"])
+def test_mega_asks_whether_milli_is_meant(header: str, tmp_path: Path) -> None:
+    path = written(tmp_path / "a.csv", lines(f"t_s,q_rad,{header}"))
+    message = refusal(path)
+    assert (
+        "torque of a revolute joint is in MNm, where M is mega, a million (milli is mNm)" in message
+    )
+    assert "load with units={'torque': 'mNm'} (if milli is meant)" in message
+    loaded = load(path, units={"torque": "mNm"})
+    assert loaded.torque is not None
+    assert loaded.torque[1] == column(2)[1] / 1000

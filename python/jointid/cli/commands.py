@@ -256,6 +256,9 @@ def _contents(recording: Recording) -> dict[str, Any]:
     if left_out and isinstance(left_out, list | tuple):
         columns = [each for each in left_out if isinstance(each, Mapping)]
         contents["not read"] = "; ".join(f"{x.get('column')} ({x.get('reason')})" for x in columns)
+    interpolated = recording.metadata.get("interpolated")
+    if interpolated and isinstance(interpolated, Mapping):
+        contents["interpolated"] = ", ".join(f"{k} (every {v})" for k, v in interpolated.items())
     if recording.metadata.get("topic"):
         contents["topic"] = recording.metadata["topic"]
     if said := remarks(recording.metadata):

@@ -3,14 +3,17 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.column_lookup import listed
 from jointid.recording.columns import Candidates, Column
 from jointid.recording.headers import plain, understood
-from jointid.recording.signals import dimensions, header_unit
+from jointid.recording.plausibility import unit_of_steps
+from jointid.recording.signals import FloatArray, dimensions, header_unit
 from jointid.recording.table import Table
-from jointid.recording.units import unit_names
+from jointid.recording.units import is_mega, unit_names
 
 _LIKELY = {
     "time": ("time", "stamp", "clock", "zeit"),
@@ -19,6 +22,9 @@ _LIKELY = {
     "current": ("curr", "amp", "strom", "iq"),
 }
 _UNLIKELY = ("target", "cmd", "command", "des", "ref", "set", "err", "lim", "max", "min")
+_EXAMINED = 12  # columns without headers
+_ROWS = 5000
+_ALIKE = 0.999  # correlation of a velocity with the position's rate
 NEEDED = ("time", "position")
 TORQUES = ("torque", "motor_torque", "current")
 
@@ -48,6 +54,10 @@ def ambiguous(table: Table, signal: str, columns: Sequence[Column]) -> InputErro
 
 def in_other_unit(column: Column) -> str:
     """Return what is wrong with a column's unit, in words."""
+    if is_mega(column.unknown):
+        return (
+            f"is in {column.unknown}, where M is mega, a million (milli is m{column.unknown[1:]})"
+        )
     if column.unit is None:
         return f"has the unknown unit {column.unknown!r}"
     if column.unit.dimension == "raw reading":
@@ -58,7 +68,14 @@ def in_other_unit(column: Column) -> str:
 def wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputError:
     """Return the error for a column whose unit is not one of the signal's."""
     known = unit_names(dimensions(signal, kind))
-    if column.unit and column.unit.dimension in ("raw reading", "voltage"):
+    if is_mega(column.unknown):
+        remedy = Action(
+            "call",
+            {"units": {signal: f"m{column.unknown[1:]}"}},
+            function="load",
+            text="if milli is meant",
+        )
+    elif column.unit and column.unit.dimension in ("raw reading", "voltage"):
         remedy = Action(
             "call",
             {"scale": {signal: 1.0}},
@@ -109,9 +126,9 @@ def missing(
                     argument=f"columns.{owner}",
                     place=table.header_place,
                 )
-    proposed: dict[str, int] = {}
-    shown: list[str] = []
-    for signal in signals:
+    proposed = _by_numbers(table) if set(signals) == set(NEEDED) else {}
+    shown: list[str] = [table.headers[index] for index in proposed.values()]
+    for signal in signals if not proposed else ():
         possible = _possible(table, signal, {*owners, *proposed.values()}, kind)
         if not possible and proposed:
             break
@@ -123,7 +140,7 @@ def missing(
         best = _best(table, signal, possible, found)
         proposed[signal] = best[0]
         shown += [table.headers[index] for index in best if table.headers[index] not in shown]
-    if not any(found.of.get(signal) for signal in TORQUES):
+    if not any(found.of.get(signal) or signal in proposed for signal in TORQUES):
         proposed |= _torque(table, found, {*owners, *proposed.values()}, proposed, kind)
     names = " or ".join(signal for signal in signals if signal in proposed)
     return InputError(
@@ -158,6 +175,34 @@ def together(table: Table, problems: Sequence[InputError]) -> InputError:
         if arguments
         else (),
     )
+
+
+def _by_numbers(table: Table) -> dict[str, int]:
+    """Return what the columns of a table without headers may be, by their numbers; empty if there are headers."""
+    if any(header != f"column {k}" for k, header in enumerate(table.headers)):
+        return {}
+    columns: dict[int, FloatArray] = {}
+    for k in range(min(len(table.headers), _EXAMINED)):
+        try:
+            (values,) = table.numbers([k])
+        except InputError:
+            continue
+        values = values[:_ROWS]
+        if len(values) > 2 and np.isfinite(values).all() and np.ptp(values) > 0.0:
+            columns[k] = values
+    time = next((k for k, values in columns.items() if (np.diff(values) > 0.0).all()), None)
+    others = [k for k in columns if k != time]
+    if time is None or not others:
+        return {}
+    found = {"time": time, "position": others[0]}
+    rate = np.gradient(columns[others[0]], columns[time])
+    for k in others[1:]:
+        moves = float(np.std(rate)) > 0.0 and np.corrcoef(rate, columns[k])[0, 1] > _ALIKE
+        if moves and "velocity" not in found:
+            found["velocity"] = k
+        elif "torque" not in found:
+            found["torque"] = k
+    return found
 
 
 def _possible(table: Table, signal: str, taken: set[int], kind: str | None) -> list[int]:
@@ -217,6 +262,8 @@ def _proposal(table: Table, proposed: Mapping[str, int], kind: str | None) -> Ac
         columns[signal] = header if table.headers.count(header) == 1 else index
         if understood(header).unit is None:
             units[signal] = header_unit(signal, kind or "revolute")
+            if signal == "time":
+                units[signal] = _unit_of_time(table, index)
     arguments: dict[str, Any] = {"columns": columns}
     if len(columns) > 1 and units:
         return Action(
@@ -226,6 +273,20 @@ def _proposal(table: Table, proposed: Mapping[str, int], kind: str | None) -> Ac
             text="with the units that they have",
         )
     return Action("call", arguments, function="load")
+
+
+def _unit_of_time(table: Table, index: int) -> str:
+    """Return the unit that the stamps of a proposed column probably have."""
+    try:
+        (stamps,) = table.numbers([index])
+        unit = unit_of_steps(stamps, "")
+    except InputError:  # dates, or text: no unit is needed; what it is in is seen when it is read
+        return "s"
+    steps = np.diff(stamps[:1000])
+    even = (
+        len(steps) > 0 and float(np.median(steps)) >= 1.0 and bool((steps == np.floor(steps)).all())
+    )
+    return "ms" if unit == "s" and even else unit
 
 
 def _chosen(signal: str, column: Column) -> Action:

@@ -20,7 +20,7 @@ _QUANTITIES: dict[str, str] = {
     }.items()
     for word in words.split()
 }
-_MEASURED = _words_of("actual act measured meas measurement feedback fbk")
+_MEASURED = _words_of("actual act measured meas measurement estimate feedback fbk")
 _COMMANDED = _words_of(
     "desired des d target cmd command commanded set setpoint setpoints ref reference goal soll"
 )

@@ -6,7 +6,7 @@ from functools import lru_cache
 
 from jointid.recording.header_words import PLAIN, Meaning, meaning_of
 from jointid.recording.signals import dimensions
-from jointid.recording.units import Unit, find_unit
+from jointid.recording.units import Unit, find_unit, is_mega
 
 ALIASES: dict[str, str] = {
     alias: signal
@@ -90,6 +90,8 @@ def _divided(header: str) -> tuple[str, Unit | None, str]:
     for first in range(2, len(parts), 2):  # the longest unit: rad_s before s
         suffix = "_".join(parts[first::2])
         unit = find_unit(suffix) if suffix and not suffix[0].isdigit() else None
+        if suffix and is_mega(suffix):
+            return "".join(parts[: first - 1]), None, suffix
         if unit:
             return "".join(parts[: first - 1]), unit, ""
     return text, None, ""

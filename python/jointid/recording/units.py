@@ -105,12 +105,12 @@ _ALIASES: dict[str, str] = {
     for name, aliases in {
         "rad": "radian radians",
         "deg": "degree degrees",
-        "rev": "turn turns revolution revolutions",
+        "rev": "turn turns revolution revolutions rotation rotations",
         "m": "metre meter metres meters",
         "s": "sec second seconds",
         "rad_s": "rads",
         "deg_s": "degs dps",
-        "rev_s": "rps",
+        "rev_s": "rps turn_s turns_s rotations_s rotationspersecond",
         "rpm": "rev_min r_min u_min 1_min min^-1 min-1 min⁻¹",
         "Nm": "n_m",
         "mNm": "mn_m",
@@ -139,8 +139,18 @@ def find_unit(text: str) -> Unit | None:
         name = name.replace(spelling, plain)
     if name in UNITS:
         return UNITS[name]
+    if is_mega(name):
+        return None
     folded = name.casefold()
     return _BY_FOLDED.get(folded) or UNITS.get(_ALIASES.get(folded, ""))
+
+
+def is_mega(text: str) -> bool:
+    """Whether a text is a unit's name with the prefix mega: MNm, Mrad. In capitals alone, MNM, it is milli."""
+    name = text.strip().translate(_BLANKS)
+    unit = _BY_FOLDED.get(_HYPHEN.sub("", name).casefold().replace("_", ""))
+    milli = unit is not None and unit.name.startswith("m") and unit.factor < 1.0
+    return milli and name.startswith("M") and name != name.upper() and len(name) > 2
 
 
 def unit_named(
@@ -169,6 +179,13 @@ def unit_named(
     if unit and meant and dimensions and unit.dimension not in dimensions:
         raise InputError(
             f"this is not a known unit; did you mean {meant}?",
+            argument=argument,
+            value=text,
+            place=place,
+        )
+    if unit is None and isinstance(text, str) and is_mega(text):
+        raise InputError(
+            f"the prefix M is mega, a million; milli is m{text.strip()[1:]}",
             argument=argument,
             value=text,
             place=place,

@@ -16,6 +16,12 @@ LEFT_OUT = FindingType(
     "column that is read: it is not read",
     advice="nothing, if the signal is not needed; else name the column, its unit or its scale when loading",
 )
+INTERPOLATED = FindingType(
+    code="interpolated",
+    severity="info",
+    meaning="the file has a signal at a lower rate than the others; it was interpolated linearly at their samples",
+    advice="record all signals with one period",
+)
 _SHOWN = 6
 
 
@@ -36,6 +42,21 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
                 text="the headers, and name the column or its unit if the signal is needed",
             ),
         )
+    interpolated = {
+        str(column): str(period)
+        for recording in evidence.recordings
+        for column, period in _pairs(recording.metadata.get("interpolated"))
+    }
+    if interpolated:
+        shown = [f"{column} (every {period})" for column, period in interpolated.items()]
+        yield INTERPOLATED.finding(
+            f"interpolated at the other signals' samples: {', '.join(shown)}",
+            Action("record", text="all signals with one period"),
+        )
 
 
-CHECK = Check(_find, (LEFT_OUT,))
+def _pairs(value: object) -> tuple[tuple[object, object], ...]:
+    return tuple(value.items()) if isinstance(value, Mapping) else ()
+
+
+CHECK = Check(_find, (LEFT_OUT, INTERPOLATED))

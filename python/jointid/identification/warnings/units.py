@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from jointid.base.advice import Action
@@ -16,6 +17,34 @@ IMPLAUSIBLE_UNITS = FindingType(
     advice="state the unit of position, velocity and time when loading, or convert the values",
 )
 _DEGREES = {"position": "deg", "velocity": "deg/s"}
+
+# Position's change over the integral of the velocity → the signal that is in another unit than SI.
+_FACTORS = (
+    (1.0 / (2.0 * math.pi), "position", "rev"),
+    (2.0 * math.pi, "velocity", "rev_s"),
+    (2.0 * math.pi / 60.0, "velocity", "rpm"),
+    (1e-3, "time", "ms"),
+    (1e3, "position", "mrad"),
+)
+_CLOSE = 0.03
+
+
+def unit_by_factor(recording: Recording, factor: float) -> tuple[str, tuple[Action, ...]]:
+    """Return which unit a factor between position and velocity suggests, as words and as advice.
+
+    Parameters
+    ----------
+    recording : Recording
+    factor : float
+        Position's change over the integral of the velocity.
+    """
+    assumed = recording.metadata.get("assumed_units")
+    for known, signal, unit in _FACTORS if recording.kind == "revolute" else ():
+        near = abs(factor / known - 1.0) < _CLOSE
+        if near and isinstance(assumed, list | tuple) and signal in assumed:
+            advice = Action("call", {"units": {signal: unit}}, function="load")
+            return f": the {signal}, of which no unit is stated, seems to be in {unit}", (advice,)
+    return "", (Action("inspect", text="the units of both"),)
 
 
 def degrees_advice(recording: Recording, signals: Sequence[str]) -> Action:

@@ -10,7 +10,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
-from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_advice
+from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_advice, unit_by_factor
 
 REVERSED_SIGN = FindingType(
     code="reversed_sign",
@@ -54,9 +54,10 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
                 evidence={"factor": Measured(factor)},
             )
         elif abs(found.scale - 1.0) > MISMATCH:
+            suspected, advice = unit_by_factor(recording, found.scale)
             yield VELOCITY_MISMATCH.finding(
-                f"the position moves by {found.scale:.4g} times the integral of the velocity",
-                Action("inspect", text="the units of both"),
+                f"the position moves by {found.scale:.4g} times the integral of the velocity{suspected}",
+                *advice,
                 _WITHOUT_VELOCITY,
                 evidence=scale,
             )

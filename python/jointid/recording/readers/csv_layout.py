@@ -3,6 +3,7 @@
 import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 from jointid.base.errors import InputError
 from jointid.recording.headers import understood
@@ -71,7 +72,8 @@ def layout_of(lines: Sequence[str], source: str, mark: str) -> Layout:
     InputError
         There is no table.
     """
-    filled = [k for k, line in enumerate(lines) if line.strip() and not is_comment(line)]
+    each = (k for k, line in enumerate(lines) if line.strip() and not is_comment(line))
+    filled = list(islice(each, _SEARCHED))
     named = separator_named(lines[filled[0]]) if filled else None
     if named:
         filled = filled[1:]
@@ -134,7 +136,7 @@ def _number(cell: str, separator: str) -> bool:
 
 def _searched(lines: Sequence[str], filled: Sequence[int], mark: str) -> Layout | None:
     """Return the table whose rows begin further down, below lines of another form."""
-    for k in range(1, min(len(filled), _SEARCHED) - 1):
+    for k in range(1, len(filled) - 1):
         rows = [lines[j] for j in filled[k : k + 3]]
         for separator in _SEPARATORS:
             counts = {len(_safe_cells(row, separator)) for row in rows}
@@ -182,7 +184,7 @@ def _below_headers(
 
 def _are_units(cells: Sequence[str]) -> bool:
     stated = [cell.strip("[]() ") for cell in cells if cell.strip("[]()- ")]
-    return bool(stated) and 2 * sum(find_unit(cell) is not None for cell in stated) > len(stated)
+    return bool(stated) and 2 * sum(find_unit(cell) is not None for cell in stated) >= len(stated)
 
 
 def _cells(line: str, separator: str, place: str) -> list[str]:

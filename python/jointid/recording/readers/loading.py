@@ -47,18 +47,23 @@ def load(
     ``velocity [deg/s]``, ``torque_Nm``, ``time_ms``. Known names are time (t), position (pos, angle, q),
     velocity (vel, speed), torque (tau, force, motor_force, motor_torque_output, output_torque),
     sensor (sensor_raw, torque_sensor), reference (position_ref, position_reference,
-    goal_position), link_position, temperature, motor_torque and current (motor_current).
-    A signal without a unit is assumed to be in SI units and listed in ``metadata["assumed_units"]``.
+    goal_position), link_position, temperature, motor_torque and current (motor_current), also with words around
+    them as controllers write them: ``timestamp``, ``actual_q_0``, ``Axis 1.ActPos``, ``joint1_pos``, ``effort``. What
+    was commanded is never taken for what was measured. A signal without a unit is assumed to be in SI units and
+    listed in ``metadata["assumed_units"]``; stamps whose size or steps show another unit are read in it
+    (``metadata["recognised_units"]``). A column that has a signal's name and is not needed, but cannot be read,
+    is left out: ``metadata["left_out"]`` says why. `docs/text_logs.md` has the rules.
 
     Parameters
     ----------
     path : path-like
-        A ``.csv``, ``.csv.gz`` or ``.npz`` file, from any program or from `Recording.save`; a
+        A text file (``.csv``, ``.csv.gz``, ``.txt``, ``.tsv``, ``.log``, ``.dat``) or a ``.npz`` file, from any
+        program or from `Recording.save`; a
         MATLAB ``.mat`` file (vectors, also in a struct, by their names; version 7.3 needs h5py); a
         ``.parquet`` file (needs pyarrow); an HDF5 file, ``.h5`` or ``.hdf5`` (needs h5py); a log of ROS messages
         (the extra ``ros``): ``.mcap``, a ROS 2 bag (its folder, or one ``.db3`` of it), a ROS 1 ``.bag``.
-        The cells of a text are separated by commas, semicolons
-        or tabs; with the latter two, decimal commas are read as well.
+        The cells of a text are separated by commas, semicolons, tabs or blanks; where commas do not separate,
+        decimal commas are read as well. Exports of TwinCAT Scope are read, too.
     joint : str or int, optional
         Of a file with several joints the one to read, by its number or name as the headers have it:
         ``motor_position_3_rad``, ``joint3_pos``, ``q3``, ``q[2]``, ``position.3``, ``elbow.position [rad]``,

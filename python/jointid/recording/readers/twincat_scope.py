@@ -13,7 +13,6 @@ from jointid.base.errors import InputError
 from jointid.recording.readers.csv_dialect import number_of
 from jointid.recording.signals import FloatArray
 from jointid.recording.stamps import looks_exact, stamps_of
-from jointid.recording.units import find_unit
 
 _BLOCK = 80  # lines: no export has more above its rows
 _KEYS = ("Data-Type", "SampleTime[ms]", "SymbolName", "VariableSize", "Starttime of export")
@@ -214,4 +213,4 @@ def _header(keys: Mapping[str, list[str]], channel: int) -> str:
         name = f"{copied[1]} copy {copied[2]}"
     unit = entry("Unit").strip("()[] ")
     scaled = entry("ScaleFactor").replace(",", ".") not in ("", "1", "1.0")
-    return f"{name} [{unit}]" if find_unit(unit) and not scaled else name
+    return name if scaled or unit in ("", "None", "-") else f"{name} [{unit}]"
