@@ -49,7 +49,7 @@ check-plain check-address check-thread: check-%: .venv/.test-tools  ## (each alo
 
 pytest: .venv/.strict .venv/.test-tools  ## the Python tests alone
 	@echo "Python tests:"
-	@$(BIN)/python -m pytest
+	@$(BIN)/python -m pytest --numprocesses auto --dist loadfile
 
 vcan: .venv/.strict .venv/.test-tools  ## install a guest with CAN (root or sudo), then sessions on its vcan, with faults
 	@tools/install_vcan.sh

@@ -56,4 +56,4 @@ def determinable(quiet: jid.Recording, noise: float, delay: float, near: float) 
 
 def late(recording: jid.Recording, signal: str, delay: float) -> Array:
     """A signal that is late; between samples it is interpolated."""
-    return np.interp(recording.time - delay, recording.time, getattr(recording, signal))
+    return np.asarray(np.interp(recording.time - delay, recording.time, getattr(recording, signal)))

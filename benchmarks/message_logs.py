@@ -56,6 +56,7 @@ def written(path: Path, messages: int, joints: int) -> Path:
 
 
 def main() -> None:
+    """Write the logs, load them in a process of their own, and print memory and time."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--messages", type=int, default=1_000_000)
     parser.add_argument("--joints", type=int, default=1)

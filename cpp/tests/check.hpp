@@ -65,11 +65,12 @@ inline bool contains(const std::string& text, std::string_view part) {
 #define JOINTID_JOIN(a, b) JOINTID_JOIN_AGAIN(a, b)
 
 /// A named check: CHECK_CASE("room: promise") { ... }
-#define CHECK_CASE(name)                                                                     \
-  static void JOINTID_JOIN(check_on_line_, __LINE__)();                                      \
-  static const ::jointid::tests::Registration JOINTID_JOIN(registration_on_line_, __LINE__){ \
-      name, JOINTID_JOIN(check_on_line_, __LINE__)};                                         \
-  static void JOINTID_JOIN(check_on_line_, __LINE__)()
+#define CHECK_CASE(name) JOINTID_CHECK_CASE(name, __COUNTER__)
+#define JOINTID_CHECK_CASE(name, number)                                           \
+  static void JOINTID_JOIN(check_, number)();                                      \
+  static const ::jointid::tests::Registration JOINTID_JOIN(registration_, number){ \
+      name, JOINTID_JOIN(check_, number)};                                         \
+  static void JOINTID_JOIN(check_, number)()
 
 #define CHECK(condition) ::jointid::tests::expect((condition), #condition, "", __FILE__, __LINE__)
 /// With something to print when it fails: CHECK_WITH(a < b, "seed " + std::to_string(seed))

@@ -82,6 +82,22 @@ def test_gear_ratios(arm: Path, capsys: pytest.CaptureFixture[str], tmp_path: Pa
     assert (code, "--gear-ratio" in error) == (2, True)
 
 
+def test_a_joint_file_for_each_joint(
+    arm: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    for name, inertia in (("1", 1.25), ("2", 0.75)):
+        jid.Joint(name=f"axis {name}", inertia=inertia).save(tmp_path / f"axis_{name}.toml")
+    files = tmp_path / "axis_{joint}.toml"
+    code, out, _ = ran(capsys, "identify", arm, "--joints", "all", "--joint", files, "--json")
+    found = json.loads(out)["joints"]
+    assert code == 0
+    values = [found[name]["estimate"]["parameters"]["inertia"]["value"] for name in ("1", "2")]
+    assert values == [1.25, 0.75]
+    (tmp_path / "axis_2.toml").unlink()
+    code, _, error = ran(capsys, "identify", arm, "--joints", "all", "--joint", files)
+    assert (code, "axis_2.toml" in error) == (2, True)
+
+
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [

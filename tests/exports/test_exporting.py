@@ -95,6 +95,7 @@ def test_values_of_several_recordings_are_averaged_and_said_so(tmp_path: Path) -
         ({"path": "new.urdf", "into": "arm.urdf"}, "known are elbow, wrist"),
         ({"path": "new.urdf", "into": "text.urdf", "joint_name": "elbow"}, "not XML"),
         ({"path": "new.urdf", "into": "wide.urdf", "joint_name": "elbow"}, "text in UTF-8"),
+        ({"path": "new.urdf", "into": "entity.urdf", "joint_name": "elbow"}, "in entities"),
         ({"path": "new.urdf", "into": "twice.urdf", "joint_name": "elbow"}, "several joints"),
         ({"path": "new.urdf", "into": "empty.urdf", "joint_name": "elbow"}, "no parent and child"),
         ({"path": "new.xml", "into": "include.xml", "joint_name": "elbow"}, "includes other files"),
@@ -109,6 +110,8 @@ def test_wrong_input_is_refused(
     arm = f"<robot>{joint.format('elbow')}{joint.format('wrist')}</robot>"
     Path("arm.urdf").write_text(arm, encoding="utf-8")
     Path("wide.urdf").write_text(f'<?xml version="1.0" encoding="utf-16"?>{arm}', encoding="utf-16")
+    entity = f"<!DOCTYPE robot [<!ENTITY e '{joint.format('elbow')}'>]><robot>&e;</robot>"
+    Path("entity.urdf").write_text(entity, encoding="utf-8")
     Path("text.urdf").write_text("no XML", encoding="utf-8")
     Path("twice.urdf").write_text(f"<robot>{joint.format('elbow') * 2}</robot>", encoding="utf-8")
     Path("empty.urdf").write_text('<robot><joint name="elbow" type="a"/></robot>', encoding="utf-8")

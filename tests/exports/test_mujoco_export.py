@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -128,14 +129,47 @@ def test_an_approximation_says_how_far_it_is_off(tmp_path: Path, joint: jid.Join
     stated = re.search(r"largest difference of the torque over this range: ([\d.]+) N·m", text)
     assert stated is not None
     law = subject_of(joint).law
-    speed = np.concatenate([np.linspace(0.002, 0.8, 200), -np.linspace(0.002, 0.8, 200)])
-    state = mujoco.MjData(model)
-    rest = inverse(model, state, 0.0, 0.0, 0.0)
-    there = [inverse(model, state, 0.0, v, 0.0) - rest for v in speed]
-    off = np.max(np.abs(law.friction_torque(speed) - there))
+    half = (np.arange(4000) + 0.5) / 4000 * 0.8
+    speed = np.concatenate([half, -half])
+    columns = np.column_stack([np.sign(speed), speed])
+    constant, slope = np.linalg.lstsq(columns, law.friction_torque(speed), rcond=None)[0]
+    assert model.dof_frictionloss[0] == pytest.approx(constant, rel=1e-3)
+    assert model.dof_damping[0] == pytest.approx(slope, rel=1e-3)
+    tried = np.concatenate([speed, [1e-9, -1e-9]])
+    there = model.dof_frictionloss[0] * np.sign(tried) + model.dof_damping[0] * tried
+    off = np.max(np.abs(law.friction_torque(tried) - there))
     periodic = sum(each.amplitude for each in law.harmonics if each.over != "gravity")
-    assert off + periodic <= float(stated[1]) * 1.001
-    assert off + periodic >= 0.8 * float(stated[1])
+    assert off + periodic == pytest.approx(float(stated[1]), rel=1e-3)
+    # And that friction is what the simulator has.
+    state = mujoco.MjData(model)
+    for sign in (1.0, -1.0):
+        needed = inverse(model, state, 0.0, 0.4 * sign, 0.0) - inverse(model, state, 0.0, 0.0, 0.0)
+        wanted = sign * (model.dof_frictionloss[0] + 0.4 * model.dof_damping[0])
+        assert needed == pytest.approx(wanted, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", REPLAYED)
+def test_friction_is_whole_above_the_speed_that_the_file_states(tmp_path: Path, name: str) -> None:
+    """MuJoCo softens dry friction, of a joint that slides by its body's mass alone."""
+    joint = REPLAYED[name][0]
+    path = jid.export(joint, tmp_path / "joint.xml")
+    stated = re.search(r"below about ([-\d.e]+)", path.read_text(encoding="utf-8"))
+    assert stated is not None
+    model = model_of(path)
+    state = mujoco.MjData(model)
+    for share, whole in ((1.1, True), (0.3, False)):
+        inverse(model, state, 0.0, share * float(stated[1]), 0.0)
+        friction = -state.qfrc_constraint[0] / model.dof_frictionloss[0]
+        assert (friction == pytest.approx(1.0, rel=1e-6)) == whole
+        assert friction > 0.2
+
+
+@pytest.mark.parametrize("ending", [".xml", ".urdf"])
+def test_the_file_is_sound_xml_whatever_the_joint_is_called(tmp_path: Path, ending: str) -> None:
+    """MuJoCo's reader forgives two dashes in a comment, others do not."""
+    path = jid.export(EVERYTHING, tmp_path / f"j{ending}", approximate=True, speed=1.0)
+    root = ElementTree.parse(path).getroot()
+    assert EVERYTHING.name in (root.get("model"), root.get("name"))
 
 
 ARM = """<?xml version="1.0" encoding="utf-8"?>

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
-from plants import Bench, Law, Log, Plant, simulate, thesis
+from plants import Bench, Law, Log, Plant, simulate, sines, thesis
 
 import jointid as jid
 from jointid.estimate.causes import MEANINGS
@@ -267,3 +267,18 @@ def test_a_misfit_without_a_name_is_said_in_one_line() -> None:
         assert f"none of {count} known causes" in found.message
         assert found.evidence["causes_excluded"].value == count
         assert len(found.message) <= 220
+
+
+def test_a_load_of_gravity_and_a_part_of_the_inertia_is_named() -> None:
+    # At this pace the link's inertia takes most of gravity's part away.
+    motion = sines(np.radians([[25.0, 25.0, 20.0]]), np.array([[1.2, 2.3, 4.0]]))
+    law = Law(inertia=3.0, stiffness=40.0, on_reference=1.0, gravity=7.0)
+    plant = Plant(inertia=3.0, link_inertia=0.45, gravity=6.0, load_friction=0.15)
+    log = Log(sensor=0.0, torque_noise=0.2)
+    (run,) = simulate(Bench(motion=motion, law=law, plant=plant, log=log), duration=12.0, seed=2)
+    joint = jid.Joint(gear_ratio=101.0, model=jid.Model.parse("stribeck:gravity=free"))
+    estimate = jid.identify(run, joint, search="separable")
+    assert _named(estimate)[:1] == ["load_friction"]
+    cause = estimate.causes().found[0]
+    assert cause.share > 0.6
+    assert cause.numbers["coefficient"].value == pytest.approx(0.15, abs=0.04)

@@ -159,7 +159,9 @@ def test_a_folder_that_nobody_finished(tmp_path: Path) -> None:
     later = ros2_bag(tmp_path / "other", logged(60)[len(logged()) :])
     next(later.glob("*.db3")).rename(folder / "run_10.db3")
     next(folder.glob("run.db3")).rename(folder / "run_9.db3")
-    assert load(folder).time.tolist() == [k * 10_000_000 / 1e9 for k in range(60)]
+    loaded = load(folder)
+    assert loaded.time.tolist() == [k * 10_000_000 / 1e9 for k in range(60)]
+    assert "reordered_messages" not in loaded.metadata
     empty = tmp_path / "empty"
     empty.mkdir()
     assert "a file name that ends in" in refusal(empty)

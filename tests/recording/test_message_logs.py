@@ -18,7 +18,6 @@ from message_files import (
     joint_state,
     mcap,
     motion,
-    ros2_bag,
 )
 from recording_files import assert_one_sentence, refusal
 
@@ -98,6 +97,7 @@ def test_joints_change_places_and_stay_away(encoding: str, tmp_path: Path) -> No
                 State(stamp=START + 10_000_000 * k + 500, name=["gripper"], position=[0.1 * k])
             )
     path = mcap(tmp_path / "run.mcap", sent(states), encoding=encoding)
+    assert load(path, joint="a").metadata["topic"] == "/joint_states"
     for joint, sign in (("a", 1.0), ("bb", -1.0)):
         loaded = load(path, columns={"position": f"{joint}.position", "torque": f"{joint}.effort"})
         assert loaded.position.tolist() == [sign * (1.0 + k) for k in range(40)]
@@ -208,100 +208,6 @@ def test_joints_without_names_are_numbered(tmp_path: Path) -> None:
     assert _table(mcap(tmp_path / "run.mcap", sent(states))).headers[2:] == (
         *("joint_1.position [rad]", "joint_2.position [rad]"),
     )
-
-
-# --- Which topic ---
-
-
-def test_several_topics_with_joints_are_listed_with_the_line_to_paste(tmp_path: Path) -> None:
-    both = [*sent(motion(joints=["a"])), *sent(motion(joints=["b"]), "/left/joint_states")]
-    path = mcap(tmp_path / "run.mcap", in_order([*both, *distractors()]))
-    with pytest.raises(InputError) as caught:
-        load(path)
-    assert_one_sentence(str(caught.value), path)
-    assert "2 topics hold joints: /joint_states (sensor_msgs/msg/JointState), /left/" in str(
-        caught.value
-    )
-    assert "load with topic='/left/joint_states'" in str(caught.value)
-    for topic in ("/left/joint_states", "left/joint_states"):
-        assert load(path, topic=topic).metadata["topic"] == "/left/joint_states"
-    assert "no such topic; did you mean '/joint_states'" in refusal(path, topic="/joint_state")
-
-
-def test_no_topic_with_joints(tmp_path: Path) -> None:
-    path = mcap(tmp_path / "run.mcap", distractors())
-    message = refusal(path)
-    assert_one_sentence(message, path)
-    assert "no topic holds joints" in message
-    assert "/temperature (std_msgs/msg/Float64)" in message
-
-
-def test_a_topic_without_messages(tmp_path: Path) -> None:
-    path = mcap(tmp_path / "run.mcap", [])
-    assert "no topics are found" in refusal(path)
-
-
-def test_a_topic_with_the_same_stamps_adds_columns(tmp_path: Path) -> None:
-    """A torque sensor that the same driver publishes; one with other stamps is not interpolated."""
-    states = motion(30, ["a"])
-
-    def wrench(stamp: int, value: float) -> Any:
-        def made(store: Any) -> Any:
-            t = store.types
-            header = t["std_msgs/msg/Header"](
-                t["builtin_interfaces/msg/Time"](*divmod(stamp, 10**9)), "tool"
-            )
-            none = t["geometry_msgs/msg/Vector3"](0.0, 0.0, 0.0)
-            torque = t["geometry_msgs/msg/Vector3"](0.0, 0.0, value)
-            return t["geometry_msgs/msg/WrenchStamped"](
-                header, t["geometry_msgs/msg/Wrench"](none, torque)
-            )
-
-        return made
-
-    kind = "geometry_msgs/msg/WrenchStamped"
-    messages = sent(states)
-    for k, state in enumerate(states):
-        for topic, late in (("/ft", 0), ("/slow", 1)):
-            value = wrench(state.stamp + late, 0.5 * k)
-            messages.append(Sent(topic=topic, kind=kind, log_time=state.stamp, value=value))
-    for path in (
-        mcap(tmp_path / "run.mcap", in_order(messages)),
-        ros2_bag(tmp_path / "run", in_order(messages)),
-    ):
-        headers = _table(path).headers
-        assert headers[2:5] == ("position [rad]", "velocity [rad/s]", "effort [Nm]")
-        assert "/ft.wrench.torque.z" in headers
-        assert not any(header.startswith("/slow") for header in headers)
-        loaded = load(path, columns={"sensor": "/ft.wrench.torque.z"}, units={"sensor": "Nm"})
-        assert loaded.sensor is not None
-        assert loaded.sensor.tolist() == [0.5 * k for k in range(30)]
-
-
-def test_a_plain_topic_that_was_named(tmp_path: Path) -> None:
-    path = mcap(tmp_path / "run.mcap", in_order([*sent(motion()), *distractors()]))
-    assert _table(path, topic="/temperature").headers == ("time [s]", "log_time [s]", "data")
-    loaded = load(path, topic="temperature", columns={"position": "data"})
-    assert loaded.position.tolist() == [20.0 + k for k in range(50)]
-    assert loaded.metadata["stamps"] == "log time"
-
-
-def test_messages_that_are_not_read_are_named(tmp_path: Path) -> None:
-    path = mcap(
-        tmp_path / "run.mcap",
-        [Sent(topic="/js", kind="foxglove.JointStates", log_time=START, value={})],
-        encoding="json",
-    )
-    raw = path.read_bytes().replace(b"\x04\x00\x00\x00json", b"\x04\x00\x00\x00xdr2")
-    path.write_bytes(raw)
-    error = refusal(path)
-    assert "are not read" in error or "damaged" in error
-
-
-def test_other_formats_have_no_topic(tmp_path: Path) -> None:
-    path = tmp_path / "a.csv"
-    path.write_text("t,q\n")
-    assert "topic is '/a': .csv files have no topic" in refusal(path, topic="/a")
 
 
 # --- Other messages with joints ---

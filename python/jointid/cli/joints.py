@@ -12,6 +12,7 @@ from jointid.cli.parser import BAD_USAGE
 from jointid.cli.progress import JointsProgress
 from jointid.cli.wording import ADVICE, Wording
 
+_MARK = "{joint}"
 _OF_ONE_JOINT = ("checkpoint", "resume", "selftest", "bootstrap", "causes")
 
 
@@ -39,9 +40,13 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
         for name in ("population", "generations")
         if getattr(arguments, name) is not None
     }
-    joint = None if arguments.joint is None else Joint.load(arguments.joint)
+    of_each = arguments.joint is not None and _MARK in str(arguments.joint)
+    joint: Joint | dict[str, Joint] | None = None
     model = with_terms(arguments.model, arguments)
-    merged = model if joint is None else model.over(joint.model)
+    merged = model
+    if arguments.joint is not None and not of_each:
+        joint = Joint.load(arguments.joint)
+        merged = model.over(joint.model)
     ratios = gear_ratios(arguments)
     robot = load_robot(
         arguments.recordings[0],
@@ -49,6 +54,9 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
         gear_ratio=ratios[0] if ratios is not None and len(ratios) == 1 else ratios,
         **how_to_read(arguments, [merged]),
     )
+    if of_each:
+        wanted = joints or robot.names
+        joint = {name: Joint.load(str(arguments.joint).replace(_MARK, name)) for name in wanted}
     with JointsProgress(enabled=not arguments.quiet) as progress:
         found = identify_joints(
             robot,

@@ -47,7 +47,7 @@ def elements(content: bytes, place: str) -> list[Element]:
     Raises
     ------
     InputError
-        It is not XML, or in an encoding whose bytes cannot be edited.
+        It is not XML, in an encoding whose bytes cannot be edited, or has elements in entities.
     """
     try:
         readable = "\0" not in content.decode("utf-8")
@@ -61,6 +61,8 @@ def elements(content: bytes, place: str) -> list[Element]:
 
     def begin(tag: str, attributes: dict[str, str]) -> None:
         start = parser.CurrentByteIndex
+        if content[start : start + 1] != b"<":  # it stands in the text of an entity
+            raise InputError("elements in entities cannot be edited", place=place)
         path = tuple(found[each].tag for each in open_)
         end = _tag_end(content, start)
         parent = open_[-1] if open_ else -1

@@ -20,7 +20,9 @@ def html_couplings(result: JointEstimates) -> Html:
 
 def html_shares(result: JointEstimates) -> Html:
     """Shares of the residuals: one row a joint, one column for each other one that explains something."""
-    others = dict.fromkeys(s.joint for each in result.results.values() for s in each.others)
+    explaining = {s.joint for each in result.results.values() for s in each.others}
+    others = [*(name for name in result.results if name in explaining)]
+    others += sorted(explaining - set(others))  # recorded, but not identified
     body: list[list[Html | str]] = []
     for name, each in result.results.items():
         cells: list[Html | str] = [element("th", name)]

@@ -44,7 +44,7 @@ class JointResult:
     @property
     def explained(self) -> float:
         """Share of the residual that other joints explain for certain, 0 to 1."""
-        return float(sum(share.share for share in self.others if share.certain))
+        return min(1.0, float(sum(share.share for share in self.others if share.certain)))
 
     def sentences(self) -> tuple[str, ...]:
         """What the other joints explain, in words.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.error_text import printable
 from jointid.base.errors import InputError
@@ -12,16 +13,16 @@ from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import two_digits
 from jointid.joints.result import JointEstimates, JointResult
 
-_SHOWN = ("coulomb", "static", "stribeck", "viscous", "inertia")
 _NO_COUPLING = "no joint's residual is explained by the others beyond chance"
 
 
 def shown_parameters(result: JointEstimates) -> list[str]:
     """Names of the parameters that the table shows: friction and inertia, as far as a joint has them."""
-    names = dict.fromkeys(name for estimate in result.values() for name in estimate.parameters)
-    return [
-        name for first in _SHOWN for name in names if name == first or name.startswith(f"{first}_")
+    present = {name for estimate in result.values() for name in estimate.parameters}
+    friction = [
+        each for term in _core.terms() if term.friction for each in (term.name, *term.shapes)
     ]
+    return [name for name in dict.fromkeys([*friction, "inertia"]) if name in present]
 
 
 def head(result: JointEstimates) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,13 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
     """
     if isinstance(recordings, Recording):
         recordings = (recordings,)
+    if isinstance(recordings, Mapping):  # of several joints
+        raise InputError(
+            "a Recording of one joint is expected, or several of the same joint",
+            argument="recordings",
+            value=recordings,
+            remedy="name a joint, or call identify_joints",
+        )
     if not isinstance(recordings, Iterable) or isinstance(recordings, str):
         raise InputError(_RECORDING_EXPECTED, argument="recordings", value=recordings)
     runs = tuple(recordings)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
 
 _WIDE = """
+body { max-width: 76rem; } p, ul { max-width: 56rem; }
 table { font-size: .92rem; } .wide { overflow-x: auto; }
 table.joints td { white-space: nowrap; } table.joints td:last-child { white-space: normal; }
 table.joints td:nth-child(2), table.joints td:nth-child(3) { text-align: left; }

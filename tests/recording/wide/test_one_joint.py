@@ -12,7 +12,7 @@ def written(folder: Path, headers: list[str], seed: int = 0) -> tuple[Path, dict
     """A file with these headers, time first, and its columns."""
     random = np.random.default_rng(seed)
     columns = {header: random.uniform(-1.0, 1.0, 40) for header in headers}
-    columns[headers[0]] = np.arange(40) * 0.01
+    columns[headers[0]] = np.asarray(np.arange(40) * 0.01, dtype=np.float64)
     path = folder / "arm.csv"
     rows = zip(*(values.tolist() for values in columns.values()), strict=True)
     text = "\n".join([",".join(headers), *(",".join(map(repr, row)) for row in rows), ""])

@@ -39,7 +39,7 @@ def test_a_mapping_of_recordings() -> None:
 def test_it_is_read_only() -> None:
     whole = robot()
     with pytest.raises(AttributeError):
-        whole.position = ARRAY  # type: ignore[misc]
+        whole.position = ARRAY
     with pytest.raises(ValueError, match="read-only"):
         whole.position[0, 0] = 1.0
 
@@ -145,7 +145,9 @@ def test_wide_file_to_robot(tmp_path: Path) -> None:
     whole = jid.load_robot(path, gear_ratio=[10, -20], extra={"model": "model_{joint}"})
     assert (whole.names, whole.side, whole.name) == (("1", "2"), "motor", "arm")
     np.testing.assert_allclose(whole["2"].position, -np.deg2rad(2.0 * np.arange(20)) / 20.0)
-    np.testing.assert_allclose(whole["2"].torque, -80.0 * np.arange(20))
+    torque = whole["2"].torque
+    assert torque is not None
+    np.testing.assert_allclose(torque, -80.0 * np.arange(20))
     np.testing.assert_allclose(whole["2"].extra["model"], 6.0 * np.arange(20))
     assert jid.load_robot(path, [2]).names == ("2",)
     assert jid.load_robot(path, "all").names == ("1", "2")

@@ -33,7 +33,7 @@ def load_friction_of_sensor(fit: Fitted) -> Array | None:
 
 
 def load_frictions_of_motion(fit: Fitted) -> Iterator[Array]:
-    """Yield the same of each load that gravity, or gravity and inertia, may be: that of the best share of the inertia."""
+    """Yield the same of each load that gravity may be, with the share of the inertia that fits best."""
     shares = _SHARES if "inertia" in fit.names else (0.0,)
     parts = [names for names in _GRAVITY if set(names) <= set(fit.names)]
     for names in parts:

@@ -48,8 +48,8 @@ def load(
     velocity (vel, speed), torque (tau, force, motor_force, motor_torque_output, output_torque),
     sensor (sensor_raw, torque_sensor), reference (position_ref, position_reference,
     goal_position), link_position, temperature, motor_torque and current (motor_current), also with words around
-    them as controllers write them: ``timestamp``, ``actual_q_0``, ``Axis 1.ActPos``, ``joint1_pos``, ``effort``.
-    What was commanded is never taken for what was measured. A signal without a unit is assumed to be in SI units and
+    them as controllers write them: ``timestamp``, ``actual_q_0``, ``Axis 1.ActPos``, ``joint1_pos``, ``effort``. What
+    was commanded is never taken for what was measured. A signal without a unit is assumed to be in SI units and
     listed in ``metadata["assumed_units"]``; stamps whose size or steps show another unit are read in it
     (``metadata["recognised_units"]``). A column that has a signal's name and is not needed, but cannot be read,
     is left out: ``metadata["left_out"]`` says why. `docs/text_logs.md` has the rules.

@@ -30,7 +30,7 @@ def load_robot(
     columns: Mapping[str, str | int | None] | None = None,
     units: Mapping[str, str] | None = None,
     scale: Mapping[str, float] | None = None,
-    gear_ratio: Sequence[float] | float | None = None,
+    gear_ratio: Sequence[float] | FloatArray | float | None = None,
     where: Mapping[str, float | str] | None = None,
     kind: str | None = None,
     torque_hold: str | None = None,
@@ -202,7 +202,7 @@ def _extra(
 def _changed(
     robot: RobotRecording,
     joints: Sequence[str | int] | str | None,
-    gear_ratio: Sequence[float] | float | None,
+    gear_ratio: Sequence[float] | FloatArray | float | None,
     name: str | None,
 ) -> RobotRecording:
     """Return a saved recording, or some of its joints."""

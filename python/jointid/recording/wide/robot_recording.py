@@ -114,7 +114,7 @@ class RobotRecording(Mapping[str, Recording]):
         link_position: npt.ArrayLike | None = None,
         temperature: npt.ArrayLike | None = None,
         side: str = JOINT,
-        gear_ratio: Sequence[float] | float | None = None,
+        gear_ratio: Sequence[float] | FloatArray | float | None = None,
         names: Sequence[str] | None = None,
         extra: Mapping[str, npt.ArrayLike] | None = None,
         kind: str = "revolute",
@@ -255,7 +255,7 @@ class RobotRecording(Mapping[str, Recording]):
         fields["extra"] = {key: values[kept] for key, values in self.extra.items()}
         return type(self)(**fields)
 
-    def with_gear_ratio(self, gear_ratio: Sequence[float] | float) -> Self:
+    def with_gear_ratio(self, gear_ratio: Sequence[float] | FloatArray | float) -> Self:
         """Return the recording with other gear ratios, one a joint or one for all."""
         return type(self)(**{**self.fields(), "gear_ratio": gear_ratio})
 

@@ -130,7 +130,7 @@ def checked_names(names: Sequence[str] | None, joints: int) -> tuple[str, ...]:
 
 
 def checked_ratios(
-    gear_ratio: Sequence[float] | float | None, joints: int
+    gear_ratio: Sequence[float] | FloatArray | float | None, joints: int
 ) -> tuple[float, ...] | None:
     """Return one gear ratio a joint; a single one is that of all."""
     if gear_ratio is None:
