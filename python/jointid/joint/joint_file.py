@@ -331,9 +331,11 @@ def _parsed(text: str, path: Path) -> dict[str, Any]:
         found = re.match(r"line (\d+)", position)
         line = int(found[1]) if found else text.rstrip().count("\n") + 1
         raise InputError(
-            f"not TOML: {reason}",
+            f"not TOML: {reason}"
+            if path.suffix.lower() == ".toml"
+            else "a joint file (.toml) or an estimate (.json) is expected here, and this is no TOML",
             place=f"{path}, line {line}",
-            remedy="write lines like gear_ratio = 101",
+            remedy="write lines like gear_ratio = 101" if path.suffix.lower() == ".toml" else (),
         ) from None
 
 

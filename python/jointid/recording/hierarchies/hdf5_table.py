@@ -71,6 +71,10 @@ class Hdf5Table:
             )
             if count[other] <= 1
         }
+        parts = [_part(vector) for vector in self._vectors]
+        self.other_names |= {
+            part: k for k, part in enumerate(parts) if part and parts.count(part) == 1
+        }
         self.notes = {"not_read": left_out} if left_out else {}
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
@@ -119,6 +123,11 @@ def _joint_group(vector: Vector, vectors: Sequence[Vector]) -> str:
 def _full(vector: Vector, separator: str) -> str:
     name = separator.join([*vector.path.split("/"), *vector.field])
     return name if vector.part is None else f"{name}(:,{vector.part + 1})"
+
+
+def _part(vector: Vector) -> str:
+    """Return the name of a column of a matrix without its groups."""
+    return "" if vector.part is None else f"{vector.last}(:,{vector.part + 1})"
 
 
 def _with_unit(name: str, unit: str) -> str:

@@ -44,7 +44,14 @@ def reader_of(path: Path) -> Reader:
     if path.is_dir():
         inside = [each.name.lower() for each in path.iterdir()]
         for reader in READERS:
-            if reader.folder and any(name.endswith(reader.folder) for name in inside):
+            if reader.folder and _is_whole(inside, reader.folder):
                 return reader
     ending = ending_of(path, endings())
     return next(reader for reader in READERS if ending in reader.endings)
+
+
+def _is_whole(names: list[str], endings: tuple[str, ...]) -> bool:
+    """Whether a folder with these files is a recording: it says so, or there is nothing else in it."""
+    if not any(name.endswith(endings) for name in names):
+        return False
+    return "metadata.yaml" in names or all(name.endswith(endings) for name in names)
