@@ -82,6 +82,11 @@ def reading_arguments(command: argparse.ArgumentParser) -> None:
         action="store_true",
         help="leave out rows that repeat the one before, as a logger makes them that is faster than the bus",
     )
+    command.add_argument(
+        "--drop-invalid",
+        action="store_true",
+        help="leave out damaged rows: a value is not finite, or larger than any of a joint",
+    )
 
 
 def pair(text: str) -> tuple[str, str]:
@@ -218,6 +223,7 @@ def load_all(
                 joint=several[0] if several else None,
                 gear_ratio=ratios[0] if ratios else None,
                 drop_copies=arguments.drop_copies,
+                drop_invalid=arguments.drop_invalid,
                 **reading,
             )
             for path in paths

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from jointid.base.advice import Action
 from jointid.cli.arguments import fixed_values, joints_wanted, load_all, refinements, with_terms
 from jointid.cli.exports import export
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
@@ -245,13 +246,14 @@ def _exit_code(refused: str, arguments: argparse.Namespace) -> int:
 
 
 def _contents(recording: Recording, wording: Wording) -> dict[str, Any]:
-    from jointid.identification.warnings.speed import slow_stamps
     from jointid.recording.file_remarks import remarks
+    from jointid.recording.plausibility import slow_stamps
 
     contents = _facts(recording)
-    if (slow := slow_stamps(recording)) is not None:
-        advice = " or ".join(wording.of_action(action) for action in slow.advice)
-        contents["warning"] = f"{slow.cause}; {advice}"
+    if (slow := slow_stamps(recording.sample_period)) is not None:
+        cause, unit = slow
+        advice = wording.of_action(Action("call", {"units": {"time": unit}}, function="load"))
+        contents["warning"] = f"{cause}; {advice}"
     assumed, left_out = (recording.metadata.get(key) for key in ("assumed_units", "left_out"))
     if assumed and isinstance(assumed, list | tuple):
         contents["SI units assumed"] = ", ".join(map(str, assumed))

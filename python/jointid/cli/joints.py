@@ -110,8 +110,9 @@ def _check(arguments: argparse.Namespace) -> None:
                 "this is for one joint; name it with --joints",
                 argument="n" if name == "bootstrap" else name,
             )
-    if arguments.drop_copies:
-        raise InputError("this is for one joint", argument="drop_copies", value=True)
+    for name in ("drop_copies", "drop_invalid"):
+        if getattr(arguments, name):
+            raise InputError("this is for one joint", argument=name, value=True)
     save = arguments.save
     if save is not None and save.suffix != ".json":
         raise InputError(

@@ -14,6 +14,7 @@ _READING = {
     "topic": "--topic",
     "group": "--group",
     "drop_copies": "--drop-copies",
+    "drop_invalid": "--drop-invalid",
     "extra": "--extra",
 }
 _IDENTIFICATION = {
@@ -145,7 +146,15 @@ FILES: Mapping[str, str] = {
 
 FLAGS = frozenset(
     {
-        *("--drop-copies", "--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run"),
+        *(
+            "--drop-copies",
+            "--drop-invalid",
+            "--resume",
+            "--tracking",
+            "--standard-errors",
+            "--emulate",
+            "--dry-run",
+        ),
         *("--selftest", "--causes", "--unknown-friction", "--json", "--watchdog", "--approximate"),
     }
 )

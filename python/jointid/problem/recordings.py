@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.joint.joint import Joint
+from jointid.recording.plausibility import TIME_UNITS, time_unit
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -81,16 +82,6 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
             )
         _check_magnitudes(run, place)
     return runs
-
-
-TIME_UNITS = {"ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds"}
-_USUAL = 0.05  # [s]: the longest period that a unit is guessed for
-
-
-def time_unit(period: float) -> str:
-    """Return the unit in which stamps that are `period` apart give a usual sample period."""
-    factors = {"ms": 1e-3, "us": 1e-6}
-    return next((unit for unit, factor in factors.items() if period * factor <= _USUAL), "ns")
 
 
 def _check_magnitudes(run: Recording, place: str) -> None:

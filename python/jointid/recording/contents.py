@@ -13,6 +13,7 @@ from jointid.base.errors import InputError
 from jointid.recording.attributes import check_kind, check_torque_hold
 from jointid.recording.column_lookup import column_index
 from jointid.recording.columns import Column
+from jointid.recording.damaged_rows import DROP, checked_rows, few, sound_rows
 from jointid.recording.extra import UNITS_KEY, ExtraColumn, extra_columns
 from jointid.recording.matching import match_columns
 from jointid.recording.plausibility import too_large
@@ -76,17 +77,7 @@ class Contents:
         InputError
             The signals are not finite, too short, or time does not increase.
         """
-        signals = {
-            signal: column.to_si(values if rows is None else values[rows])
-            for (signal, column), values in zip(
-                self.found.items(), self.values.values(), strict=True
-            )
-        }
-
-        extra = {
-            name: column.to_si(values if rows is None else values[rows])
-            for name, (column, values) in self.extra.items()
-        }
+        signals, extra = self._in_si(rows)
 
         def place(signal: str, index: int) -> str:
             row = index if rows is None else int(rows[index])
@@ -98,18 +89,19 @@ class Contents:
         try:
             check_signals(every, place=place, source=self.table.source, time_remedy=time_remedy)
         except InputError as error:
+            advised = _with_drop(error, every) if "finite" in error.reason else error
             if error.argument in MOTION and self.table.saved is None:
-                raise with_remedy(error, error.argument) from None
-            raise
+                advised = with_remedy(advised, error.argument)
+            raise advised from None
         if self.table.saved is None and (large := too_large(signals)) is not None:
             signal, index = large
-            raise InputError(
+            damaged = InputError(
                 "no joint has such a value; it is damaged, or stands for a value that is missing",
                 argument=signal,
                 value=float(signals[signal][index]),
                 place=place(signal, index),
-                remedy="leave such rows out",
             )
+            raise _with_drop(damaged, every)
         fields = {**self.saved, **signals, "kind": self.kind}
         if extra:
             fields["extra"] = extra
@@ -119,6 +111,36 @@ class Contents:
         if units and isinstance(fields.get("metadata", {}), Mapping):
             fields["metadata"] = {**fields.get("metadata", {}), UNITS_KEY: units}
         return fields
+
+    def sound_rows(self, rows: Rows | None = None) -> tuple[Rows, int]:
+        """Return the rows without damaged values, of all or of some, and how many have one.
+
+        Raises
+        ------
+        InputError
+            More than a tenth of the rows has one, or columns have different lengths.
+        """
+        signals, extra = self._in_si(rows)
+        every = signals | {f"extra.{name}": values for name, values in extra.items()}
+        if len({len(values) for values in every.values()}) > 1:
+            check_signals(every, source=self.table.source)
+        sound = sound_rows(every)
+        kept = checked_rows(sound, self.table.source)
+        return (kept if rows is None else rows[kept]), len(sound) - len(kept)
+
+    def _in_si(self, rows: Rows | None) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
+        """Return the signals, and the extra signals by their own names."""
+        signals = {
+            signal: column.to_si(values if rows is None else values[rows])
+            for (signal, column), values in zip(
+                self.found.items(), self.values.values(), strict=True
+            )
+        }
+        extra = {
+            name: column.to_si(values if rows is None else values[rows])
+            for name, (column, values) in self.extra.items()
+        }
+        return signals, extra
 
     def rows_of(self, by: str | int) -> dict[str, Rows]:
         """Return value → rows that have it in a column, by the first appearance of each value."""
@@ -189,6 +211,18 @@ class Contents:
         metadata |= getattr(self.table, "notes", {})  # how a log of messages was read
         metadata |= self.notes
         return {name: value for name, value in metadata.items() if value}
+
+
+def _with_drop(error: InputError, signals: Mapping[str, FloatArray]) -> InputError:
+    """Return the error of a value with the advice to leave such rows out, where they are few."""
+    advice: str | Action = DROP if few(sound_rows(signals)) else "look at the column and its unit"
+    return InputError(
+        error.reason,
+        argument=error.argument,
+        value=error.value,
+        place=error.place,
+        remedy=(*error.remedy, advice),
+    )
 
 
 def read_contents(

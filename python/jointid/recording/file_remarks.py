@@ -31,6 +31,9 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
         count = metadata.get(name)
         if isinstance(count, int) and count:
             found.append(f"{count} messages {what}")
+    dropped = metadata.get("dropped_rows")
+    if isinstance(dropped, int) and dropped:
+        found.append(f"{dropped} damaged rows are left out")
     cut = metadata.get("cut_samples")
     if isinstance(cut, int) and cut:
         found.append(f"{cut} samples at the ends are left out, where a channel has none")

@@ -12,11 +12,10 @@ from jointid.identification.warnings.check import Check
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_advice
 from jointid.identification.warnings.velocity import MISMATCH
-from jointid.problem.recordings import TIME_UNITS, time_unit
+from jointid.recording.plausibility import slow_stamps
 from jointid.recording.recording import Recording
 
 _MOTOR_SPEED = 2000.0  # [rad/s]: beyond any geared servo motor
-_SLOW = 0.5  # [s]: a sample period in which friction's events are over
 _SWING = 25.0  # [rad] back and forth: four turns
 
 
@@ -24,7 +23,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     gear = abs(evidence.joint.gear_ratio) if evidence.joint is not None else 1.0
     for inspected in evidence.inspections:
         recording, peak = inspected.recording, inspected.found.peak_speed
-        if (slow := slow_stamps(recording)) is not None:
+        if (slow := _slow_stamps(recording)) is not None:
             yield slow
             continue
         agreement = inspected.found.agreement
@@ -60,16 +59,14 @@ def _of_the_motor(recording: Recording) -> bool:
     return recording.metadata.get("side") == "motor"
 
 
-def slow_stamps(recording: Recording) -> Finding | None:
-    """Return what is said about stamps that are probably no seconds; None where they may be."""
-    period = recording.sample_period
-    if period < _SLOW:
+def _slow_stamps(recording: Recording) -> Finding | None:
+    found = slow_stamps(recording.sample_period)
+    if found is None:
         return None
-    unit = time_unit(period)
     return IMPLAUSIBLE_UNITS.finding(
-        f"the samples are {period:.3g} s apart: the time stamps may be in {TIME_UNITS[unit]}",
-        Action("call", {"units": {"time": unit}}, function="load"),
-        evidence={"sample_period": Measured(period, "s")},
+        found[0],
+        Action("call", {"units": {"time": found[1]}}, function="load"),
+        evidence={"sample_period": Measured(recording.sample_period, "s")},
     )
 
 

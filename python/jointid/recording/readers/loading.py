@@ -13,6 +13,7 @@ from jointid.recording.attributes import check_kind
 from jointid.recording.column_lookup import column_index
 from jointid.recording.contents import read_contents
 from jointid.recording.copies import without_copies
+from jointid.recording.damaged_rows import NOTE
 from jointid.recording.readers.reader import Reader
 from jointid.recording.readers.registry import endings, reader_of
 from jointid.recording.recording import Recording
@@ -37,6 +38,7 @@ def load(
     kind: str | None = None,
     torque_hold: str | None = None,
     drop_copies: bool = False,
+    drop_invalid: bool = False,
     name: str | None = None,
     topic: str | None = None,
     group: str | None = None,
@@ -100,6 +102,10 @@ def load(
         Whether rows that repeat all measured signals of the row before are left out, as a logger makes
         them that is faster than the drive's bus. A standstill of more than ten rows stays. Default
         False.
+    drop_invalid : bool
+        Whether rows are left out that have a value which is not finite or larger than any of a joint (1e15): single
+        damaged rows, at most a tenth of all. ``metadata["dropped_rows"]`` says how many, and longer
+        stretches become gaps. Default False.
     name : str, optional
         Default: as saved, else the file's name without its ending.
     topic : str, optional
@@ -138,15 +144,20 @@ def load(
         kind=kind,
         torque_hold=torque_hold,
     )
-    if where:
-        fields = contents.fields(contents.rows_where(where))
-    else:
-        fields = contents.fields(time_remedy=lambda: one_run(contents))
+    rows = contents.rows_where(where) if where else None
+    dropped = 0
+    if drop_invalid:
+        sound, dropped = contents.sound_rows(rows)
+        rows = sound if dropped else rows
+    remedy = (lambda: one_run(contents)) if rows is None else tuple
+    fields = contents.fields(rows, time_remedy=remedy)
     if drop_copies:
         try:
             fields = without_copies(fields)
         except InputError as error:
             raise error.at(str(file)) from None
+    if dropped:
+        fields["metadata"] = {**fields.get("metadata", {}), NOTE: dropped}
     return _recording(file, _of_joint(fields, one, ratio), _named(file, fields, name, one))
 
 

@@ -1,0 +1,49 @@
+"""Rows with a value that is no measurement: refused with the way to leave them out, and left out on demand."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import jointid as jid
+from jointid.base.errors import InputError
+
+
+def written(path: Path, damage: dict[int, str], count: int = 60) -> Path:
+    rows = [
+        f"{0.002 * k:.3f},{np.sin(0.1 * k)},{damage.get(k, str(np.cos(0.1 * k)))}"
+        for k in range(count)
+    ]
+    path.write_text("\n".join(["time_s,position_rad,torque_Nm", *rows, ""]))
+    return path
+
+
+@pytest.mark.parametrize("cell", ["1e300", "nan", "-inf"])
+def test_a_damaged_row_is_left_out_on_demand(cell: str, tmp_path: Path) -> None:
+    path = written(tmp_path / "a.csv", {20: cell})
+    with pytest.raises(InputError, match="load with drop_invalid=True") as caught:
+        jid.load(path)
+    assert "line 22" in str(caught.value)
+    loaded = jid.load(path, drop_invalid=True)
+    assert len(loaded) == 59
+    assert 0.04 not in loaded.time
+    assert loaded.metadata["dropped_rows"] == 1
+    assert not loaded.gaps
+    sound = jid.load(written(tmp_path / "b.csv", {}), drop_invalid=True)
+    assert len(sound) == 60
+    assert "dropped_rows" not in sound.metadata
+
+
+def test_several_damaged_rows_make_a_gap(tmp_path: Path) -> None:
+    path = written(tmp_path / "a.csv", dict.fromkeys(range(30, 34), "nan"))
+    loaded = jid.load(path, drop_invalid=True)
+    (gap,) = loaded.gaps
+    assert gap.duration == pytest.approx(0.01)
+
+
+def test_a_damaged_column_is_not_dropped_row_by_row(tmp_path: Path) -> None:
+    path = written(tmp_path / "a.csv", dict.fromkeys(range(30), "1e300"))
+    with pytest.raises(InputError, match="look at the column and its unit"):
+        jid.load(path)
+    with pytest.raises(InputError, match="30 of 60 rows have a value that no joint has"):
+        jid.load(path, drop_invalid=True)
