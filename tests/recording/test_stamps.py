@@ -172,3 +172,26 @@ def test_absurd_values_are_refused(value: str, column: int, tmp_path: Path) -> N
     message = refusal(path)
     assert "line 7, column" in message
     assert "no joint has such a value" in message
+
+
+@pytest.mark.parametrize(
+    ("cells", "seconds"),
+    [
+        (["01.11.2025 12:26:40.000000", "01.11.2025 12:26:40.002000"], [0.0, 0.002]),
+        (["31.10.2025 23:59:59,5", "01.11.2025 00:00:00,25"], [0.0, 0.75]),
+        (["1.2.2025 9:26:40", "1.2.2025 9:26:41"], [0.0, 1.0]),
+        (["12:26:40.5", "12:26:41", "12:26:41.25"], [0.0, 0.5, 0.75]),
+        (["23:59:59.5", "00:00:00.5"], [0.0, 1.0]),
+        (["31/01/2025 23:59:59", "01/02/2025 00:00:00"], [0.0, 1.0]),
+        (["01/31/2025 23:59:59", "02/01/2025 00:00:00"], [0.0, 1.0]),
+        (["01/02/2025 10:00:00", "01/02/2025 10:00:01"], [0.0, 1.0]),  # either way
+        (["01/02/2025 23:59:59", "02/02/2025 00:00:00"], None),
+        (["12:26:40.5", "now"], None),
+        (["32.01.2025 10:00:00", "32.01.2025 10:00:01"], None),
+    ],
+)
+def test_dates_with_the_day_first_and_clock_times(
+    cells: list[str], seconds: list[float] | None
+) -> None:
+    found = stamps_of(cells, None)
+    assert (found.seconds.tolist() if found else None) == seconds

@@ -15,6 +15,9 @@ _ISO = re.compile(
     r"(\d{4}-\d\d-\d\d)[T ](\d\d:\d\d:\d\d)(?:[.,](\d+))?\s*(Z|UTC|[+-]\d\d(?::?\d\d)?)?",
     re.IGNORECASE,
 )
+_CLOCK = r"(\d{1,2}:\d\d:\d\d)(?:[.,](\d+))?"
+_DAY_FIRST = re.compile(rf"(\d{{1,2}})([./])(\d{{1,2}})\2(\d{{4}}),?[T ]+{_CLOCK}")
+_CLOCK_ALONE = re.compile(_CLOCK)
 _NUMBER = re.compile(r"(-?\d+)(?:[.,](\d+))?")
 _EPOCH = datetime(1970, 1, 1)
 _LONGEST = 25  # digits: more are no stamps
@@ -27,6 +30,7 @@ _PARTS = (
 _SINCE_1970 = {"s": 10, "ms": 13, "us": 16, "ns": 19}
 _FILE_TIME = Unit(name="100 ns", dimension="time", factor=1e-7)
 _SECOND = 10**9
+_DAY = 86400 * _SECOND
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +56,7 @@ def looks_exact(cell: str) -> bool:
     """Whether a cell is a stamp that a float would round, or no number at all but a date with a time."""
     number = _NUMBER.fullmatch(cell.strip())
     if number is None:
-        return _ISO.fullmatch(cell.strip()) is not None
+        return any(each.fullmatch(cell.strip()) for each in (_ISO, _DAY_FIRST, _CLOCK_ALONE))
     whole, fraction = len(number[1].lstrip("-")), len(number[2] or "")
     return 13 <= whole <= _LONGEST or (whole in (9, 10) and whole + fraction >= 16)
 
@@ -60,7 +64,9 @@ def looks_exact(cell: str) -> bool:
 def stamps_of(cells: Sequence[str], unit: Unit | None) -> Stamps | None:
     """Return stamps as seconds since the first, or None for cells that are no such stamps.
 
-    They are subtracted as integers. A time of day without a zone is taken as UTC throughout.
+    They are subtracted as integers. In 01.11.2025 the day is first; 01/11/2025 is read where the month
+    cannot be taken for the day, or all dates are the same. Clock times alone go on after midnight.
+    A time of day without a zone is taken as UTC throughout.
 
     Parameters
     ----------
@@ -75,8 +81,8 @@ def stamps_of(cells: Sequence[str], unit: Unit | None) -> Stamps | None:
     """
     if not cells:
         return None
-    if _ISO.fullmatch(cells[0].strip()):
-        nanoseconds = _of_dates(cells)
+    if looks_exact(cells[0]) and _NUMBER.fullmatch(cells[0].strip()) is None:
+        nanoseconds = _of_any_dates(cells)
         if nanoseconds is None:
             return None
         first = nanoseconds[0]
@@ -131,6 +137,51 @@ def with_fraction(whole: FloatArray, fraction: FloatArray, parts: float) -> Floa
     if len(whole) != len(fraction) or not len(whole) or not plain_parts.all():
         return None
     return np.asarray((whole - whole[0]) + (fraction - fraction[0]) / parts)
+
+
+def _of_any_dates(cells: Sequence[str]) -> list[int] | None:
+    if _ISO.fullmatch(cells[0].strip()):
+        return _of_dates(cells)
+    if _CLOCK_ALONE.fullmatch(cells[0].strip()):
+        return _of_clocks(cells)
+    found = [_DAY_FIRST.fullmatch(cell.strip()) for cell in cells]
+    matches = [each for each in found if each]
+    if len(matches) < len(cells):
+        return None
+
+    def read(day: int, month: int) -> list[int] | None:
+        return _of_dates(
+            [
+                f"{each[4]}-{int(each[month]):02d}-{int(each[day]):02d} {each[5]:0>8}.{each[6] or 0}"
+                for each in matches
+            ]
+        )
+
+    day_first = read(1, 3)
+    if all(each[2] == "." for each in matches):
+        return day_first
+    month_first = read(3, 1)
+    if day_first is None or month_first is None:
+        return day_first or month_first
+    same = all(
+        mine - day_first[0] == other - month_first[0]
+        for mine, other in zip(day_first, month_first, strict=True)
+    )
+    return day_first if same else None
+
+
+def _of_clocks(cells: Sequence[str]) -> list[int] | None:
+    matches = [_CLOCK_ALONE.fullmatch(cell.strip()) for cell in cells]
+    found = _of_dates([f"1970-01-01 {each[1]:0>8}.{each[2] or 0}" for each in matches if each])
+    if found is None or len(found) < len(cells):
+        return None
+    days, before = 0, found[0]
+    for k, each in enumerate(found):
+        if each < before - _DAY // 2:  # midnight; a clock that is set back goes less far
+            days += 1
+        before = each
+        found[k] = each + days * _DAY
+    return found
 
 
 def _of_dates(cells: Sequence[str]) -> list[int] | None:

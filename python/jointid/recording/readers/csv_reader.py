@@ -224,7 +224,9 @@ def _no_number(cell: str) -> str:
     if re.fullmatch(r"[+-]?\d*,\d+", cell):
         return f"{what}; decimal commas are read only where semicolons or tabs separate the cells"
     if re.search(r"\d:\d\d", cell):
-        return f"{what}; clock times are not read, seconds such as 0.25 are expected"
+        if re.search(r"\d/\d", cell):
+            return f"{what}; is it day/month or month/day? write dates like 2025-11-01 12:26:40.5"
+        return f"{what}; clock times are not read among numbers, seconds such as 0.25 are expected"
     return f"{what}; a number such as 0.25 is expected"
 
 
