@@ -169,3 +169,14 @@ def test_mega_asks_whether_milli_is_meant(header: str, tmp_path: Path) -> None:
     loaded = load(path, units={"torque": "mNm"})
     assert loaded.torque is not None
     assert loaded.torque[1] == column(2)[1] / 1000
+
+
+def test_what_cannot_be_a_position_is_not_proposed(tmp_path: Path) -> None:
+    rows = [f"{0.002 * k:.3f},24.1,{1700000000 + k},{k % 7}" for k in range(20)]
+    text = "\n".join(["time_s,data,header.stamp_other,state", *rows])
+    assert "load with columns={'position': 'state'}" in refusal(written(tmp_path / "a.csv", text))
+    text = "\n".join(["time_s,data,header.stamp_other,state", *rows]).replace("state", "name")
+    constant = "\n".join(each.rpartition(",")[0] for each in text.splitlines())
+    message = refusal(written(tmp_path / "b.csv", constant))
+    assert "no column is recognised as position; columns are 'time_s', 'data'" in message
+    assert "load with" not in message

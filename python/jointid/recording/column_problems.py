@@ -138,6 +138,11 @@ def missing(
                 place=table.header_place,
             )
         best = _best(table, signal, possible, found)
+        if not best:
+            return InputError(
+                f"no column is recognised as {signal}; columns are {listed(table.headers)}",
+                place=table.header_place,
+            )
         proposed[signal] = best[0]
         shown += [table.headers[index] for index in best if table.headers[index] not in shown]
     if not any(found.of.get(signal) or signal in proposed for signal in TORQUES):
@@ -210,7 +215,12 @@ def _possible(table: Table, signal: str, taken: set[int], kind: str | None) -> l
     found = []
     for index, header in enumerate(table.headers):
         unit = understood(header).unit
-        if index not in taken and (unit is None or unit.dimension in dimensions(signal, kind)):
+        stamp = signal != "time" and any(part in plain(header) for part in ("stamp", "nanosec"))
+        if (
+            index not in taken
+            and not stamp
+            and (unit is None or unit.dimension in dimensions(signal, kind))
+        ):
             found.append(index)
     return found
 
@@ -220,8 +230,21 @@ def _best(table: Table, signal: str, possible: list[int], found: Candidates) -> 
     of_joints = [column.index for column in found.of_joints.get(signal, ())]
     likely = _likely(table, signal, possible)
     unrecognised = [k for k in possible if understood(table.headers[k]).meaning is None]
-    best = [k for k in of_joints if k in possible] or likely or unrecognised or possible
+    best = [k for k in of_joints if k in possible] or likely
+    if not best and signal == "position":  # no word of the headers speaks for any
+        best = [k for k in unrecognised or possible if _moves(table, k)]
+    elif not best:
+        best = unrecognised or possible
     return sorted(best, key=lambda k: any(part in plain(table.headers[k]) for part in _UNLIKELY))
+
+
+def _moves(table: Table, index: int) -> bool:
+    try:
+        (values,) = table.numbers([index])
+    except InputError:
+        return False
+    values = values[np.isfinite(values)][:_ROWS]
+    return len(values) > 0 and float(values.max()) > float(values.min())
 
 
 def _likely(table: Table, signal: str, possible: list[int]) -> list[int]:
