@@ -104,6 +104,18 @@ def test_info_says_that_stamps_may_be_milliseconds(
     assert "duration [s]: 0.098" in said
 
 
+def test_info_lists_columns_that_are_not_recognised(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "run.csv"
+    tags = [f"tag_{k}" for k in range(15)]
+    rows = "".join(f"{k / 500},{k % 7},{k % 5}{',0' * 15}\n" for k in range(50))
+    path.write_text(f"time_s,position_rad,torque_Nm,{','.join(tags)}\n{rows}")
+    assert main(["info", str(path)]) == 0
+    shown = ", ".join(tags[:12])
+    assert f"columns not recognised: {shown} and 3 more" in capsys.readouterr().out
+
+
 def test_identify_takes_several_recordings(
     tmp_path: Path, thesis_file: str, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -180,3 +180,10 @@ def test_what_cannot_be_a_position_is_not_proposed(tmp_path: Path) -> None:
     message = refusal(written(tmp_path / "b.csv", constant))
     assert "no column is recognised as position; columns are 'time_s', 'data'" in message
     assert "load with" not in message
+
+
+def test_german_words(tmp_path: Path) -> None:
+    text = lines("Zeit [s],Winkel [rad],Drehmoment [Nm],Geschwindigkeit [rad/s]")
+    loaded = load(written(tmp_path / "a.csv", text))
+    assert not loaded.velocity_derived
+    assert loaded.velocity.tolist() == column(3)

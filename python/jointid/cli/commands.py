@@ -184,6 +184,8 @@ def info(arguments: argparse.Namespace) -> None:
     """Show what a recording holds."""
     (recording,) = load_all([arguments.recording], arguments)
     contents = _contents(recording, Wording.of(arguments))
+    if names := _unrecognised(arguments):
+        contents["columns not recognised"] = names
     if arguments.json:
         print(json.dumps(contents, indent=1, ensure_ascii=False))
         return
@@ -196,6 +198,24 @@ def info(arguments: argparse.Namespace) -> None:
                 )
         else:
             print(f"{label}: {value}")
+
+
+def _unrecognised(arguments: argparse.Namespace) -> str:
+    """The columns that no option names and whose headers name no signal, the first twelve of them."""
+    from jointid.recording.headers import understood
+    from jointid.recording.readers.loading import table_of
+
+    table = table_of(arguments.recording, topic=arguments.topic, group=arguments.group)
+    if table.saved is not None:
+        return ""
+    named = {header for _, header in (*arguments.column, *arguments.extra)}
+    names = [
+        header
+        for k, header in enumerate(table.headers)
+        if understood(header).meaning is None and not named & {header, str(k)}
+    ]
+    more = f" and {len(names) - 12} more" if len(names) > 12 else ""
+    return ", ".join(names[:12]) + more
 
 
 def _joint(arguments: argparse.Namespace) -> Joint | None:

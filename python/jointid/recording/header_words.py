@@ -13,9 +13,9 @@ _QUANTITIES: dict[str, str] = {
     word: quantity
     for quantity, words in {
         "position": "position positions pos angle angles q theta winkel",
-        "velocity": "velocity velocities vel velo speed omega dq qd qdot dtheta",
+        "velocity": "velocity velocities vel velo speed omega dq qd qdot dtheta geschwindigkeit drehzahl",
         "torque": "torque torques tau effort efforts moment drehmoment",
-        "current": "current currents iq",
+        "current": "current currents iq strom",
         "temperature": "temperature temperatures temp temperatur",
     }.items()
     for word in words.split()
