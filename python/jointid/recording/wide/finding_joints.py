@@ -2,11 +2,19 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from jointid.recording.headers import parsed
 from jointid.recording.units import find_unit
-from jointid.recording.wide.words import CARRIERS, KNOWN, NUMBERED, Meaning, meaning_of
+from jointid.recording.wide.words import (
+    CARRIERS,
+    COMMAND,
+    COMPUTED,
+    KNOWN,
+    NUMBERED,
+    Meaning,
+    meaning_of,
+)
 
 _UNIT = re.compile(r"\s*[\[(]\s*[^\[\](){}]*[^\[\](){}\d\s:,][^\[\](){}]*[\])]\s*$")
 _INDEX = re.compile(r"\[(\d+)\]|\((?::,)?(\d+)(?:,:)?\)")
@@ -100,9 +108,11 @@ def _indexed(index: int, header: str) -> JointHeader | None:
     start = place.start(1) if place[1] else place.start(2)
     pattern = f"{stem[:start]}{_MARK}{stem[start + len(number) :]}{unit}"
     shown = f"{stem[: place.start()]}{stem[place.end() :]}"
-    # What stands before the last point or slash is where the signal comes from.
-    shown = re.split(r"[./]", shown)[-1]
-    return _column(index, number, f"{shown}{unit}", pattern)
+    # What stands before the last point or slash is where the signal comes from; it may be a command, or no signal.
+    *path, last = re.split(r"[./]", shown)
+    source = {word.casefold() for part in path for word in _split(_CAMEL.sub("_", part))}
+    column = _column(index, number, "_".join([*sorted(source & COMMAND), f"{last}{unit}"]), pattern)
+    return replace(column, meaning=None) if source & COMPUTED else column
 
 
 def _dotted(index: int, header: str) -> JointHeader | None:

@@ -1,5 +1,6 @@
 """One joint of a table with several: its columns and the shared ones, as a table of a single joint."""
 
+import re
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
@@ -99,15 +100,34 @@ class JointTable:
         return self._table.place(self._indices[column], row)
 
 
-def joints_of(table: Table) -> tuple[str, ...]:
-    """Return the joints that a table's headers name."""
-    return tuple(joint_headers(table.headers))
+def joints_of(table: Table, columns: Columns | None = None) -> tuple[str, ...]:
+    """Return the joints that a table's headers name.
+
+    Parameters
+    ----------
+    table : Table
+    columns : mapping, optional
+        As given to `load`. Where the headers name no joint that fits the position's ``{joint}``, the joints are
+        what stands in its place. Default: none.
+    """
+    named = tuple(joint_headers(table.headers))
+    pattern = columns.get("position") if isinstance(columns, Mapping) else None
+    if not isinstance(pattern, str) or pattern.count(_MARK) != 1:
+        return named
+    before, behind = map(re.escape, pattern.strip().split(_MARK))
+    form = re.compile(f"{before}(.+){behind}", re.IGNORECASE)
+    headers = (*table.headers, *table.other_names)
+    found = [match[1] for header in headers if (match := form.fullmatch(header.strip()))]
+    return named if set(named) & set(found) else tuple(dict.fromkeys(found)) or named
 
 
 def several_joints(table: Table, columns: Columns | None) -> tuple[str, ...]:
     """Return the joints of a table that no call with these columns could mean as one; empty if it could."""
     given = columns or {}
-    if given.get("position") is not None:
+    position = given.get("position")
+    if isinstance(position, str) and _MARK in position:
+        return joints_of(table, given)
+    if position is not None:
         return ()
     if any(ALIASES.get(parsed(header)[0]) == "position" for header in table.headers):
         return ()
@@ -212,11 +232,11 @@ def _only(table: Table, signal: str, found: list[JointHeader]) -> JointHeader:
     )
 
 
-def nothing_named(table: Table, joint: object) -> InputError:
+def nothing_named(table: Table, joint: object, argument: str = "joint") -> InputError:
     """Return the error for a joint in a file whose headers name none."""
     return InputError(
         f"the headers name no joints with a position; they are {listed(table.headers)}",
-        argument="joint",
+        argument=argument,
         value=joint,
         place=table.header_place,
         remedy="headers such as joint1_position, position.1 or elbow.position name a joint",
