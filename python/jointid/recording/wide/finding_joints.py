@@ -86,14 +86,14 @@ def _without_unit(header: str) -> tuple[str, str]:
     return header[:cut], header[cut:]
 
 
-def _words(header: str) -> tuple[str, ...]:
+def words_of(header: str) -> tuple[str, ...]:
     """The words of a header without its unit."""
     name, _, _ = parsed(_CAMEL.sub("_", header) if find_unit(header) is None else header)
     return tuple(word for word in name.split("_") if word)
 
 
 def _column(index: int, joint: str, shown: str, pattern: str) -> JointHeader:
-    meaning = meaning_of(_words(shown))
+    meaning = meaning_of(words_of(shown))
     return JointHeader(index=index, joint=joint, header=shown, pattern=pattern, meaning=meaning)
 
 
@@ -125,11 +125,11 @@ def _dotted(index: int, header: str) -> JointHeader | None:
             continue
         pattern = f"{before[: len(before.rstrip()) - len(name)]}{_MARK}{found}{behind}{unit}"
         column = _column(index, name, f"{behind}{unit}", pattern)
-        if column.meaning and not set(_words(name)) <= KNOWN:
+        if column.meaning and not set(words_of(name)) <= KNOWN:
             return column
         joint = behind.strip()
         other = _column(index, joint, f"{before}{unit}", f"{before}{found}{_MARK}{unit}")
-        named = joint and not joint.isdigit() and not set(_words(joint)) <= KNOWN
+        named = joint and not joint.isdigit() and not set(words_of(joint)) <= KNOWN
         if other.meaning and named and find_unit(joint) is None:
             return other
     return None

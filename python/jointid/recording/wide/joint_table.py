@@ -11,8 +11,8 @@ from jointid.recording.column_lookup import column_index, listed
 from jointid.recording.headers import ALIASES, parsed
 from jointid.recording.signals import FloatArray, check_signal_name, dimensions
 from jointid.recording.table import Table, first_cell
-from jointid.recording.wide.finding_joints import JointHeader, joint_headers
-from jointid.recording.wide.words import JOINT, MOTOR
+from jointid.recording.wide.finding_joints import JointHeader, joint_headers, words_of
+from jointid.recording.wide.words import COMMAND, JOINT, MOTOR, TORQUES
 
 Columns = Mapping[str, str | int | None]
 _MARK = "{joint}"
@@ -77,7 +77,9 @@ class JointTable:
         self.other_names = {table.headers[index]: place[index] for index in self._indices} | {
             name: place[index] for name, index in table.other_names.items() if index in place
         }
-        self.notes: Mapping[str, Any] = getattr(table, "notes", {})
+        self.notes: dict[str, Any] = dict(getattr(table, "notes", {}))
+        if not {"torque", "motor_torque"} & set(chosen):
+            self.notes |= _commanded_torque(mine)
         saved = table.saved
         self.saved: Mapping[str, Any] | None = (
             None if saved is None else {key: saved[key] for key in saved if key != "robot"}
@@ -201,6 +203,18 @@ def _chosen(
         if fitting:
             chosen[name] = _only(table, name, fitting).index
     return chosen, side
+
+
+def _commanded_torque(mine: list[JointHeader]) -> dict[str, str]:
+    """Return the header of a commanded torque that is not read, for the message that a torque is missing."""
+    commanded = [
+        each.pattern
+        for each in mine
+        if (words := set(words_of(each.header))) & COMMAND
+        and words & TORQUES
+        and words <= COMMAND | TORQUES
+    ]
+    return {"commanded_torque": commanded[0]} if len(commanded) == 1 else {}
 
 
 def _readable(column: JointHeader) -> bool:

@@ -38,6 +38,8 @@ NUMBERED = frozenset(_NOUNS) | _MOTOR | _LINK | COMMAND | _NEUTRAL | {"j", "a"}
 """Words that a joint's number may follow without anything between: q3, joint3, A1."""
 CARRIERS = frozenset(("joint", "axis", "achse", "dof", "j", "a"))
 """Words that say no more than that a joint's number follows."""
+TORQUES = frozenset(("moment", "moments", "torque", "torques", "joint", "joints"))
+"""Words of a commanded torque, as far as it is not read by itself."""
 COMPUTED = frozenset(("error", "errors", "err", "output", "limit", "limits", "min", "max"))
 """Words that name the part of a message that is not measured: a controller's error and output."""
 _RANKS = 3
