@@ -171,6 +171,15 @@ def test_one_of_several_estimates(
         jid.export(found, header)  # type: ignore[arg-type]
 
 
+def test_a_term_without_its_column(arm: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Nobody typed --extra."""
+    for joints in ("1", "all"):
+        code, _, error = ran(capsys, "identify", arm, "--joints", joints, "--term", "q9=inertia")
+        assert code == 2
+        assert "--term q9: no such header" in error
+        assert "--extra" not in error
+
+
 def text_log(path: Path, headers: list[str], columns: list[npt.ArrayLike]) -> Path:
     np.savetxt(path, np.column_stack(columns), delimiter=",", header=",".join(headers), comments="")
     return path
