@@ -42,6 +42,7 @@ def test_all_joints(arm: Path, capsys: pytest.CaptureFixture[str], tmp_path: Pat
     text = page.read_text(encoding="utf-8")
     assert text.count("data:image/png;base64,") == 4
     assert '<h2 id="joint-2">Joint 2</h2>' in text
+    assert '<a href="#joint-2">2</a>' in text
     assert "joint 2&#x27;s speed explains" in text
 
 
@@ -144,6 +145,39 @@ def test_a_number_that_names_no_joint(capsys: pytest.CaptureFixture[str], tmp_pa
     assert ran(capsys, "info", path, "--joints", "elbow_joint")[0] == 0
     code, _, error = ran(capsys, "identify", path, "--joints", "3,elbow_joint")
     assert (code, "load with --joints elbow_joint (or another one)" in error) == (2, True)
+
+
+def test_one_of_several_estimates(
+    arm: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """Exported and reported; what is advised can be pasted."""
+    found = jid.identify_joints(jid.load_robot(arm), couplings=False)
+    found.save(saved := tmp_path / "robot.json")
+    header, page = tmp_path / "friction.h", tmp_path / "page.html"
+    for command in (("export", saved, "--to", header), ("report", saved, "--output", page)):
+        code, _, error = ran(capsys, *command)
+        assert code == 2
+        assert "estimates of 2 joints (1, 2)" in error
+        assert "load with --joints 1 (or another one)" in error
+        assert ran(capsys, *command, "--joints", "2")[0] == 0
+        code, _, error = ran(capsys, *command, "--joints", "7")
+        assert (code, "--joints 7: there is no such joint" in error) == (2, True)
+    jid.export(found["2"], expected := tmp_path / "expected.h")
+    assert header.read_text(encoding="utf-8") == expected.read_text(encoding="utf-8")
+    assert page.is_file()
+    with pytest.raises(
+        jid.InputError, match=r"several joints \(1, 2\).*choose one of them with \['1'\]"
+    ):
+        jid.export(found, header)  # type: ignore[arg-type]
+
+
+def test_a_term_without_its_column(arm: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Nobody typed --extra."""
+    for joints in ("1", "all"):
+        code, _, error = ran(capsys, "identify", arm, "--joints", joints, "--term", "q9=inertia")
+        assert code == 2
+        assert "--term q9: no such header" in error
+        assert "--extra" not in error
 
 
 def text_log(path: Path, headers: list[str], columns: list[npt.ArrayLike]) -> Path:

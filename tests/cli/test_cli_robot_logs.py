@@ -53,6 +53,34 @@ def test_a_group_is_chosen_by_pasting(tmp_path: Path, capsys: pytest.CaptureFixt
     assert main(["info", path, *pasted(capsys.readouterr().err, "--group")]) == 0
 
 
+def test_a_group_and_a_joint_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = str(tmp_path / "demos.h5")
+    with h5py.File(path, "w") as file:
+        for k in range(2):
+            file[f"data/demo_{k}/time"] = np.arange(30.0)
+            file[f"data/demo_{k}/q"] = np.outer(np.arange(30.0), [1.0, 2.0])
+    assert main(["info", path]) == 2
+    error = capsys.readouterr().err
+    assert "--group data/demo_0 --joints 1 (or another joint)" in error
+    pasted_options = [*pasted(error, "--group"), *pasted(error, "--joints")]
+    assert main(["info", path, *pasted_options]) == 0
+
+
+def test_a_topic_and_a_joint_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    both = [joint_state("/joint_states", state) for state in motion(50, ["a", "b"])]
+    both += [joint_state("/gripper", state) for state in motion(40, ["finger"])]
+    path = str(mcap(tmp_path / "run.mcap", in_order(both)))
+    assert main(["info", path]) == 2
+    error = capsys.readouterr().err
+    assert "--topic /joint_states --joints a (or another joint)" in error
+    assert "--topic /gripper\n" in error
+    assert main(["info", path, "--topic", "/joint_states", "--joints", "a"]) == 0
+
+
 def test_what_a_log_lacks_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     states = [
         joint_state("/js", replace(state, stamp=0), late=state.stamp) for state in motion(50, ["a"])

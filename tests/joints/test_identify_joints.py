@@ -4,6 +4,7 @@ import _thread
 import json
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from moving_joints import recorded, sines, torques
 
 import jointid as jid
 from jointid.joints.result import JointResult
+from jointid.joints.tables import value_with_error
 
 
 def coupled(seed: int, strength: float = 1.0) -> jid.RobotRecording:
@@ -71,6 +73,16 @@ def test_a_coupled_pair_is_found_and_named() -> None:
         for text in found.sentences()
     )
     assert not any(each.certain for each in found.results["wrist"].others)
+    unexplained = [
+        each for each in found["elbow"].findings if each.code in ("structured_residual", "poor_fit")
+    ]
+    assert unexplained
+    for finding in unexplained:
+        assert "joint wrist's speed explains" in finding.cause
+        assert "known causes" not in finding.cause
+        assert finding.evidence["explained_by_others"].value == found.results["elbow"].explained
+    alone = jid.identify(coupled(1).joint("elbow"))
+    assert [each.code for each in alone.findings] == [each.code for each in found["elbow"].findings]
 
 
 @pytest.mark.parametrize(
@@ -188,6 +200,23 @@ def test_the_table(found: jid.JointEstimates) -> None:
     assert lines[2].split()[:3] == ["joint", "model", "coulomb"]
     assert [line.split()[0] for line in lines[4:7]] == ["1", "2", "3"]
     assert "±" in lines[4]
+
+
+@pytest.mark.parametrize(
+    ("value", "stderr", "at_bound", "shown"),
+    [
+        (8.676e-13, None, "min", "0 (at bound)"),
+        (8.676e-13, 3.1e-07, None, "0 ± "),
+        (7.74, 0.21, None, "7.74 ± 0.21"),
+        (5.0, None, "max", "5 (at bound)"),
+    ],
+)
+def test_a_value_that_is_nothing_is_shown_as_zero(
+    value: float, stderr: float | None, at_bound: str | None, shown: str, found: jid.JointEstimates
+) -> None:
+    inertia = next(iter(found.values())).parameters["inertia"]
+    changed = replace(inertia, value=value, stderr=stderr, at_bound=at_bound)
+    assert value_with_error(changed).startswith(shown)
 
 
 def test_no_recording_of_a_robot() -> None:

@@ -229,7 +229,7 @@ def load_all(
             for path in paths
         ]
     except InputError as error:
-        raise _of_joints(error) from None
+        raise as_given(_of_joints(error), arguments) from None
 
 
 def how_to_read(arguments: argparse.Namespace, models: Sequence[Model] = ()) -> dict[str, Any]:
@@ -283,6 +283,20 @@ def gear_ratios(arguments: argparse.Namespace) -> list[float] | None:
             "numbers such as 32,45,-48 are expected", argument="gear_ratio", value=text
         )
     return [float(ratio) for ratio in ratios]
+
+
+def as_given(error: InputError, arguments: argparse.Namespace) -> InputError:
+    """An error about an extra signal that only an own term names: on the command line it is the term's."""
+    root, _, name = error.argument.partition(".")
+    if root != "extra" or name not in by_name(
+        "terms", arguments.term if "term" in arguments else []
+    ):
+        return error
+    if name in by_name("extra", arguments.extra):
+        return error
+    return InputError(
+        error.reason, argument="terms", value=name, place=error.place, remedy=error.remedy
+    )
 
 
 def _of_joints(error: InputError) -> InputError:

@@ -167,11 +167,11 @@ def compare(arguments: argparse.Namespace) -> int:
 
 def report(arguments: argparse.Namespace) -> None:
     """Write the HTML report of a saved estimate."""
-    from jointid.estimate.estimate import Estimate
+    from jointid.joints.reading import load_estimate
     from jointid.report.html import save_report
 
     check_page("output", arguments.output)
-    estimate = Estimate.load(arguments.estimate)
+    estimate = load_estimate(arguments.estimate, arguments.joints)
     page = save_report(estimate, arguments.output, action=ADVICE.of_action)
     if arguments.json:
         summary = {"report": str(page), "warnings": [warning.code for warning in estimate.warnings]}

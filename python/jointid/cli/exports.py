@@ -43,6 +43,9 @@ def add_export(commands: Any) -> None:
         + ", ".join(each.name for each in TARGETS),
     )
     export.add_argument(
+        "--joints", metavar="JOINT", help="of the estimates of several joints: which one"
+    )
+    export.add_argument(
         "--into",
         type=Path,
         help="MuJoCo or URDF file whose joint gets the values; all else in it stays, and it may be --to itself",
@@ -69,11 +72,21 @@ def export(arguments: argparse.Namespace) -> None:
     from jointid.exports import exporting
     from jointid.exports.registry import target_of
     from jointid.joint.joint import Joint
+    from jointid.joints.reading import load_estimate
 
     target_of(arguments.to, arguments.target)
     check_folder("path", arguments.to)
     source: Path = arguments.source
-    value = Estimate.load(source) if source.suffix.lower() == ".json" else Joint.load(source)
+    if source.suffix.lower() != ".json" and arguments.joints is not None:
+        raise InputError(
+            "a joint file has one joint",
+            argument="joints",
+            value=arguments.joints,
+            place=str(source),
+        )
+    value: Estimate | Joint
+    saved = source.suffix.lower() == ".json"
+    value = load_estimate(source, arguments.joints) if saved else Joint.load(source)
     findings = value.findings if isinstance(value, Estimate) else ()
     blocking = [each for each in findings if each.severity == "blocking"]
     if blocking:  # as identify refuses to write a joint file: a controller would obey it

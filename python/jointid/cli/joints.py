@@ -6,7 +6,14 @@ import argparse
 from collections.abc import Sequence
 
 from jointid.base.errors import InputError
-from jointid.cli.arguments import fixed_values, gear_ratios, how_to_read, refinements, with_terms
+from jointid.cli.arguments import (
+    as_given,
+    fixed_values,
+    gear_ratios,
+    how_to_read,
+    refinements,
+    with_terms,
+)
 from jointid.cli.outputs import check_folder, check_page
 from jointid.cli.parser import BAD_USAGE
 from jointid.cli.progress import JointsProgress
@@ -48,12 +55,15 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
         joint = Joint.load(arguments.joint)
         merged = model.over(joint.model)
     ratios = gear_ratios(arguments)
-    robot = load_robot(
-        arguments.recordings[0],
-        list(joints) or None,
-        gear_ratio=ratios[0] if ratios is not None and len(ratios) == 1 else ratios,
-        **how_to_read(arguments, [merged]),
-    )
+    try:
+        robot = load_robot(
+            arguments.recordings[0],
+            list(joints) or None,
+            gear_ratio=ratios[0] if ratios is not None and len(ratios) == 1 else ratios,
+            **how_to_read(arguments, [merged]),
+        )
+    except InputError as error:
+        raise as_given(error, arguments) from None
     if of_each:
         wanted = joints or robot.names
         joint = {name: Joint.load(str(arguments.joint).replace(_MARK, name)) for name in wanted}

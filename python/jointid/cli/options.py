@@ -104,9 +104,10 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "duration": "--duration",
         "seed": "--seed",
     },
-    "report": {"output": "--output"},
+    "report": {"output": "--output", "joints": "--joints"},
     "export": {
         "path": "--to",
+        "joints": "--joints",
         "target": "--target",
         "into": "--into",
         "joint_name": "--joint-name",

@@ -196,6 +196,9 @@ def _add_report(commands: Any) -> None:
         "estimate", type=Path, help="estimate (.json), from identify --save or estimate.save"
     )
     report.add_argument(
+        "--joints", metavar="JOINT", help="of the estimates of several joints: which one"
+    )
+    report.add_argument(
         "--output",
         type=Path,
         default=Path("report.html"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
 
 from jointid.base.argument_checks import require_kind, require_path
@@ -77,6 +78,13 @@ def export(
     >>> jid.export(estimate, "arm.xml", into="arm.xml", joint_name="shoulder", approximate=True)  # doctest: +SKIP
     PosixPath('arm.xml')
     """
+    if isinstance(source, Mapping):
+        names = [str(name) for name in source]
+        raise InputError(
+            f"these are the estimates of several joints ({', '.join(names)}); one is expected",
+            argument="source",
+            remedy=f"choose one of them with [{names[0]!r}]" if names else (),
+        )
     require_kind("source", source, Estimate, Joint)
     place = require_path("path", path)
     if target is not None:

@@ -14,14 +14,14 @@ from jointid.estimate.json import write_estimate
 from jointid.joints.result import JointEstimates, JointResult
 
 SCHEMA = 1
-_KIND = "jointid joints"
+KIND = "jointid joints"
 
 
 def document_of(result: JointEstimates) -> dict[str, Any]:
     """Return the result in JSON types; each joint's estimate is the document of its own file."""
     return {
         "schema": SCHEMA,
-        "kind": _KIND,
+        "kind": KIND,
         "name": result.name,
         "seconds": result.seconds,
         "joints": {name: _of_joint(each) for name, each in result.results.items()},

@@ -14,6 +14,7 @@ from jointid.identification.search.search import Search
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter
+from jointid.joints.citing import cited
 from jointid.joints.coupling import shares_of_others
 from jointid.joints.result import FAILED, IDENTIFIED, JointEstimates, JointResult
 from jointid.problem.windows import Windows
@@ -133,7 +134,8 @@ def _with_couplings(
         expected = owed[name] - {share.joint for share in found[name]}
         if expected and each.estimate is not None:
             found[name] = shares_of_others(each.estimate, name, recordings, expected)
-        coupled[name] = replace(each, others=found[name])
+        estimate = None if each.estimate is None else cited(each.estimate, found[name])
+        coupled[name] = replace(each, estimate=estimate, others=found[name])
     return coupled
 
 

@@ -13,6 +13,8 @@ from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import two_digits
 from jointid.joints.result import JointEstimates, JointResult
 
+_NOTHING = 1e-9  # of a free value without an error: what a bound at zero leaves
+_FAR_BELOW = 1e-3  # errors: such a value is nothing
 _NO_COUPLING = "no joint's residual is explained by the others beyond chance"
 
 
@@ -62,12 +64,15 @@ def value_with_error(parameter: ParameterEstimate | None) -> str:
     """A value with its standard error, which decides the digits: ``7.74 ± 0.21``."""
     if parameter is None:
         return "–"
+    bound = " (at bound)" if parameter.at_bound is not None else ""
     if parameter.stderr is None or not 0.0 < parameter.stderr < float("inf"):
         fixed = "" if parameter.vary else " (fixed)"
-        return f"{parameter.value:.4g}{fixed}"
+        tiny = parameter.vary and abs(parameter.value) <= _NOTHING
+        return f"{0.0 if tiny else parameter.value:.4g}{fixed}{bound}"
     error = two_digits(parameter.stderr)
     if "e" in error:
-        return f"{parameter.value:.3g} ± {error}"
+        value = 0.0 if abs(parameter.value) < _FAR_BELOW * parameter.stderr else parameter.value
+        return f"{value:.3g} ± {error}"
     digits = len(error.partition(".")[2])
     return f"{parameter.value:.{digits}f} ± {error}"
 

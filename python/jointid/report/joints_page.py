@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 _WIDE = """
 body { max-width: 76rem; } p, ul { max-width: 56rem; }
 table { font-size: .92rem; } .wide { overflow-x: auto; }
-table.joints td { white-space: nowrap; } table.joints td:last-child { white-space: normal; }
+table.joints td { white-space: nowrap; }
+table.joints td:last-child { white-space: normal; overflow-wrap: anywhere; min-width: 9rem; }
+table.joints th { white-space: normal; }
+@media screen { body { max-width: 96vw; } }
 table.joints td:nth-child(2), table.joints td:nth-child(3) { text-align: left; }
 """
 
@@ -42,6 +45,7 @@ def joints_report(result: JointEstimates, action: Callable[[Action], str] = str)
     body: list[Html | str] = [
         element("h1", title),
         element("p", "Each joint for itself; value ± standard error."),
+        _index(result),
         element("div", html_table(result), class_="wide"),
         element("h2", "Between the joints", id="couplings"),
         element(
@@ -85,6 +89,14 @@ def _of_estimate(estimate: Estimate, action: Callable[[Action], str]) -> list[Ht
         windows_picture(estimate),
         element("div", html_quality(estimate), class_="wide"),
     ]
+
+
+def _index(result: JointEstimates) -> Html:
+    """Links to the joints' sections."""
+    links: list[Html | str] = ["Joints: "]
+    for name in result.results:
+        links += [element("a", name, href=f"#joint-{_slug(name)}"), " "]
+    return element("p", *links, class_="index")
 
 
 def _slug(name: str) -> str:

@@ -3,6 +3,7 @@
 import os
 import re
 from collections.abc import Collection, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from jointid.recording.readers.registry import endings, reader_of
 from jointid.recording.recording import Recording
 from jointid.recording.runs import one_run
 from jointid.recording.table import Table
-from jointid.recording.wide.choosing import OneJoint, one_joint
+from jointid.recording.wide.choosing import OneJoint, also_joints, one_joint
 from jointid.recording.wide.sides import at_joint, checked_ratio
 
 _SURROGATE = re.compile("[\ud800-\udfff]")
@@ -133,7 +134,13 @@ def load(
     >>> elbow = jid.load("arm.mcap", joint="elbow", topic="/joint_states")
     """
     file = require_path("path", path)
-    one = one_joint(table_of(file, topic=topic, group=group, kind=kind), joint, columns, extra)
+    try:
+        table = table_of(file, topic=topic, group=group, kind=kind)
+    except InputError as error:
+        if joint is not None or topic is not None or group is not None:
+            raise
+        raise also_joints(error, partial(table_of, file, kind=kind), columns) from None
+    one = one_joint(table, joint, columns, extra)
     ratio = one.gear_ratio if gear_ratio is None else checked_ratio(gear_ratio)
     contents = read_contents(
         one.table,

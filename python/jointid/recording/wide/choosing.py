@@ -1,13 +1,16 @@
 """One joint of any table: what `load` reads."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
 from jointid.recording.extra import named_extra
 from jointid.recording.table import Table
 from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.joint_table import (
     JointTable,
+    as_given,
     joints_of,
     nothing_named,
     several_joints,
@@ -15,6 +18,8 @@ from jointid.recording.wide.joint_table import (
 )
 from jointid.recording.wide.reading_back import saved_robot
 from jointid.recording.wide.words import JOINT
+
+_TRIED = 2  # parts of a file that are opened to see whether they hold several joints
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,3 +92,41 @@ def one_joint(
         return one
     ratio = None if saved.gear_ratio is None else saved.gear_ratio[saved.names.index(name)]
     return replace(one, side=saved.side, gear_ratio=ratio)
+
+
+def also_joints(
+    error: InputError,
+    opened: Callable[..., Table],
+    columns: Mapping[str, str | int | None] | None,
+) -> InputError:
+    """Return an error that proposes a part of the file with a joint added where that part holds several.
+
+    Otherwise the proposed call would be refused, too.
+
+    Parameters
+    ----------
+    error : InputError
+        That the file cannot be opened without a topic or a group.
+    opened : callable
+        Returns the table of a part, by its argument.
+    columns : mapping or None
+        As given to `load`.
+    """
+    remedies: list[str | Action] = list(error.remedy)
+    for k, action in enumerate(remedies[:_TRIED]):
+        if not isinstance(action, Action) or not {*action.arguments} <= {"topic", "group"}:
+            continue
+        try:
+            several = several_joints(opened(**action.arguments), columns)
+        except InputError:
+            continue
+        if len(several) > 1:
+            arguments = {**action.arguments, "joint": as_given(several[0])}
+            remedies[k] = Action("call", arguments, "or another joint", "load")
+    return InputError(
+        error.reason,
+        argument=error.argument,
+        value=error.value,
+        place=error.place,
+        remedy=tuple(remedies),
+    )

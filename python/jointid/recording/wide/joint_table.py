@@ -146,13 +146,14 @@ def which_joint(table: Table, joints: Sequence[str]) -> InputError:
         f"the file holds {len(joints)} joints ({shown}), and a recording has one",
         place=table.header_place,
         remedy=(
-            Action("call", {"joint": _as_given(joints[0])}, function="load", text="or another one"),
+            Action("call", {"joint": as_given(joints[0])}, function="load", text="or another one"),
             Action("call", {"joints": "all"}, function="load_robot", text="for all of them"),
         ),
     )
 
 
-def _as_given(joint: str) -> str | int:
+def as_given(joint: str) -> str | int:
+    """Return a joint's name as a call has it: a number as a number."""
     return int(joint) if joint.isdigit() and str(int(joint)) == joint else joint
 
 

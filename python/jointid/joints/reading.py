@@ -1,0 +1,60 @@
+"""One joint's estimate from a file, also from one of several joints."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
+from jointid.base.schema import read_text
+from jointid.estimate.estimate import Estimate
+from jointid.joints.document import KIND
+from jointid.recording.wide.joint_names import joint_named
+
+
+def load_estimate(path: Path, joint: str | None = None) -> Estimate:
+    """Return the estimate that a .json file holds, or that of one joint of a file of several.
+
+    Parameters
+    ----------
+    path : Path
+        As `Estimate.save` or `JointEstimates.save` wrote it.
+    joint : str, optional
+        Name or number of the joint. Default: the only one.
+
+    Raises
+    ------
+    InputError
+        No estimate, no such joint, several and none is named, or the joint failed.
+    """
+    try:
+        document = json.loads(read_text(path))
+    except (ValueError, RecursionError):
+        return Estimate.load(path)  # says what is wrong
+    joints = document.get("joints") if isinstance(document, dict) else None
+    if not isinstance(joints, dict) or document.get("kind") != KIND:
+        if joint is not None:
+            raise InputError("the file holds one joint's estimate", argument="joints", value=joint)
+        return Estimate.load(path)
+    if joint is None:
+        if len(joints) != 1:
+            first = next(iter(joints), "1")
+            raise InputError(
+                f"the file holds the estimates of {len(joints)} joints ({', '.join(joints)}), and one is expected",
+                place=str(path),
+                remedy=Action("call", {"joint": first}, "or another one", "load"),
+            )
+        joint = next(iter(joints))
+    name = joint_named(joint, list(joints), "", "joints", "load")
+    found = joints[name]
+    estimate = found.get("estimate") if isinstance(found, dict) else None
+    if estimate is None:
+        reason = found.get("error") if isinstance(found, dict) else None
+        raise InputError(
+            f"joint {name} was not identified: {reason or 'no reason'}", place=str(path)
+        )
+    try:
+        return Estimate.from_json(json.dumps(estimate))
+    except InputError as error:
+        raise error.at(f"{path}: joint {name}") from error
