@@ -2,7 +2,8 @@
 
 Real logs of robots, kept beside the repository, are identified; then stretches of each log are drawn anew (moving
 blocks of several lengths) and the linearised balance is solved for each draw, by other code than
-`estimate.bootstrap()`.
+`estimate.bootstrap()`. The rule that is fixed in advance is that of `bootstrap()`: a block lasts an eighth of the
+motion, but 0.25 to 1 s. The other lengths show what the rule decides.
 """
 
 import argparse
