@@ -2,11 +2,13 @@
 
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import jointid as jid
+from jointid.identification.causes.remedies import advice_against
 from jointid.identification.chosen_model import unfit_in
 from jointid.identification.prepared import prepare
 
@@ -107,12 +109,21 @@ def test_a_sum_that_is_known_says_where_its_width_is_from(held: jid.Recording) -
     assert "(lag)" in line
 
 
-def test_a_held_torque_is_proposed_without_a_velocity() -> None:
-    held = simulated(2)
-    bare = jid.Recording(time=held.time, position=held.position, torque=held.torque)
-    found = jid.identify(bare, model="coulomb_viscous", search="separable")
-    (late,) = [each for each in found.findings if each.code == "delay"]
-    assert late.advice[0].arguments == {"torque_hold": "zoh"}
-    cured = jid.identify(bare, model="coulomb_viscous", torque_hold="zoh", search="separable")
-    assert not [each for each in cured.findings if each.code == "delay"]
-    assert cured.parameters["inertia"].value == pytest.approx(1.6, rel=1e-3)
+@pytest.mark.parametrize(
+    ("early", "torque_hold", "proposed"),
+    [(0.55, None, True), (0.55, "zoh", False), (0.0, None, False), (1.0, None, False)],
+)
+def test_a_held_torque_is_proposed(
+    early: float, torque_hold: str | None, proposed: bool, held: jid.Recording
+) -> None:
+    """A torque early by half a sample is a held one; by no time, or held already, it is not."""
+    problem = prepare(held, None, torque_hold=torque_hold, model="coulomb_viscous").problem
+    late = -early * held.sample_period
+    fit = SimpleNamespace(problem=problem)
+    cause = SimpleNamespace(
+        candidate=SimpleNamespace(name="delay", detail="torque"), coefficients=np.array([late])
+    )
+    advice = advice_against(fit, cause)  # type: ignore[arg-type]
+    calls = [dict(each.arguments) for each in advice if each.kind == "call"]
+    assert calls == ([{"torque_hold": "zoh"}] if proposed else [])
+    assert advice[-1].kind == "inspect"
