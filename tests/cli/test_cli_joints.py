@@ -128,6 +128,22 @@ def test_what_cannot_be_done(
     assert error.count("\n") == 1
 
 
+def test_a_number_that_names_no_joint(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """What is advised can be pasted."""
+    motion = sines(2, 1, duration=2.0)
+    robot = jid.RobotRecording(
+        time=motion.time, position=motion.position, names=["elbow_joint", "wrist_3_joint"]
+    )
+    robot.save(path := tmp_path / "arm.csv")
+    code, _, error = ran(capsys, "info", path, "--joints", "3")
+    assert code == 2
+    assert "there are elbow_joint, wrist_3_joint" in error
+    assert "load with --joints elbow_joint (or another one)" in error
+    assert ran(capsys, "info", path, "--joints", "elbow_joint")[0] == 0
+    code, _, error = ran(capsys, "identify", path, "--joints", "3,elbow_joint")
+    assert (code, "load with --joints elbow_joint (or another one)" in error) == (2, True)
+
+
 def test_the_advice_works(arm: Path, capsys: pytest.CaptureFixture[str]) -> None:
     _, _, error = ran(capsys, "identify", arm)
     assert "--joints 1" in error

@@ -39,7 +39,7 @@ def words_of_action(action: Action, command: str, model: str = "") -> str:
     """
     if action.kind != "call":
         return str(action)
-    if action.function in ("load", "load_robot"):
+    if action.function in ("load", "load_robot", "identify_joints"):
         action = _of_reading(action)
     if action.function == "Joint":
         options: list[str] = []

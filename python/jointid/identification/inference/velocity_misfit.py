@@ -17,7 +17,13 @@ from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
-IMITATED = ("slow_motion", "presliding", "stribeck_exponent", "delay")
+# The last ones are how fast the static excess decays, whatever the speed it decays at.
+IMITATED = (
+    "slow_motion",
+    "presliding",
+    "delay",
+    *(shape.name for shape in _core.shapes() if shape.speed_power == 0.0),
+)
 _DRAWS = 4
 
 

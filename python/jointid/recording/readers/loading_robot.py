@@ -12,9 +12,9 @@ from jointid.recording.contents import read_contents
 from jointid.recording.extra import named_extra
 from jointid.recording.readers.loading import file_name, table_of
 from jointid.recording.signals import FloatArray
+from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.joint_table import (
     JointTable,
-    joint_named,
     joints_of,
     nothing_named,
 )
@@ -180,7 +180,7 @@ def _wanted(
         return list(known)
     if isinstance(joints, str | int):
         joints = [joints]
-    names = [joint_named(each, known, place, "joints") for each in joints]
+    names = [joint_named(each, known, place, "joints", "load_robot") for each in joints]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None or not names:
         raise InputError(

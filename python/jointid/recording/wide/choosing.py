@@ -5,9 +5,9 @@ from dataclasses import dataclass, field, replace
 
 from jointid.recording.extra import named_extra
 from jointid.recording.table import Table
+from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.joint_table import (
     JointTable,
-    joint_named,
     joints_of,
     nothing_named,
     several_joints,
@@ -80,7 +80,7 @@ def one_joint(
     joints = joints_of(table)
     if not joints:
         raise nothing_named(table, joint)
-    name = joint_named(joint, joints, table.header_place)
+    name = joint_named(joint, joints, table.header_place, function="load")
     found = JointTable(table, name, columns or {}, named_extra(extra))
     one = OneJoint(
         table=found,

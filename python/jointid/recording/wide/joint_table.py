@@ -1,6 +1,5 @@
 """One joint of a table with several: its columns and the shared ones, as a table of a single joint."""
 
-import re
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
@@ -9,7 +8,7 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.column_lookup import column_index, listed
 from jointid.recording.headers import ALIASES, parsed
-from jointid.recording.signals import FloatArray, check_signal_name, closest
+from jointid.recording.signals import FloatArray, check_signal_name
 from jointid.recording.table import Table, first_cell
 from jointid.recording.wide.finding_joints import joint_headers
 from jointid.recording.wide.joint_columns import own_columns
@@ -105,48 +104,6 @@ class JointTable:
 def joints_of(table: Table) -> tuple[str, ...]:
     """Return the joints that a table's headers name."""
     return tuple(joint_headers(table.headers))
-
-
-def joint_named(joint: object, joints: Sequence[str], place: str, argument: str = "joint") -> str:
-    """Return the joint that a name or a number names.
-
-    Parameters
-    ----------
-    joint : str or int
-        A name, or a joint's number: 3 is "3", "03", or the only name with the number 3, "joint_3".
-    joints : sequence of str
-    place : str
-        For messages.
-    argument : str
-        What it was given for.
-
-    Raises
-    ------
-    InputError
-        There is no such joint.
-    """
-    if isinstance(joint, bool) or not isinstance(joint, str | int):
-        raise InputError(
-            "a joint's name or number is expected", argument=argument, value=joint, place=place
-        )
-    text = str(joint)
-    if text in joints:
-        return text
-    if text.isdigit():
-        numbered = [
-            each for each in joints if list(map(int, re.findall(r"\d+", each))) == [int(text)]
-        ]
-        if len(numbered) == 1:
-            return numbered[0]
-    near = closest(text, joints)
-    raise InputError(
-        f"there is no such joint; {'the only one is' if len(joints) == 1 else 'there are'} "
-        f"{', '.join(joints) or 'none'}",
-        argument=argument,
-        value=joint,
-        place=place,
-        remedy=f"did you mean {near!r}" if near and not text.isdigit() else (),
-    )
 
 
 def several_joints(table: Table, columns: Columns | None) -> tuple[str, ...]:
