@@ -149,7 +149,7 @@ def test_an_approximation_says_how_far_it_is_off(tmp_path: Path, joint: jid.Join
 
 
 HEAVY = jid.Joint(
-    name="hip", gear_ratio=100.0, rotor_inertia=2e-4, model="coulomb_viscous"
+    name="hip", gear_ratio=100.0, rotor_inertia=2e-4, model=jid.Model("coulomb_viscous")
 ).with_parameters({"coulomb": 300.0, "viscous": 20.0, "inertia": 4.0})
 LEG = """<mujoco><option timestep="0.0005" gravity="0 0 0"/><worldbody><body name="leg">
   <inertial pos="0 0 0" mass="1" diaginertia="2 2 2"/><joint name="hip" axis="0 -1 0"/>
@@ -208,7 +208,12 @@ def test_the_file_is_sound_xml_whatever_the_joint_is_called(tmp_path: Path, endi
     """MuJoCo's reader forgives two dashes in a comment, others do not."""
     path = jid.export(EVERYTHING, tmp_path / f"j{ending}", approximate=True, speed=1.0)
     root = ElementTree.parse(path).getroot()
-    assert EVERYTHING.name in (root.get("model"), root.get("name"))
+    # Names that other tools take; the joint's own stands in the comment.
+    names = [each.get("name") for each in root.iter()] + [root.get("model")]
+    known = [name for name in names if name is not None]
+    assert "joint_1_a_joint_link" in known
+    assert all(re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name) for name in known)
+    assert "1: \u00e4 */ joint" in path.read_text(encoding="utf-8")
 
 
 ARM = """<?xml version="1.0" encoding="utf-8"?>

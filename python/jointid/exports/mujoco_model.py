@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from jointid.exports.identifiers import identifier
 from jointid.exports.inertial import body_of, drive_inertia
 from jointid.exports.nearest import Nearest, nearest_friction
 from jointid.exports.provenance import statements
@@ -28,13 +29,14 @@ _CONSTANT, _SOFTNESS = 0.002, 0.01
 # The same speed with MuJoCo's default solreffriction and solimpfriction, in proportion to ours.
 _USUAL = (0.1 / 0.9) * (0.95 * 0.02) / (_SOFTNESS * _CONSTANT)
 _LEAST_SHARE = 0.02
+_LONGEST = 60  # letters of a name in a file of our own
 
 
 def _write(subject: Subject, order: Order) -> bytes:
     nearest = nearest_friction(subject, approximate=order.approximate, target="mujoco")
     if order.into is not None:
         return _edited(subject, nearest, order.into)
-    return _model(subject, nearest, order.name).encode()
+    return _model(subject, nearest, identifier(order.name, longest=_LONGEST)).encode()
 
 
 def loss_notes(subject: Subject, nearest: Nearest) -> list[str]:
@@ -43,6 +45,8 @@ def loss_notes(subject: Subject, nearest: Nearest) -> list[str]:
         return []
     unit = subject.torque_unit
     notes = [f"lost: {each}" for each in nearest.lost]
+    if nearest.speed is None:  # the friction itself is exact
+        return notes
     loads = any(each.basis == "load" for each in subject.law.friction)
     return [
         *notes,
@@ -143,7 +147,7 @@ def _model(subject: Subject, nearest: Nearest, name: str) -> str:
         '  <compiler angle="radian"/>',
         f'  <option timestep="{_STEP!r}" integrator="implicitfast" gravity="0 0 {0.0 - body.gravity!r}"/>',
         "  <worldbody>",
-        f"    <body name={attribute(f'{name} link')}>",
+        f"    <body name={attribute(f'{name}_link')}>",
         f'      <inertial pos="{x!r} 0 {z!r}" mass="{body.mass!r}" diaginertia="{body.inertia!r} {body.inertia!r}'
         f' {body.inertia!r}"/>',
         f'      <joint name={attribute(name)} type="{kind}" axis="{axis}" damping="{nearest.slope!r}"'
@@ -170,10 +174,10 @@ def _actuator(subject: Subject, name: str) -> str:
     if limit is not None:
         text += f' ctrllimited="true" ctrlrange="{-limit / abs(gear)!r} {limit / abs(gear)!r}"'
     if not offset:
-        return f"<motor name={attribute(f'{name} motor')} {text}/>"
+        return f"<motor name={attribute(f'{name}_motor')} {text}/>"
     # A constant torque against the drive, behind its limit.
     bias = f'gaintype="fixed" gainprm="1" biastype="affine" biasprm="{-offset / gear!r} 0 0"'
-    return f"<general name={attribute(f'{name} motor')} {text} {bias}/>"
+    return f"<general name={attribute(f'{name}_motor')} {text} {bias}/>"
 
 
 def _creep(subject: Subject, nearest: Nearest) -> float:

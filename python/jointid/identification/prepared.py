@@ -286,7 +286,7 @@ def prepare(
             problem, penalty, parameters, windows, residual is not None
         )
         domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
-        refuse_duplicates(penalty, domain, problem.choice.model.resolved.terms)
+        refuse_duplicates(problem, penalty, domain)
     except InputError as error:
         if error.place == "parameters":  # they are not excited
             raise_if_hardly_moving(runs)

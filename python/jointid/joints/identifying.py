@@ -188,6 +188,8 @@ def _described(
     if joint is None:
         if recording.sensor is not None:
             return None  # the recording says that there is a sensor, and no joint contradicts it
+        if recording.torque is None:
+            return None  # no joint says what a torque of the motor is at the joint
         joint = Joint(kind=recording.kind)
     changes: dict[str, Any] = {} if joint.name else {"name": f"joint {name}"}
     if robot.gear_ratio is not None and joint.gear_ratio == 1.0:

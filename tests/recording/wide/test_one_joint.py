@@ -167,6 +167,20 @@ def test_two_positions_are_refused_with_a_line_to_paste(tmp_path: Path) -> None:
     np.testing.assert_array_equal(loaded.position, columns["encoder_pos_1_rad"])
 
 
+def test_joints_where_only_a_pattern_names_them(tmp_path: Path) -> None:
+    headers = ["t", "Foo<1>", "Foo<2>", "Bar<1>", "Bar<2>"]
+    path, columns = written(tmp_path, headers)
+    given = {"position": "Foo<{joint}>", "torque": "bar<{joint}>"}
+    loaded = jid.load(path, joint=2, columns=given)
+    np.testing.assert_array_equal(loaded.position, columns["Foo<2>"])
+    np.testing.assert_array_equal(loaded.torque, columns["Bar<2>"])
+    assert jid.load_robot(path, columns=given).names == ("1", "2")
+    with pytest.raises(jid.InputError, match=r"2 joints \(1, 2\)"):
+        jid.load(path, columns=given)
+    with pytest.raises(jid.InputError, match=r"joints is 'all': the headers name no"):
+        jid.load_robot(path)
+
+
 def test_a_column_number_is_that_of_the_file(tmp_path: Path) -> None:
     path, columns = written(tmp_path, ["t", "q1", "q2", "tau1", "tau2", "spare"])
     loaded = jid.load(path, joint=2, columns={"torque": 5})

@@ -22,7 +22,12 @@ IMITATED = (
     "slow_motion",
     "presliding",
     "delay",
-    *(shape.name for shape in _core.shapes() if shape.speed_power == 0.0),
+    *dict.fromkeys(
+        name
+        for term in _core.terms()
+        for name in term.shapes
+        if term.friction and _core.shape(name).speed_power == 0.0
+    ),
 )
 _DRAWS = 4
 

@@ -88,9 +88,9 @@ def load_robot(
         columns or units or scale or where or kind or torque_hold or extra
     ):
         return _changed(whole, joints, gear_ratio, name)
-    known = joints_of(table)
+    known = joints_of(table, columns)
     if not known:
-        raise nothing_named(table, "all" if joints is None else joints)
+        raise nothing_named(table, "all" if joints is None else joints, "joints")
     names = _wanted(joints, known, table.header_place)
     wanted = named_extra(extra)
     tables = [JointTable(table, each, columns or {}, wanted) for each in names]

@@ -77,7 +77,7 @@ def one_joint(
         if len(several) > 1:
             raise which_joint(table, several)
         joint = several[0]
-    joints = joints_of(table)
+    joints = joints_of(table, columns)
     if not joints:
         raise nothing_named(table, joint)
     name = joint_named(joint, joints, table.header_place, function="load")

@@ -1,5 +1,6 @@
 """One joint of a table with several: its columns and the shared ones, as a table of a single joint."""
 
+import re
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
@@ -10,8 +11,9 @@ from jointid.recording.column_lookup import column_index, listed
 from jointid.recording.headers import ALIASES, parsed
 from jointid.recording.signals import FloatArray, check_signal_name
 from jointid.recording.table import Table, first_cell
-from jointid.recording.wide.finding_joints import joint_headers
+from jointid.recording.wide.finding_joints import JointHeader, joint_headers, words_of
 from jointid.recording.wide.joint_columns import own_columns
+from jointid.recording.wide.words import COMMAND, TORQUES
 
 Columns = Mapping[str, str | int | None]
 _MARK = "{joint}"
@@ -78,7 +80,9 @@ class JointTable:
         self.other_names = {table.headers[index]: place[index] for index in self._indices} | {
             name: place[index] for name, index in table.other_names.items() if index in place
         }
-        self.notes: Mapping[str, Any] = getattr(table, "notes", {})
+        self.notes: dict[str, Any] = dict(getattr(table, "notes", {}))
+        if not {"torque", "motor_torque"} & set(chosen):
+            self.notes |= _commanded_torque(mine)
         saved = table.saved
         self.saved: Mapping[str, Any] | None = (
             None if saved is None else {key: saved[key] for key in saved if key != "robot"}
@@ -101,15 +105,34 @@ class JointTable:
         return self._table.place(self._indices[column], row)
 
 
-def joints_of(table: Table) -> tuple[str, ...]:
-    """Return the joints that a table's headers name."""
-    return tuple(joint_headers(table.headers))
+def joints_of(table: Table, columns: Columns | None = None) -> tuple[str, ...]:
+    """Return the joints that a table's headers name.
+
+    Parameters
+    ----------
+    table : Table
+    columns : mapping, optional
+        As given to `load`. Where the headers name no joint that fits the position's ``{joint}``, the joints are
+        what stands in its place. Default: none.
+    """
+    named = tuple(joint_headers(table.headers))
+    pattern = columns.get("position") if isinstance(columns, Mapping) else None
+    if not isinstance(pattern, str) or pattern.count(_MARK) != 1:
+        return named
+    before, behind = map(re.escape, pattern.strip().split(_MARK))
+    form = re.compile(f"{before}(.+){behind}", re.IGNORECASE)
+    headers = (*table.headers, *table.other_names)
+    found = [match[1] for header in headers if (match := form.fullmatch(header.strip()))]
+    return named if set(named) & set(found) else tuple(dict.fromkeys(found)) or named
 
 
 def several_joints(table: Table, columns: Columns | None) -> tuple[str, ...]:
     """Return the joints of a table that no call with these columns could mean as one; empty if it could."""
     given = columns or {}
-    if given.get("position") is not None:
+    position = given.get("position")
+    if isinstance(position, str) and _MARK in position:
+        return joints_of(table, given)
+    if position is not None:
         return ()
     if any(ALIASES.get(parsed(header)[0]) == "position" for header in table.headers):
         return ()
@@ -150,11 +173,23 @@ def _extra_index(table: Table, column: str | int, joint: str, name: str) -> int:
     return column_index(table, header, f"extra.{name}")
 
 
-def nothing_named(table: Table, joint: object) -> InputError:
+def _commanded_torque(mine: list[JointHeader]) -> dict[str, str]:
+    """Return the header of a commanded torque that is not read, for the message that a torque is missing."""
+    commanded = [
+        each.pattern
+        for each in mine
+        if (words := set(words_of(each.header))) & COMMAND
+        and words & TORQUES
+        and words <= COMMAND | TORQUES
+    ]
+    return {"commanded_torque": commanded[0]} if len(commanded) == 1 else {}
+
+
+def nothing_named(table: Table, joint: object, argument: str = "joint") -> InputError:
     """Return the error for a joint in a file whose headers name none."""
     return InputError(
         f"the headers name no joints with a position; they are {listed(table.headers)}",
-        argument="joint",
+        argument=argument,
         value=joint,
         place=table.header_place,
         remedy="headers such as joint1_position, position.1 or elbow.position name a joint",
