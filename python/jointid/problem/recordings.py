@@ -64,6 +64,20 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
                 place=place,
                 remedy=Action("call", {"units": {"time": unit}}, function="load"),
             )
+        travel = np.ptp(run.position)
+        if not run.velocity_derived and not run.velocity.any() and travel > 0.0:
+            raise InputError(
+                f"it is 0 throughout, as if the joint never moved, but the position changes by {travel:.3g}: "
+                "drivers that do not measure it log zeros",
+                argument="velocity",
+                place=place,
+                remedy=Action(
+                    "call",
+                    {"columns": {"velocity": None}},
+                    function="load",
+                    text="the velocity is then derived from the position",
+                ),
+            )
         if len(run.gaps) > _MOST_GAPS * len(run):
             raise InputError(
                 f"{100 * len(run.gaps) / len(run):.0f} % of its sample intervals are gaps, as when a bus delivers "

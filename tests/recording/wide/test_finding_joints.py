@@ -94,8 +94,11 @@ def test_a_controllers_state() -> None:
     found = joint_headers(
         [f"{part}.{signal}[0]" for part in parts for signal in ("positions", "effort")]
     )
-    meant = [each.meaning and (each.meaning.signal, each.meaning.rank) for each in found["0"]]
-    assert meant == [("reference", 0), ("torque", 3), ("position", 0), ("torque", 0), *[None] * 4]
+    meant = [each.meaning and (each.meaning.signal, each.meaning.asked) for each in found["0"]]
+    assert meant == [
+        *[("reference", False), ("torque", True), ("position", False), ("torque", False)],
+        *[None] * 4,
+    ]
 
 
 def test_side_and_pattern_of_a_column() -> None:

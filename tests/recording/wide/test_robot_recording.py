@@ -156,3 +156,12 @@ def test_wide_file_to_robot(tmp_path: Path) -> None:
     assert jid.load_robot(path, "all").names == ("1", "2")
     with pytest.raises(jid.InputError, match="twice"):
         jid.load_robot(path, [2, "2"])
+
+
+def test_rows_of_a_saved_recording_keep_its_side(tmp_path: Path) -> None:
+    path = tmp_path / "arm.csv"
+    whole = robot(side="motor", gear_ratio=[10.0, -20.0, 1.0], extra={"run": ARRAY[:, 0] * 0 + 1})
+    whole.save(path)
+    kept = jid.load_robot(path, ["b", "a"], where={"extra_run": 1})
+    assert (kept.side, kept.gear_ratio) == ("motor", (-20.0, 10.0))
+    np.testing.assert_array_equal(kept["b"].position, whole["b"].position)

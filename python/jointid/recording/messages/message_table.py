@@ -7,9 +7,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.messages.collecting import Collected
 from jointid.recording.messages.joints import Column, is_joint_kind, unit_of
+from jointid.recording.messages.publishers import jump_between_publishers
 from jointid.recording.messages.rows import Rows, rows_of
 from jointid.recording.messages.topic import Topic
 from jointid.recording.signals import FloatArray
@@ -73,7 +75,7 @@ class MessageTable:
         Raises
         ------
         InputError
-            Such a row does not hold all of them.
+            Such a row does not hold all of them, or two nodes published the same joint.
         """
         kept = self._rows_with(columns)
         self._shown = kept
@@ -81,6 +83,7 @@ class MessageTable:
         for column in columns:
             values = self._values(column)
             values = values if kept is None else values[kept]
+            self._check_publisher(column, values)
             values.flags.writeable = False
             found.append(values)
         return found
@@ -126,8 +129,21 @@ class MessageTable:
         if lacking.any():
             row = int(np.argmax(lacking.any(axis=0)))
             missing = numbers[int(np.argmax(lacking[:, row]))]
-            raise self._without(missing, int(kept[row]))
+            raise self._without(missing, int(kept[row]), wanted)
         return kept
+
+    def _check_publisher(self, column: int, values: FloatArray) -> None:
+        """Refuse positions of two publishers: the messages do not say whose each is."""
+        if column <= LOG_TIME or self._columns[column - 2][1] != "position":
+            return
+        jump = jump_between_publishers(values)
+        if jump is not None:
+            raise InputError(
+                f"the position jumps by {jump:.3g} and back from message to message, as where two nodes publish the "
+                "same joint on one topic",
+                place=f"{self.source}, column {self.headers[column]!r}",
+                remedy="log one of them, or each on a topic of its own",
+            )
 
     def _present(self, column: int) -> npt.NDArray[np.bool_]:
         """Whether each row's messages hold a column."""
@@ -138,12 +154,20 @@ class MessageTable:
                 present[rows[rows >= 0]] = True
         return present
 
-    def _without(self, missing: int, row: int) -> InputError:
+    def _without(self, missing: int, row: int, wanted: set[Column]) -> InputError:
         self._shown = None
+        _, signal = self._columns[missing - 2]
+        remedy: tuple[str | Action, ...] = ()
+        if len({joint for joint, _ in wanted}) > 1:
+            remedy = ("load joints that are logged at different times one at a time",)
+        elif signal != "position":
+            named = {"effort": "torque"}.get(signal, signal)
+            remedy = (
+                Action("call", {"columns": {named: None}}, function="load", text="without it"),
+                "log it in all messages",
+            )
         return InputError(
-            "messages at this time do not hold it",
-            place=self.place(missing, row),
-            remedy="load joints that are logged at different times one at a time",
+            "messages at this time do not hold it", place=self.place(missing, row), remedy=remedy
         )
 
     def _holds_numbers(self, column: Column) -> bool:

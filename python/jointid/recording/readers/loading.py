@@ -303,7 +303,10 @@ def _named(file: Path, fields: Mapping[str, Any], name: str | None, one: OneJoin
 def _of_joint(fields: dict[str, Any], one: OneJoint, gear_ratio: float | None) -> dict[str, Any]:
     if not one.joint and gear_ratio is None:
         return fields
-    found = at_joint(fields, one.side, gear_ratio)
+    try:
+        found = at_joint(fields, one.side, gear_ratio, one.other_sides)
+    except InputError as error:
+        raise error.at(one.table.header_place) from None
     if one.joint:
         found["metadata"] = {**found["metadata"], "joint": one.joint}
     return found

@@ -20,7 +20,8 @@ from jointid.recording.wide.joint_table import (
 )
 from jointid.recording.wide.reading_back import saved_robot
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.recording.wide.robot_signals import ROBOT_SIGNALS
+from jointid.recording.wide.robot_signals import ROBOT_SIGNALS, checked_ratios
+from jointid.recording.wide.sides import JOINT, at_joint
 
 
 def load_robot(
@@ -67,7 +68,8 @@ def load_robot(
     Returns
     -------
     RobotRecording
-        On the side of the gear that the headers show ("motor_position_3_rad": the motor's).
+        On the side of the gear that the headers show ("motor_position_3_rad": the motor's); at the joint if
+        one joint has signals of both sides, which needs `gear_ratio`.
 
     Raises
     ------
@@ -109,6 +111,10 @@ def load_robot(
             raise error.at(f"joint {each}") from None
     _check_times(names, fields, table.source)
     sides = {one.side for one in tables}
+    if whole is not None:  # its headers do not say the side
+        sides = {whole.side}
+        if gear_ratio is None and whole.gear_ratio is not None:
+            gear_ratio = [whole.gear_ratio[whole.names.index(each)] for each in names]
     if len(sides) > 1:
         shown = ", ".join(f"{each}: {one.side}" for each, one in zip(names, tables, strict=True))
         raise InputError(
@@ -117,6 +123,9 @@ def load_robot(
             place=table.header_place,
             remedy="load those of one side",
         )
+    if any(one.other_sides for one in tables):
+        fields = _at_joint(names, tables, fields, gear_ratio)
+        sides = {JOINT}
     first = {key: value for key, value in fields[0].items() if key not in ROBOT_SIGNALS}
     # Of a long log only one copy at a time: the table and its columns are no longer needed.
     del table, tables, one, held
@@ -132,6 +141,24 @@ def load_robot(
         name=file_name(file, first, name),
         metadata=first.get("metadata"),
     )
+
+
+def _at_joint(
+    names: Sequence[str],
+    tables: Sequence[JointTable],
+    fields: Sequence[Mapping[str, Any]],
+    gear_ratio: Sequence[float] | FloatArray | float | None,
+) -> list[dict[str, Any]]:
+    """Return all signals at the joint: those of one joint are on both sides of its gear."""
+    ratios = checked_ratios(gear_ratio, len(names)) or (None,) * len(names)
+    found = []
+    for name, one, held, ratio in zip(names, tables, fields, ratios, strict=True):
+        try:
+            there = at_joint(held, one.side, ratio, one.other_sides)
+        except InputError as error:
+            raise error.at(f"{one.header_place}, joint {name}") from None
+        found.append({**held, **{key: there[key] for key in there if key != "metadata"}})
+    return found
 
 
 def _check_times(names: Sequence[str], fields: Sequence[Mapping[str, Any]], place: str) -> None:

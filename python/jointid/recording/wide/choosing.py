@@ -1,7 +1,7 @@
 """One joint of any table: what `load` reads."""
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
@@ -34,7 +34,9 @@ class OneJoint:
     extra : collection, mapping or None
         As `read_contents` takes it.
     side : str
-        Of the gear: "joint" or "motor".
+        Of the gear, on which the position is: "joint" or "motor".
+    other_sides : mapping of str to str
+        Signal → its side, where that is another one.
     joint : str
         Its name; empty for a table without names of joints.
     gear_ratio : float or None
@@ -45,6 +47,7 @@ class OneJoint:
     columns: Mapping[str, str | int | None] | None
     extra: Collection[str] | Mapping[str, str | int] | None = None
     side: str = JOINT
+    other_sides: Mapping[str, str] = field(default_factory=dict)
     joint: str = ""
     gear_ratio: float | None = None
 
@@ -85,7 +88,12 @@ def one_joint(
     name = joint_named(joint, joints, table.header_place, function="load")
     found = JointTable(table, name, columns or {}, named_extra(extra))
     one = OneJoint(
-        table=found, columns=found.columns, extra=found.extra, side=found.side, joint=name
+        table=found,
+        columns=found.columns,
+        extra=found.extra,
+        side=found.side,
+        other_sides=found.other_sides,
+        joint=name,
     )
     saved = saved_robot(table)
     if saved is None or name not in saved.names:

@@ -9,14 +9,14 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.column_lookup import column_index, listed
 from jointid.recording.headers import ALIASES, parsed
-from jointid.recording.signals import FloatArray, check_signal_name, dimensions
+from jointid.recording.signals import FloatArray, check_signal_name
 from jointid.recording.table import Table, first_cell
 from jointid.recording.wide.finding_joints import JointHeader, joint_headers, words_of
-from jointid.recording.wide.words import COMMAND, JOINT, MOTOR, TORQUES
+from jointid.recording.wide.joint_columns import own_columns
+from jointid.recording.wide.words import COMMAND, TORQUES
 
 Columns = Mapping[str, str | int | None]
 _MARK = "{joint}"
-_NEEDED = ("position", "velocity", "torque", "motor_torque")
 
 
 class JointTable:
@@ -38,7 +38,9 @@ class JointTable:
     columns : dict of str to int or None
         Signal → column of this table; what the headers do not say otherwise.
     side : str
-        "motor" if position, velocity and torque are those of the motor, else "joint".
+        Of the gear: "motor" if the position is the motor's, else "joint".
+    other_sides : dict of str to str
+        Signal → its side, where that is not `side`.
     extra : dict of str to int
         Name → column of this table.
 
@@ -60,10 +62,11 @@ class JointTable:
         owned = {each.index for found in joints.values() for each in found}
         mine = joints.get(joint, [])
         given = {signal: _index(table, column, joint, signal) for signal, column in columns.items()}
-        chosen, self.side = _chosen(table, mine, given)
+        shared = set(range(len(table.headers))) - owned
+        found = own_columns(table, mine, sorted(shared), given)
+        chosen, self.side, self.other_sides = found.of, found.side, found.other_sides
         own = {name: _extra_index(table, column, joint, name) for name, column in extra.items()}
         wanted = {index for index in (*chosen.values(), *own.values()) if index is not None}
-        shared = set(range(len(table.headers))) - owned
         self._indices = sorted(shared | {each.index for each in mine} | wanted)
         place = {index: number for number, index in enumerate(self._indices)}
         without = {each.index: each.header for each in mine}
@@ -171,41 +174,6 @@ def _extra_index(table: Table, column: str | int, joint: str, name: str) -> int:
     return column_index(table, header, f"extra.{name}")
 
 
-def _chosen(
-    table: Table, mine: list[JointHeader], given: Mapping[str, int | None]
-) -> tuple[dict[str, int | None], str]:
-    """Return the column of each signal, and the side of the gear that they are on.
-
-    What the joint's side has is taken before what the motor's has; velocity and torque are those of the
-    position's side. A link's encoder is the position where there is no other.
-    """
-    used = set(given.values())
-    meant: dict[str, list[JointHeader]] = {}
-    for each in mine:
-        if each.meaning and each.index not in used and _readable(each):
-            meant.setdefault(each.meaning.signal, []).append(each)
-    position = _of_column(mine, given.get("position"))
-    if position is not None:
-        side = position.meaning.side if position.meaning else JOINT
-    else:
-        here = meant.get("position", [])
-        if not here and "link_position" in meant:
-            meant["position"] = here = meant.pop("link_position")
-        at_joint = any(each.meaning and each.meaning.side == JOINT for each in here)
-        side = JOINT if at_joint or not here else MOTOR
-    chosen: dict[str, int | None] = dict(given)
-    for signal, found in meant.items():
-        name = "torque" if signal == "motor_torque" and side == MOTOR else signal
-        if name in given or signal in given or (name != signal and "torque" in meant):
-            continue
-        fitting = found
-        if signal in ("position", "velocity", "reference"):
-            fitting = [each for each in found if each.meaning and each.meaning.side == side]
-        if fitting:
-            chosen[name] = _only(table, name, fitting).index
-    return chosen, side
-
-
 def _commanded_torque(mine: list[JointHeader]) -> dict[str, str]:
     """Return the header of a commanded torque that is not read, for the message that a torque is missing."""
     commanded = [
@@ -216,35 +184,6 @@ def _commanded_torque(mine: list[JointHeader]) -> dict[str, str]:
         and words <= COMMAND | TORQUES
     ]
     return {"commanded_torque": commanded[0]} if len(commanded) == 1 else {}
-
-
-def _readable(column: JointHeader) -> bool:
-    """Whether a column's unit is one of its signal; of what nobody needs another one blocks nothing."""
-    if column.meaning is None or column.meaning.signal in _NEEDED:
-        return True
-    _, unit, unknown = parsed(column.header)
-    known = dimensions(column.meaning.signal, None)
-    return not unknown and (unit is None or unit.dimension in known)
-
-
-def _of_column(mine: list[JointHeader], index: int | None) -> JointHeader | None:
-    return next((each for each in mine if each.index == index), None)
-
-
-def _only(table: Table, signal: str, found: list[JointHeader]) -> JointHeader:
-    ranks = [each.meaning.rank for each in found if each.meaning]
-    best = [each for each, rank in zip(found, ranks, strict=True) if rank == min(ranks)]
-    if len(best) == 1:
-        return best[0]
-    names = " and ".join(f"{table.headers[each.index]!r}" for each in best[:3])
-    raise InputError(
-        f"{names} could both be the {signal} of joint {best[0].joint}",
-        place=table.header_place,
-        remedy=tuple(
-            Action("call", {"columns": {signal: each.pattern}}, function="load")
-            for each in best[:2]
-        ),
-    )
 
 
 def nothing_named(table: Table, joint: object, argument: str = "joint") -> InputError:

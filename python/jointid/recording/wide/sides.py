@@ -1,10 +1,12 @@
 """The sides of a gear: what a motor's encoder and torque say at the joint."""
 
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.wide.words import JOINT, MOTOR
 
@@ -29,21 +31,36 @@ def checked_ratio(gear_ratio: object, argument: str = "gear_ratio") -> float:
     return float(gear_ratio)  # type: ignore[arg-type]
 
 
-def at_joint(fields: Mapping[str, Any], side: str, gear_ratio: float | None) -> dict[str, Any]:
+def at_joint(
+    fields: Mapping[str, Any],
+    side: str,
+    gear_ratio: float | None,
+    other_sides: Mapping[str, str] = MappingProxyType({}),
+) -> dict[str, Any]:
     """Return the arguments of `Recording` at the joint, as far as the gear ratio is known.
 
     Position, velocity and reference of the motor are divided by the ratio, torque and motor torque multiplied by
-    it. What stays on the motor's side says so in ``metadata["side"]``; its motor torque is then the torque.
+    it, each by its own side. What stays on the motor's side says so in ``metadata["side"]``; its motor torque is
+    then the torque.
 
     Parameters
     ----------
     fields : mapping
         Arguments of `Recording`, as arrays.
     side : str
-        "joint" or "motor": where position, velocity and torque are.
+        "joint" or "motor": where position, velocity, reference and torque are.
     gear_ratio : float or None
         Signed; None: not known.
+    other_sides : mapping of str to str
+        Signal → its side, where that is another one. Default: none.
+
+    Raises
+    ------
+    InputError
+        Signals are on both sides, and the ratio is not known.
     """
+    if other_sides and gear_ratio is None:
+        raise _on_both_sides(side, other_sides)
     result = dict(fields)
     metadata = dict(result.get("metadata") or {})
     torque, motor_torque = result.get("torque"), result.get("motor_torque")
@@ -54,15 +71,26 @@ def at_joint(fields: Mapping[str, Any], side: str, gear_ratio: float | None) -> 
             metadata["side"] = MOTOR
     else:
         metadata["gear_ratio"] = gear_ratio
-        if side == MOTOR:
-            for name in _MOTION:
-                if result.get(name) is not None:
-                    result[name] = result[name] / gear_ratio
-            torque = None if torque is None else torque * gear_ratio
+        for name in _MOTION:
+            if other_sides.get(name, side) == MOTOR and result.get(name) is not None:
+                result[name] = result[name] / gear_ratio
+        if torque is not None and other_sides.get("torque", side) == MOTOR:
+            torque = torque * gear_ratio
         if motor_torque is not None and torque is None:
             torque, motor_torque = motor_torque * gear_ratio, None
     result |= {"torque": torque, "motor_torque": motor_torque, "metadata": metadata}
     return result
+
+
+def _on_both_sides(side: str, other_sides: Mapping[str, str]) -> InputError:
+    names = " and ".join(other_sides)
+    return InputError(
+        f"the position is the {side}'s and the {names} the {next(iter(other_sides.values()))}'s; only the gear ratio "
+        "brings them together",
+        argument="gear_ratio",
+        value=None,
+        remedy=Action("call", {"gear_ratio": ...}, function="load"),
+    )
 
 
 __all__ = ["JOINT", "MOTOR", "at_joint", "checked_ratio"]

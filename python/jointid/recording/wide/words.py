@@ -1,6 +1,6 @@
 """The words of a header in a log of several joints: what they say of a column."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 JOINT, MOTOR = "joint", "motor"
 SIDES = (JOINT, MOTOR)
@@ -20,6 +20,7 @@ _NOUNS: dict[str, str] = {
 }
 _MOTOR = frozenset(("motor", "mot", "rotor", "drive"))
 _LINK = frozenset(("link", "output", "load", "linkside", "loadside"))
+_BEHIND = frozenset(("link", "load"))
 _LINK_SIDE = frozenset(("linkside", "loadside", "outputside"))
 COMMAND = frozenset(
     (
@@ -38,11 +39,13 @@ NUMBERED = frozenset(_NOUNS) | _MOTOR | _LINK | COMMAND | _NEUTRAL | {"j", "a"}
 """Words that a joint's number may follow without anything between: q3, joint3, A1."""
 CARRIERS = frozenset(("joint", "axis", "achse", "dof", "j", "a"))
 """Words that say no more than that a joint's number follows."""
+_FILTERED = frozenset(("filtered", "filt", "smoothed"))
+_AT_OUTPUT = _LINK_SIDE | {"output"}
+_SAYS_JOINT = _AT_OUTPUT | {"joint", "joints"}
 TORQUES = frozenset(("moment", "moments", "torque", "torques", "joint", "joints"))
 """Words of a commanded torque, as far as it is not read by itself."""
 COMPUTED = frozenset(("error", "errors", "err", "output", "limit", "limits", "min", "max"))
 """Words that name the part of a message that is not measured: a controller's error and output."""
-_RANKS = 3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,11 +60,17 @@ class Meaning:
         Of the gear: "joint" or "motor".
     rank : int
         Of several columns of one signal and side the one with the lowest rank is taken.
+    side_said : bool
+        Whether a word says the side; else it is assumed.
+    asked : bool
+        Whether it is no measurement, such as a commanded torque: taken only if the user names it.
     """
 
     signal: str
     side: str
     rank: int = 0
+    side_said: bool = False
+    asked: bool = False
 
 
 def meaning_of(words: tuple[str, ...]) -> Meaning | None:
@@ -78,9 +87,14 @@ def meaning_of(words: tuple[str, ...]) -> Meaning | None:
     Examples
     --------
     >>> meaning_of(("motor", "encoder", "pos", "linkside"))
-    Meaning(signal='position', side='joint', rank=0)
+    Meaning(signal='position', side='joint', rank=0, side_said=True, asked=False)
     """
     said = set(words)
+    if said & _FILTERED and said <= KNOWN | _FILTERED:
+        # A filter delays: of a torque that is asked about, everything else is left alone.
+        found = meaning_of(tuple(said - _FILTERED))
+        torque = found is not None and found.signal in ("torque", "motor_torque")
+        return replace(found, asked=True) if found and torque else None
     if "qfrc" in said:  # MuJoCo's torques at the joints; what is not the actuators' is computed
         said -= {"actuator"}
     if not said or not said <= KNOWN:
@@ -94,17 +108,28 @@ def meaning_of(words: tuple[str, ...]) -> Meaning | None:
         if signals <= {"position"}:  # a reference without another word is a position's
             side = MOTOR if said & _MOTOR else JOINT
             return Meaning(signal="reference", side=side)
-        # A commanded torque is taken where none is measured; other commands are no signals of a recording.
-        return Meaning(signal="torque", side=JOINT, rank=_RANKS) if signals == {"torque"} else None
+        # What was commanded is never taken for what was measured; commands of others are no signals.
+        found = _torque(said) if signals == {"torque"} else None
+        return replace(found, asked=True) if found else None
     if len(signals) != 1:
         return None
     (signal,) = signals
     if signal in ("current", "temperature", "sensor"):
         return Meaning(signal=signal, side=JOINT)
+    if signal == "torque":
+        return _torque(said)
     at_link = bool(said & _LINK_SIDE) or not said & _MOTOR
-    if signal == "torque" and not at_link:
-        return Meaning(signal="motor_torque", side=MOTOR)
     if signal == "position" and said & (_LINK - _LINK_SIDE) and not said & _MOTOR:
         return Meaning(signal="link_position", side=JOINT)
     link = bool(said & (_LINK - _LINK_SIDE)) and not said & _MOTOR
-    return Meaning(signal=signal, side=JOINT if at_link else MOTOR, rank=int(link))
+    side_said = bool(said & (_MOTOR | _SAYS_JOINT | _LINK))
+    side = JOINT if at_link else MOTOR
+    return Meaning(signal=signal, side=side, rank=int(link), side_said=side_said)
+
+
+def _torque(said: set[str]) -> Meaning | None:
+    if said & _MOTOR and not said & _AT_OUTPUT:
+        return Meaning(signal="motor_torque", side=MOTOR, side_said=True)
+    if said & _BEHIND and not said & _AT_OUTPUT:
+        return None  # what acts on the link is not the drive's torque
+    return Meaning(signal="torque", side=JOINT, side_said=bool(said & _SAYS_JOINT))
