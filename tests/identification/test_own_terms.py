@@ -228,6 +228,7 @@ def test_noise_of_a_scaled_signal_is_in_the_interval_and_named(size: float) -> N
     found = {each.code: each for each in estimate.findings}
     assert ("noisy_signal" in found) == (size == 0.2)
     if size == 0.2:
+        assert gain.stderr is not None
         assert gain.value < 1.0 - 3.0 * gain.stderr  # what the finding is about
         assert "scale_of_tau" in found["noisy_signal"].parameters
         assert "tau" in found["noisy_signal"].cause
