@@ -114,7 +114,8 @@ FOLDERS: dict[str, Folder] = {
         packages={"numpy", "matplotlib"},
     ),
     "exports": Folder(
-        may_use={"base", "joint", "estimate", "simulation"}, packages={"numpy", "scipy"}
+        may_use={"base", "joint", "estimate", "simulation", "identification", "problem"},
+        packages={"numpy", "scipy"},
     ),
     "hardware/session": Folder(may_use={*_DATA, "simulation"}, packages={"numpy"}),
     "hardware/can": Folder(may_use={"base"}, packages={"can"}),

@@ -148,6 +148,45 @@ def test_an_approximation_says_how_far_it_is_off(tmp_path: Path, joint: jid.Join
         assert needed == pytest.approx(wanted, rel=1e-6)
 
 
+HEAVY = jid.Joint(
+    name="hip", gear_ratio=100.0, rotor_inertia=2e-4, model=jid.Model("coulomb_viscous")
+).with_parameters({"coulomb": 300.0, "viscous": 20.0, "inertia": 4.0})
+LEG = """<mujoco><option timestep="0.0005" gravity="0 0 0"/><worldbody><body name="leg">
+  <inertial pos="0 0 0" mass="1" diaginertia="2 2 2"/><joint name="hip" axis="0 -1 0"/>
+</body></worldbody></mujoco>
+"""
+
+
+@pytest.mark.parametrize("edited", [False, True], ids=["alone", "into"])
+def test_a_joint_replays_its_torque_and_holds(tmp_path: Path, edited: bool) -> None:
+    """MuJoCo's own softness makes 300 N·m of dry friction creep at 0.08 rad/s, which nobody asked for."""
+    source = tmp_path / "leg.xml"
+    source.write_text(LEG, encoding="utf-8")
+    path = jid.export(HEAVY, tmp_path / "new.xml", into=source if edited else None)
+    model = model_of(path)
+    state = mujoco.MjData(model)
+    state.qfrc_applied[0] = 290.0  # just below what moves it
+    for _ in range(2000):
+        mujoco.mj_step(model, state)
+    assert 0.0 < state.qvel[0] < 1e-3
+    # Both files say at which speed friction fades, and it does there.
+    stated = re.search(r"below about ([-\d.e]+) rad/s", path.read_text(encoding="utf-8"))
+    assert stated is not None
+    assert float(stated[1]) == pytest.approx(300.0 / 290.0 * state.qvel[0], rel=0.1)
+    # The law's torque, and what it takes to follow the motion that belongs to it.
+    mujoco.mj_resetData(model, state)
+    state.qvel[0] = 0.3
+    missed, law = [], []
+    for k in range(10_000):
+        at = k * model.opt.timestep
+        q, v, a = 0.3 * np.sin(at), 0.3 * np.cos(at), -0.3 * np.sin(at)
+        law.append(4.0 * a + 300.0 * np.sign(v) + 20.0 * v)
+        missed.append(5e4 * (q - state.qpos[0]) + 2e3 * (v - state.qvel[0]))
+        state.qfrc_applied[0] = law[-1] + missed[-1]
+        mujoco.mj_step(model, state)
+    assert np.sqrt(np.mean(np.square(missed))) < 0.01 * np.sqrt(np.mean(np.square(law)))
+
+
 @pytest.mark.parametrize("name", REPLAYED)
 def test_friction_is_whole_above_the_speed_that_the_file_states(tmp_path: Path, name: str) -> None:
     """MuJoCo softens dry friction, of a joint that slides by its body's mass alone."""
@@ -169,7 +208,12 @@ def test_the_file_is_sound_xml_whatever_the_joint_is_called(tmp_path: Path, endi
     """MuJoCo's reader forgives two dashes in a comment, others do not."""
     path = jid.export(EVERYTHING, tmp_path / f"j{ending}", approximate=True, speed=1.0)
     root = ElementTree.parse(path).getroot()
-    assert EVERYTHING.name in (root.get("model"), root.get("name"))
+    # Names that other tools take; the joint's own stands in the comment.
+    names = [each.get("name") for each in root.iter()] + [root.get("model")]
+    known = [name for name in names if name is not None]
+    assert "joint_1_a_joint_link" in known
+    assert all(re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name) for name in known)
+    assert "1: \u00e4 */ joint" in path.read_text(encoding="utf-8")
 
 
 ARM = """<?xml version="1.0" encoding="utf-8"?>
@@ -205,11 +249,10 @@ def test_a_joint_of_a_model_is_edited_in_place(tmp_path: Path, newline: str) -> 
     assert model.dof_damping.tolist() == [1.7, 0.5]
     assert model.dof_frictionloss.tolist() == [3.1, 9.0]
     assert model.dof_armature[0] == pytest.approx(0.2)
-    # All but our comment and three values has its bytes.
+    # All but our comment and five values has its bytes.
     plain = re.sub(rb" *<!-- jointid:.*?-->\r?\n", b"", after, flags=re.DOTALL)
-    assert re.sub(rb" (frictionloss|armature)=\"[\d.]+\"", b"", plain) == re.sub(
-        rb" (frictionloss|armature)=\"[\d.]+\"", b"", before
-    ).replace(b"'1'", b'"1.7"')
+    values = rb" (frictionloss|armature|sol(ref|imp)friction)=\"[\d. ]+\""
+    assert re.sub(values, b"", plain) == re.sub(values, b"", before).replace(b"'1'", b'"1.7"')
     assert (newline == "\r\n") == (b"\r\n" in after)
     assert after.count(b"\n") == after.count(newline.encode())
     # Once more changes nothing: the old comment is replaced.

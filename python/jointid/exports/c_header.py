@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from jointid.exports.expressions import (
     Language,
+    centred,
     constants,
     fading,
     growing,
+    origin,
     periodic,
     total,
     upper,
@@ -125,7 +127,10 @@ def _write(subject: Subject, order: Order) -> bytes:
             f"{name}_harmonics",
             name,
             "position",
-            periodic(law, "harmonics", "position", language),
+            [
+                *periodic(law, "harmonics", "position", language),
+                *centred(law, "torque", language),
+            ],
             zero,
         ),
         "",
@@ -138,11 +143,31 @@ def _write(subject: Subject, order: Order) -> bytes:
             zero,
         ),
         "",
+        "/* Inertia of drive and link at a position. */",
+        *_function(
+            f"{name}_inertia",
+            name,
+            "position",
+            [f"{big}_INERTIA", f"{big}_LINK_INERTIA", *centred(law, "inertia", language)],
+            zero,
+            used=bool(law.functions("inertia")),
+        ),
+        "",
+        "/* Slope of the inertia over the position: of its product with velocity^2, half is a torque. */",
+        *_function(
+            f"{name}_inertia_slope",
+            name,
+            "position",
+            centred(law, "inertia", language, slope=True),
+            zero,
+        ),
+        "",
         "/* Torque of the drive at the output that a motion needs: inertia, friction, position, offset. */",
         f"static inline {name}_real {name}_torque({name}_real position, {name}_real velocity,",
         f"    {name}_real acceleration, {name}_real load, {name}_real width)",
         "{",
-        f"    return (({big}_INERTIA + {big}_LINK_INERTIA) * acceleration)",
+        f"    return ({name}_inertia(position) * acceleration)",
+        f"        + (({name}_real)0.5 * {name}_inertia_slope(position) * velocity * velocity)",
         f"        + {name}_friction_smooth(velocity, load, width)",
         f"        + {name}_gravity(position) + {name}_harmonics(position)",
         f"        + {name}_ripple({angle}) + {big}_TORQUE_OFFSET;",
@@ -178,7 +203,11 @@ def _constants(subject: Subject, name: str) -> list[str]:
 
     for parameter, value in constants(law).items():
         found = known.get(parameter)
-        says = value_line(found) if found is not None else f"{parameter} = {value!r}: from the link"
+        says = (
+            value_line(found)
+            if found is not None
+            else f"{parameter} = {value!r}: {origin(parameter)}"
+        )
         add(upper(parameter), value, says)
     inertia = known.get("inertia")
     add("INERTIA", law.inertia or 0.0, "not known" if inertia is None else value_line(inertia))
@@ -196,8 +225,10 @@ def _constants(subject: Subject, name: str) -> list[str]:
     return lines
 
 
-def _function(function: str, name: str, angle: str, summands: list[str], zero: str) -> list[str]:
-    unused = [] if summands else [f"    (void){angle};"]
+def _function(
+    function: str, name: str, angle: str, summands: list[str], zero: str, used: bool = True
+) -> list[str]:
+    unused = [] if summands and used else [f"    (void){angle};"]
     body = "\n        + ".join(summands) if summands else zero
     return [
         f"static inline {name}_real {function}({name}_real {angle})",

@@ -45,7 +45,8 @@ def export(
         Instead of the one that the ending chooses.
     into : path-like, optional
         An existing MuJoCo or URDF file: the new file is this one with damping and friction of one joint set, in
-        MuJoCo also its armature, and with a comment before the joint. Everything else keeps its bytes. May be `path`
+        MuJoCo also its armature and the stiffness of its dry friction, and with a comment before the joint.
+        Everything else keeps its bytes. May be `path`
         itself. Default: a model of this joint alone.
     joint_name : str, optional
         Name of the joint in `into`. Default: the joint's own name.

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from jointid.exports.identifiers import parameter_identifier
-from jointid.exports.law import FrictionTerm, Harmonic, Law, Over
+from jointid.exports.law import FrictionTerm, Function, Harmonic, Law, Over
 
 _PARTS: dict[Over, tuple[str, str]] = {
     "gravity": ("gravity_cos", "gravity_sin"),
@@ -78,6 +78,25 @@ def periodic(law: Law, kind: Over, angle: str, language: Language) -> list[str]:
     return summands
 
 
+def centred(law: Law, kind: Function, language: Language, *, slope: bool = False) -> list[str]:
+    """Return the summands of own functions of `position`, or of their derivatives."""
+    if not law.functions(kind):
+        return []
+    cos, sin, centre = (language.name(name) for name in _centred_names(kind))
+    angle = f"position - {centre}"
+    if slope:
+        return [f"({sin} * {language.cos}({angle}))", f"(-({cos} * {language.sin}({angle})))"]
+    one = language.number(1.0)
+    return [
+        f"({cos} * ({language.cos}({angle}) - {one}))",
+        f"({sin} * {language.sin}({angle}))",
+    ]
+
+
+def _centred_names(kind: Function) -> tuple[str, str, str]:
+    return f"{kind}_cos_of_position", f"{kind}_sin_of_position", f"{kind}_centre"
+
+
 def harmonic_names(harmonic: Harmonic) -> tuple[str, str]:
     """Return the names of a harmonic's two coefficients."""
     cos, sin = _PARTS[harmonic.over]
@@ -97,7 +116,19 @@ def constants(law: Law) -> dict[str, float]:
     for each in law.harmonics:
         cos, sin = harmonic_names(each)
         values |= {cos: each.cos, sin: each.sin}
+    for own in law.centred:
+        names = _centred_names(own.kind)
+        values |= dict(zip(names, (own.cos, own.sin, own.centre), strict=True))
     return values
+
+
+def origin(parameter: str) -> str:
+    """Return where a number of the law comes from that is no parameter."""
+    return (
+        "angle that the terms of position are centred at, from the model"
+        if parameter.endswith("_centre")
+        else "from the link"
+    )
 
 
 def upper(name: str) -> str:

@@ -9,7 +9,7 @@ from jointid.exports.provenance import plain
 _LONGEST = 24  # C99 distinguishes the first 31 characters of a name that other files see
 
 
-def identifier(name: str, usual: str = "joint") -> str:
+def identifier(name: str, usual: str = "joint", *, longest: int = _LONGEST) -> str:
     """Return a name of letters, digits and single underscores that begins with a letter.
 
     Parameters
@@ -17,6 +17,8 @@ def identifier(name: str, usual: str = "joint") -> str:
     name : str
     usual : str
         In front of a name that begins otherwise, and instead of one of which nothing is left. Default "joint".
+    longest : int
+        Letters at most. Default 24.
 
     Examples
     --------
@@ -24,7 +26,7 @@ def identifier(name: str, usual: str = "joint") -> str:
     'Joint_1_left'
     """
     words = re.findall(r"[A-Za-z0-9]+", plain(name))
-    text = "_".join(words)[:_LONGEST].strip("_")
+    text = "_".join(words)[:longest].strip("_")
     if not text:
         return usual
     return text if text[0].isalpha() else f"{usual}_{text}"

@@ -13,10 +13,12 @@ from numpy.typing import ArrayLike, NDArray
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.joint.joint import Joint
+from jointid.joint.own_terms import CENTRED, POSITION
 
 Array = NDArray[np.float64]
 Basis = Literal["constant", "linear", "gaussian", "general", "load"]
 Over = Literal["gravity", "harmonics", "ripple"]
+Function = Literal["torque", "inertia"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,6 +71,38 @@ class Harmonic:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Centred:
+    """A function of the joint's angle: ``cos * (cos(angle - centre) - 1) + sin * sin(angle - centre)``.
+
+    Attributes
+    ----------
+    kind : str
+        "torque", or "inertia": then the joint's inertia grows by it, and the torque also by slope · v² / 2.
+    centre, cos, sin : float
+    """
+
+    kind: Function
+    centre: float
+    cos: float
+    sin: float
+
+    def value(self, position: Array) -> Array:
+        """Return the function at positions."""
+        angle = position - self.centre
+        return np.asarray(self.cos * (np.cos(angle) - 1.0) + self.sin * np.sin(angle))
+
+    def slope(self, position: Array) -> Array:
+        """Return its derivative by the position."""
+        angle = position - self.centre
+        return np.asarray(self.sin * np.cos(angle) - self.cos * np.sin(angle))
+
+    @property
+    def size(self) -> float:
+        """More than this it is nowhere."""
+        return abs(self.cos) + math.hypot(self.cos, self.sin)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Law:
     """The torque that a motion needs from the drive, at the output of the gear.
 
@@ -86,6 +120,8 @@ class Law:
     sensor : tuple of float or None
         Gain and offset: torque = gain · reading + offset.
     gear_ratio : float
+    centred : tuple of Centred
+        Own terms of the joint's own position.
     """
 
     friction: tuple[FrictionTerm, ...]
@@ -95,6 +131,7 @@ class Law:
     offset: float
     sensor: tuple[float, float] | None
     gear_ratio: float
+    centred: tuple[Centred, ...] = ()
 
     @property
     def total_inertia(self) -> float | None:
@@ -136,7 +173,10 @@ class Law:
         return total
 
     def position_torque(self, position: ArrayLike, *kinds: Over) -> Array:
-        """Return the torque over the position [N·m or N] of some kinds; none named: of all."""
+        """Return the torque over the position [N·m or N] of some kinds; none named: of all.
+
+        Own torques over the joint's angle belong to "harmonics".
+        """
         positions = np.atleast_1d(np.asarray(position, dtype=np.float64))
         total = np.zeros_like(positions)
         for each in self.harmonics:
@@ -144,7 +184,22 @@ class Law:
                 scale = self.gear_ratio if each.over == "ripple" else 1.0
                 angle = each.order * (scale * positions)
                 total += each.cos * np.cos(angle) + each.sin * np.sin(angle)
+        for own in self.functions("torque"):
+            if not kinds or "harmonics" in kinds:
+                total += own.value(positions)
         return total
+
+    def functions(self, kind: Function) -> tuple[Centred, ...]:
+        """Return the own functions of the joint's angle of one kind."""
+        return tuple(each for each in self.centred if each.kind == kind)
+
+    def inertia_torque(self, position: float, velocity: float, acceleration: float) -> float:
+        """Return the torque that accelerates drive and link [N·m or N]; an inertia that is not known counts 0."""
+        at = np.atleast_1d(np.float64(position))
+        own = self.functions("inertia")
+        inertia = (self.total_inertia or 0.0) + sum(float(each.value(at)[0]) for each in own)
+        slope = sum(float(each.slope(at)[0]) for each in own)
+        return inertia * acceleration + 0.5 * slope * velocity**2
 
 
 def law_of(joint: Joint, terms: Sequence[str], values: Mapping[str, float]) -> Law:
@@ -190,7 +245,27 @@ def law_of(joint: Joint, terms: Sequence[str], values: Mapping[str, float]) -> L
         offset=values.get("torque_offset", 0.0),
         sensor=(values["sensor_gain"], values["sensor_offset"]) if sensor else None,
         gear_ratio=joint.gear_ratio,
+        centred=_centred(joint, values),
     )
+
+
+def _centred(joint: Joint, values: Mapping[str, float]) -> tuple[Centred, ...]:
+    found = []
+    for own in joint.model.resolved.terms.each:
+        if own.signal != POSITION or own.kind not in CENTRED:
+            continue
+        if own.centre is None:
+            raise InputError(
+                "has no centre, which an export needs",
+                argument=f"terms.{POSITION}",
+                value=str(own),
+                place=joint.owner,
+                remedy="identify the joint, or write the angle in brackets behind the kind",
+            )
+        cos, sin = (values[key] for key in own.keys)
+        kind: Function = "torque" if own.kind == "torque_over" else "inertia"
+        found.append(Centred(kind=kind, centre=own.centre, cos=cos, sin=sin))
+    return tuple(found)
 
 
 def _harmonic(over: str, order: float, parts: Sequence[float]) -> Harmonic:

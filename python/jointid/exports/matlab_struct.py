@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from jointid.exports.identifiers import identifier, parameter_identifier
+from jointid.exports.law import Centred
 from jointid.exports.provenance import statements
 from jointid.exports.subject import ExportedValue, Subject
 from jointid.exports.tables import speed_scale
@@ -29,6 +31,12 @@ def _write(subject: Subject, order: Order) -> bytes:
     if subject.speed is None:
         notes.append("the range of the tables is chosen: no range of speeds is known")
     law = subject.law
+    if law.centred:
+        notes.append(
+            "position_torque.centred and position_inertia: cos * (cos(position - centre) - 1)"
+            " + sin * sin(position - centre); of an inertia that grows by it, the torque grows by slope"
+            " * velocity^2 / 2, too"
+        )
     struct = {
         "name": subject.joint.name,
         "kind": subject.joint.kind,
@@ -54,6 +62,7 @@ def _write(subject: Subject, order: Order) -> bytes:
         "torque_offset": law.offset,
         "friction": _friction(subject),
         "position_torque": _periods(subject),
+        "position_inertia": _centred(law.functions("inertia")),
         "limits": {
             name: _known(getattr(subject.joint.limits, name))
             for name in ("velocity", "torque", "current")
@@ -105,7 +114,7 @@ def _friction(subject: Subject) -> dict[str, Any]:
 
 def _periods(subject: Subject) -> dict[str, Any]:
     """Gravity, torques over the joint's angle, and ripple over the motor's, by order."""
-    periods: dict[str, Any] = {}
+    periods: dict[str, Any] = {"centred": _centred(subject.law.functions("torque"))}
     for over in ("gravity", "harmonics", "ripple"):
         found = [each for each in subject.law.harmonics if each.over == over]
         periods[over] = {
@@ -114,6 +123,15 @@ def _periods(subject: Subject) -> dict[str, Any]:
             "sin": np.array([each.sin for each in found]),
         }
     return periods
+
+
+def _centred(found: Sequence[Centred]) -> dict[str, Any]:
+    """An own function of the joint's angle; empty without one."""
+    return {
+        "centre": np.array([each.centre for each in found]),
+        "cos": np.array([each.cos for each in found]),
+        "sin": np.array([each.sin for each in found]),
+    }
 
 
 TARGET = Target(

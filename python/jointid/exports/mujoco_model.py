@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from jointid.exports.identifiers import identifier
 from jointid.exports.inertial import body_of, drive_inertia
 from jointid.exports.nearest import Nearest, nearest_friction
 from jointid.exports.provenance import statements
@@ -25,13 +26,17 @@ _STEP = 0.0005
 # MuJoCo's dry friction is a soft constraint: below a speed in proportion to this time constant it fades. Its default
 # is 0.02 s.
 _CONSTANT, _SOFTNESS = 0.002, 0.01
+# The same speed with MuJoCo's default solreffriction and solimpfriction, in proportion to ours.
+_USUAL = (0.1 / 0.9) * (0.95 * 0.02) / (_SOFTNESS * _CONSTANT)
+_LEAST_SHARE = 0.02
+_LONGEST = 60  # letters of a name in a file of our own
 
 
 def _write(subject: Subject, order: Order) -> bytes:
     nearest = nearest_friction(subject, approximate=order.approximate, target="mujoco")
     if order.into is not None:
         return _edited(subject, nearest, order.into)
-    return _model(subject, nearest, order.name).encode()
+    return _model(subject, nearest, identifier(order.name, longest=_LONGEST)).encode()
 
 
 def loss_notes(subject: Subject, nearest: Nearest) -> list[str]:
@@ -40,6 +45,8 @@ def loss_notes(subject: Subject, nearest: Nearest) -> list[str]:
         return []
     unit = subject.torque_unit
     notes = [f"lost: {each}" for each in nearest.lost]
+    if nearest.speed is None:  # the friction itself is exact
+        return notes
     loads = any(each.basis == "load" for each in subject.law.friction)
     return [
         *notes,
@@ -62,7 +69,14 @@ def _edited(subject: Subject, nearest: Nearest, into: Existing) -> bytes:
         )
     else:
         changes["armature"] = repr(armature)
-    if joint.attributes.get("type") == "slide" and changes.get("armature"):
+    slides = joint.attributes.get("type") == "slide"
+    changes |= _soft_friction(_body_share(subject, armature) if slides else 1.0)
+    notes.append(
+        f"dry friction is a soft constraint: below about {_creep(subject, nearest):.2g} {subject.position_unit}/s (with"
+        f" MuJoCo's own solreffriction and solimpfriction: {_creep(subject, nearest) * _USUAL:.2g}) it fades, and the"
+        f" joint creeps; time steps above {_CONSTANT / 2.0!r} s soften it in proportion"
+    )
+    if slides and changes.get("armature"):
         notes.append(
             "of a joint that slides, MuJoCo softens friction by the body's mass without the armature: give the body"
             " the mass, or the joint a solimpfriction nearer to 1"
@@ -73,6 +87,23 @@ def _edited(subject: Subject, nearest: Nearest, into: Existing) -> bytes:
     lines = statements(subject, notes=notes)
     edited = with_attributes(into.content, joint, changes)
     return with_comment(edited, joint, lines)
+
+
+def _soft_friction(share: float) -> dict[str, str]:
+    """How stiff the constraint is. Of a joint that slides, MuJoCo takes the body's share for the whole mass."""
+    hard = repr(1.0 / (1.0 + _SOFTNESS * share))
+    return {
+        "solreffriction": f"{_CONSTANT!r} 1",
+        "solimpfriction": f"{hard} {hard} 0.001 0.5 2",
+    }
+
+
+def _body_share(subject: Subject, armature: float | None) -> float:
+    """The body's share of what moves, as far as it is known apart from the drive's."""
+    total = subject.law.total_inertia
+    if total is None or armature is None:
+        return 1.0
+    return max(_LEAST_SHARE, min(1.0, (total - armature) / total))
 
 
 def _is_joint(element: Element) -> bool:
@@ -107,9 +138,8 @@ def _model(subject: Subject, nearest: Nearest, name: str) -> str:
     if joint.limits.position is not None:
         low, high = joint.limits.position
         limits = f' limited="true" range="{low!r} {high!r}"'
-    # Of a joint that slides, MuJoCo takes the body's mass for the whole.
-    share = body.mass / (body.mass + body.drive) if slides else 1.0
-    hard = repr(1.0 / (1.0 + _SOFTNESS * share))
+    soft = _soft_friction(body.mass / (body.mass + body.drive) if slides else 1.0)
+    softness = " ".join(f'{key}="{value}"' for key, value in soft.items())
     x, z = body.distance * math.cos(body.angle), body.distance * math.sin(body.angle)
     lines = [
         f"<mujoco model={attribute(name)}>",
@@ -117,12 +147,12 @@ def _model(subject: Subject, nearest: Nearest, name: str) -> str:
         '  <compiler angle="radian"/>',
         f'  <option timestep="{_STEP!r}" integrator="implicitfast" gravity="0 0 {0.0 - body.gravity!r}"/>',
         "  <worldbody>",
-        f"    <body name={attribute(f'{name} link')}>",
+        f"    <body name={attribute(f'{name}_link')}>",
         f'      <inertial pos="{x!r} 0 {z!r}" mass="{body.mass!r}" diaginertia="{body.inertia!r} {body.inertia!r}'
         f' {body.inertia!r}"/>',
         f'      <joint name={attribute(name)} type="{kind}" axis="{axis}" damping="{nearest.slope!r}"'
         f' frictionloss="{nearest.constant!r}" armature="{body.drive!r}"{limits}',
-        f'             solreffriction="{_CONSTANT!r} 1" solimpfriction="{hard} {hard} 0.001 0.5 2"/>',
+        f"             {softness}/>",
         "    </body>",
         "  </worldbody>",
         "  <actuator>",
@@ -144,10 +174,10 @@ def _actuator(subject: Subject, name: str) -> str:
     if limit is not None:
         text += f' ctrllimited="true" ctrlrange="{-limit / abs(gear)!r} {limit / abs(gear)!r}"'
     if not offset:
-        return f"<motor name={attribute(f'{name} motor')} {text}/>"
+        return f"<motor name={attribute(f'{name}_motor')} {text}/>"
     # A constant torque against the drive, behind its limit.
     bias = f'gaintype="fixed" gainprm="1" biastype="affine" biasprm="{-offset / gear!r} 0 0"'
-    return f"<general name={attribute(f'{name} motor')} {text} {bias}/>"
+    return f"<general name={attribute(f'{name}_motor')} {text} {bias}/>"
 
 
 def _creep(subject: Subject, nearest: Nearest) -> float:

@@ -66,6 +66,18 @@ def lost_terms(subject: Subject) -> tuple[str, ...]:
     return tuple(lost)
 
 
+def _own_lost(subject: Subject) -> tuple[str, ...]:
+    """Return what no body with Coulomb and viscous friction has of a model's own terms, in words."""
+    unit = subject.torque_unit
+    lost = [
+        f"torque over the joint's angle (up to {each.size:.4g} {unit})"
+        if each.kind == "torque"
+        else f"inertia over the joint's angle (up to {each.size:.4g} kg·m²)"
+        for each in subject.law.centred
+    ]
+    return (*lost, *([subject.others] if subject.others else []))
+
+
 def nearest_friction(subject: Subject, *, approximate: bool, target: str) -> Nearest:
     """Return Coulomb and viscous friction: the law's own, or the nearest over the recorded speeds.
 
@@ -82,7 +94,9 @@ def nearest_friction(subject: Subject, *, approximate: bool, target: str) -> Nea
     InputError
         Something would be lost and must not, or no range of speeds is known.
     """
-    law, lost = subject.law, lost_terms(subject)
+    law, own = subject.law, _own_lost(subject)
+    friction = lost_terms(subject)
+    lost = (*friction, *own)
     for each in law.friction:
         if each.value < 0.0:  # a simulator refuses it, or gains energy
             raise InputError(
@@ -90,17 +104,18 @@ def nearest_friction(subject: Subject, *, approximate: bool, target: str) -> Nea
                 argument=f"parameters.{each.name}",
                 value=each.value,
             )
-    if not lost:
-        return Nearest(
-            constant=sum(each.value for each in law.friction if each.basis == "constant"),
-            slope=sum(each.value for each in law.friction if each.basis == "linear"),
-        )
-    if not approximate:
+    if lost and not approximate:
         raise InputError(
             f"{target} has Coulomb and viscous friction only; lost would be {' and '.join(lost)}",
             argument="model",
             value=subject.model,
             remedy=Action("call", {"approximate": True}, "the nearest of that kind", "export"),
+        )
+    if not friction:  # it is Coulomb and viscous friction
+        return Nearest(
+            constant=sum(each.value for each in law.friction if each.basis == "constant"),
+            slope=sum(each.value for each in law.friction if each.basis == "linear"),
+            lost=own,
         )
     if subject.speed is None:
         raise InputError(
@@ -130,6 +145,7 @@ def _fitted(law: Law, lost: tuple[str, ...], peak: float) -> Nearest:
         for sign in (1.0, -1.0)
     )
     periodic = sum(each.amplitude for each in law.harmonics if each.over != "gravity")
+    periodic += sum(each.size for each in law.functions("torque"))
     return Nearest(
         constant=float(constant),
         slope=float(slope),

@@ -65,12 +65,8 @@ def statements(subject: Subject, *, notes: Sequence[str] = ()) -> list[str]:
     if subject.findings:
         lines.append("Warnings of the identification:")
         lines += [f"  {each}" for each in subject.findings]
-    own = subject.joint.model.resolved.terms
-    if own:
-        notes = [
-            *notes,
-            f"the {force} of other signals is not in this file and has to be added ({own})",
-        ]
+    if subject.others:
+        notes = [*notes, f"not in this file, and has to be added: {subject.others}"]
     if notes:
         lines.append("Notes:")
         lines += [f"  {each}" for each in notes]

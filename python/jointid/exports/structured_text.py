@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from jointid.exports.expressions import (
     Language,
+    centred,
     constants,
     fading,
     growing,
+    origin,
     periodic,
     total,
     upper,
@@ -79,8 +81,15 @@ def _block(subject: Subject, name: str) -> list[str]:
         "ripple": "motor_angle",
     }
     periods = {
-        kind: total(periodic(law, kind, angle, language), "0.0") for kind, angle in turned.items()
+        kind: total(
+            periodic(law, kind, angle, language)
+            + (centred(law, "torque", language) if kind == "harmonics" else []),
+            "0.0",
+        )
+        for kind, angle in turned.items()
     }
+    inertia = total(["P_INERTIA", "P_LINK_INERTIA", *centred(law, "inertia", language)], "0.0")
+    slope = total(centred(law, "inertia", language, slope=True), "0.0")
     sensor = "0.0" if law.sensor is None else "P_SENSOR_GAIN * reading + P_SENSOR_OFFSET"
     sides = {
         side: (
@@ -116,6 +125,8 @@ def _block(subject: Subject, name: str) -> list[str]:
         "    load_size : LREAL;",
         "    fade : LREAL;",
         "    motor_angle : LREAL;",
+        "    inertia : LREAL; (* of drive and link, at this position *)",
+        "    inertia_slope : LREAL; (* over the position *)",
         "END_VAR",
         "",
         "speed := ABS(velocity);",
@@ -136,7 +147,9 @@ def _block(subject: Subject, name: str) -> list[str]:
         f"gravity := {periods['gravity']};",
         f"harmonics := {periods['harmonics']};",
         f"ripple := {periods['ripple']};",
-        "torque := (P_INERTIA + P_LINK_INERTIA) * acceleration + P_TORQUE_OFFSET",
+        f"inertia := {inertia};",
+        f"inertia_slope := {slope};",
+        "torque := inertia * acceleration + 0.5 * inertia_slope * velocity * velocity + P_TORQUE_OFFSET",
         "    + friction + gravity + harmonics + ripple;",
         "motor_torque := torque / P_GEAR_RATIO;",
         f"sensor_torque := {sensor};",
@@ -155,7 +168,7 @@ def _constants(subject: Subject) -> list[str]:
         lines.append(f"    {_constant(key)} : LREAL := {literal(value)}; (* {_safe(says)} *)")
 
     for parameter, value in constants(law).items():
-        add(parameter, value, "from the link")
+        add(parameter, value, origin(parameter))
     add("inertia", law.inertia or 0.0, "not known")
     add("LINK_INERTIA", law.link_inertia, "behind the torque sensor, from the link")
     add("torque_offset", law.offset, "none")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,7 +16,10 @@ from jointid.estimate.estimate import Estimate
 from jointid.estimate.friction_map import shared_value
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.exports.law import Law, law_of
+from jointid.identification.follow_up import EstimateSource
 from jointid.joint.joint import Joint
+from jointid.joint.own_terms import POSITION, OwnTerms
+from jointid.problem.own_integrals import own_series
 
 _GRAVITY = ("gravity_cos", "gravity_sin")
 _SENSOR = ("sensor_gain", "sensor_offset")
@@ -71,6 +75,8 @@ class Subject:
         Warnings of the estimate.
     speed : float or None
         Largest speed of the recordings [rad/s or m/s]; None if it is not known.
+    others : str
+        The torque of other signals, which no file has, with its size; "" without own terms of such.
     """
 
     joint: Joint
@@ -82,6 +88,7 @@ class Subject:
     version: str
     findings: tuple[str, ...]
     speed: float | None
+    others: str = ""
 
     @property
     def undetermined(self) -> tuple[str, ...]:
@@ -168,7 +175,30 @@ def _of_estimate(estimate: Estimate) -> Subject:
             f"{each.code} ({each.severity}): {each.cause}" for each in estimate.warnings
         ),
         speed=float(speeds.max()) if len(speeds) else None,
+        others=_others(estimate.joint, known, estimate),
     )
+
+
+def _others(joint: Joint, values: Mapping[str, float], estimate: Estimate | None = None) -> str:
+    """The torque of signals that the joint does not have, with the coefficients and, where known, its size."""
+    own = joint.model.resolved.terms
+    terms = OwnTerms(tuple(each for each in own.each if each.signal != POSITION))
+    if not terms.each:
+        return ""
+    force, unit = ("force", "N") if joint.kind == "prismatic" else ("torque", "N·m")
+    known = [
+        f"{key} = {values[key]:.4g}" for each in terms.each for key in each.keys if key in values
+    ]
+    text = f"the {force} of other signals ({terms}{'; ' * bool(known)}{', '.join(known)})"
+    source = None if estimate is None else estimate.follow_up
+    if not isinstance(source, EstimateSource):
+        return text
+    pieces = []
+    for run in source.problem.recordings:
+        parts = [values[key] * np.diff(each) for key, each in own_series(terms, run)]
+        pieces.append(np.sum(parts, axis=0) / np.diff(run.time))
+    size = float(np.sqrt(np.mean(np.concatenate(pieces) ** 2)))
+    return f"{text}, {size:.4g} {unit} root mean square in the recordings"
 
 
 def _today() -> str:
@@ -255,6 +285,13 @@ def _of_joint(joint: Joint) -> Subject:
         for name in term.shapes:
             shape = shapes[name]
             add(name, shape.meaning, shape.unit_prismatic if slides else shape.unit)
+    for own in joint.model.resolved.terms.each:
+        for key in own.keys:
+            given = joint.parameters.get(key)
+            if own.signal != POSITION and (given is None or given.value is None):
+                continue  # of signals that no file has
+            term = _core.term(key)
+            add(key, term.meaning, term.unit_prismatic if slides else term.unit)
     numbers = {name: each.value for name, each in values.items()}
     return Subject(
         joint=joint,
@@ -266,6 +303,7 @@ def _of_joint(joint: Joint) -> Subject:
         version=_core.__version__,
         findings=(),
         speed=joint.limits.velocity,
+        others=_others(joint, numbers),
     )
 
 
@@ -293,7 +331,7 @@ def _terms_of(joint: Joint) -> tuple[str, ...]:
     return tuple(
         key
         for term in _core.terms()
-        if not term.own  # of signals that the joint has not: the model's text names them
+        if not term.own
         for key in (
             [f"{term.key}_{order:g}" for order in orders[term.option]]
             if term.family

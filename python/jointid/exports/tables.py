@@ -60,7 +60,6 @@ def reference_values(subject: Subject) -> tuple[Reference, ...]:
             width = smooth_width(subject) if smooth else 0.0
             friction = float(law.friction_torque(velocity, load, width=width)[0])
             over = float(law.position_torque(position)[0])
-            inertia = law.total_inertia or 0.0
             gain, offset = law.sensor or (0.0, 0.0)
             rows.append(
                 Reference(
@@ -72,7 +71,10 @@ def reference_values(subject: Subject) -> tuple[Reference, ...]:
                     width=width,
                     friction=friction,
                     position_torque=over,
-                    torque=inertia * acceleration + friction + over + law.offset,
+                    torque=law.inertia_torque(position, velocity, acceleration)
+                    + friction
+                    + over
+                    + law.offset,
                     sensor_torque=gain * reading + offset,
                 )
             )

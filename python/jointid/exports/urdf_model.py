@@ -6,6 +6,7 @@ import math
 import re
 
 from jointid.base.errors import InputError
+from jointid.exports.identifiers import identifier
 from jointid.exports.inertial import body_of, drive_inertia
 from jointid.exports.mujoco_model import loss_notes
 from jointid.exports.nearest import Nearest, nearest_friction
@@ -25,12 +26,14 @@ from jointid.joint.checks import suggestion
 from jointid.joint.link import STANDARD_GRAVITY
 from jointid.simulation.plant import torque_limit
 
+_LONGEST = 60  # letters of a name in a file of our own
+
 
 def _write(subject: Subject, order: Order) -> bytes:
     nearest = nearest_friction(subject, approximate=order.approximate, target="urdf")
     if order.into is not None:
         return _edited(subject, nearest, order.into)
-    return _robot(subject, nearest, order.name).encode()
+    return _robot(subject, nearest, identifier(order.name, longest=_LONGEST)).encode()
 
 
 def _notes(subject: Subject, nearest: Nearest) -> list[str]:
@@ -144,7 +147,7 @@ def _robot(subject: Subject, nearest: Nearest, name: str) -> str:
     limit = [f"    <limit {pairs}/>"] if complete else []
     x, z = body.distance * math.cos(body.angle), body.distance * math.sin(body.angle)
     axis = "1 0 0" if slides else "0 -1 0"
-    base, link = attribute(f"{name} base"), attribute(f"{name} link")
+    base, link = attribute(f"{name}_base"), attribute(f"{name}_link")
     # URDF has no inertia of a drive: about the axis, one body has both.
     around = repr(body.inertia + (0.0 if slides else body.drive))
     mass = repr(body.mass + (body.drive if slides else 0.0))
