@@ -63,8 +63,8 @@ def refuse_duplicates(
     ]
     free = [not domain.fixed(name) for name in names]
     products = np.einsum("ni,nj->ij", scaled, scaled)
-    other = _columns_again(again(), penalty, shapes)
-    changed = np.zeros_like(scaled) if other is None else other / sizes_or_one - scaled
+    repeated = _columns_again(again(), penalty, shapes)
+    changed = np.zeros_like(scaled) if repeated is None else repeated / sizes_or_one - scaled
     for index in [index for index in mine if free[index]]:
         others = [k for k in range(count) if k != index and free[k] and present[k]]
         if float(changed[:, index] @ changed[:, index]) > 1.0 / _NOISE:
