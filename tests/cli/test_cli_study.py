@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import jointid as jid
@@ -179,6 +180,7 @@ def test_sweep_simulates(folder: Path, capsys: Printed) -> None:
         ([WELL, "--resume"], "--resume"),
         ([WELL, "--ga", "best"], "thesis_code"),
         ([WELL, "--trials", "0"], "trials"),
+        (["--simulate", "examples.toml", "--term", "q6=viscous"], "has no extra signals"),
     ],
 )
 def test_sweep_refuses_in_a_line(words: list[str], text: str, capsys: Printed) -> None:
@@ -190,3 +192,16 @@ def test_sweep_refuses_in_a_line(words: list[str], text: str, capsys: Printed) -
     error = capsys.readouterr().err
     assert text in error
     assert error.count("\n") == 1
+
+
+def test_sweep_knows_own_terms(tmp_path: Path, capsys: Printed) -> None:
+    recording = jid.load(WELL)
+    other = 3.0 * np.sin(2.7 * recording.time)
+    assert recording.torque is not None
+    path = tmp_path / "other.csv"
+    recording.with_signals(torque=recording.torque + 0.5 * other, extra={"other": other}).save(path)
+    words = ["sweep", str(path), "--term", "other=scaled", "--method", "separable"]
+    words += ["--extra", "other=extra_other", "--output", str(tmp_path / "study.jsonl")]
+    assert main([*words, "--trials", "1", "--json", "--quiet"]) == 0
+    (cell,) = json.loads(capsys.readouterr().out)["cells"]
+    assert "scale_of_other" in json.dumps(cell)

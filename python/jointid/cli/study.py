@@ -20,9 +20,11 @@ from jointid.cli.arguments import (
     refinement_arguments,
     refinements,
     several_recordings,
+    term_argument,
     whole,
     whole_seed,
     windows,
+    with_terms,
 )
 from jointid.cli.outputs import check_folder
 from jointid.cli.scenario import scenario_arguments, scenario_of
@@ -75,6 +77,7 @@ def add_sweep(commands: Any) -> None:
         ("--residual", "instruments, sensor or torque"),
     ):
         sweep.add_argument(name, help=explanation)
+    term_argument(sweep)
     sweep.add_argument(
         "--windows",
         type=windows,
@@ -140,12 +143,18 @@ def sweep(arguments: argparse.Namespace) -> None:
         if getattr(arguments, name) is not None
     } | refinements(arguments)
     subject: Any
-    from jointid.joint.model import Model
-
+    model = with_terms(arguments.model, arguments)
+    if arguments.term:
+        if arguments.simulate is not None:
+            raise InputError(
+                "a simulation has no extra signals", argument="terms", value=model.terms
+            )
+        options["model"] = model
     if arguments.simulate is not None:
         subject = scenario_of(arguments.simulate, arguments)
     else:
-        subject = load_all(arguments.recordings, arguments, [Model.of(arguments.model)])
+        known = [] if arguments.joint is None else [Joint.load(arguments.joint).model]
+        subject = load_all(arguments.recordings, arguments, [model, *known])
     with (
         _continuation(arguments),
         _workers(arguments.workers) as executor,

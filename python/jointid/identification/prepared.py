@@ -24,6 +24,7 @@ from jointid.identification.drift import without_drift
 from jointid.identification.follow_up import EstimateSource
 from jointid.identification.gain import penalty_as_fitted, with_instruments
 from jointid.identification.inference.given import of_given_facts
+from jointid.identification.inference.own_noise import measured_once_more
 from jointid.identification.inference.residual_side import of_residual_side
 from jointid.identification.refinements.refinements import (
     Refinements,
@@ -286,7 +287,12 @@ def prepare(
             problem, penalty, parameters, windows, residual is not None
         )
         domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
-        refuse_duplicates(problem, penalty, domain)
+        refuse_duplicates(
+            penalty,
+            domain,
+            problem.choice.model.resolved.terms,
+            functools.partial(measured_once_more, problem),
+        )
     except InputError as error:
         if error.place == "parameters":  # they are not excited
             raise_if_hardly_moving(runs)

@@ -184,7 +184,7 @@ def _mean_sign(signal: Array) -> Array:
     with np.errstate(invalid="ignore", divide="ignore"):
         part = sign[:-1] * (size[:-1] - size[1:]) / total
     # A signal that is exactly 0 at one end of an interval has the other end's sign in all of it.
-    return np.where(crossing, part, np.sign(sign[:-1] + sign[1:]))
+    return np.asarray(np.where(crossing, part, np.sign(sign[:-1] + sign[1:])))
 
 
 def _integral(mean: Array, recording: Recording) -> Array:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.identification.inference.noise_effect import NoiseEffect, noise_effect
+from jointid.identification.inference.measuring_again import NoiseEffect, noise_effect
+from jointid.identification.inference.velocity_noise import measured_again
 from jointid.joint.own_terms import OwnTerms
 from jointid.problem.problem import Problem
 from jointid.recording.derived import derived_velocity
@@ -71,6 +72,16 @@ def own_systematic(
         lambda run, draw, number: extra_measured_again(run, list(noisy), draw, number),
     )
     return None if effect is None else OwnNoise(effect=effect, noise=tuple(noisy.items()))
+
+
+def measured_once_more(problem: Problem) -> Problem:
+    """Return the problem with the velocity and the own terms' signals measured once more, harmless noise included."""
+    signals = problem.choice.model.resolved.terms.signals
+    runs = tuple(
+        extra_measured_again(measured_again(run, 0, number), signals, 0, number)
+        for number, run in enumerate(problem.recordings)
+    )
+    return replace(problem, recordings=runs)
 
 
 def _noisy(problem: Problem, own: OwnTerms, free: set[str]) -> dict[str, float]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.identification.inference.noise_effect import REPEATS, NoiseEffect, noise_effect
+from jointid.identification.inference.measuring_again import REPEATS, NoiseEffect, noise_effect
 from jointid.problem.problem import Problem
 from jointid.recording.recording import Recording
 from jointid.recording.velocity_noise import follows_position, noise_of_velocity

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.identification.refinements.smooth_windows import SmoothWindows
+from jointid.problem.own_balance import OwnSignal
 
 Array = NDArray[np.float64]
 
@@ -56,6 +57,28 @@ def friction(windows: SmoothWindows, circle: tuple[Array, Array]) -> list[Array]
     signals += [sign * cosine, sign * sine, v * cosine, v * sine]
     signals += [sign * time, v * time]
     return [windows.mean(each) for each in signals]
+
+
+def own_columns(
+    windows: SmoothWindows, own: Sequence[OwnSignal], *, friction: bool, taken: bool
+) -> list[Array]:
+    """Return the mean torque of own terms in each window, each for a coefficient of 1.
+
+    Parameters
+    ----------
+    windows : SmoothWindows
+    own : sequence of OwnSignal
+        Of the windows' stretch.
+    friction : bool
+        Which terms: friction, or what is none.
+    taken : bool
+        Whether known torques, which the drive's torque lacks already, are among them.
+    """
+    return [
+        windows.rate(each.series)
+        for each in own
+        if each.friction == friction and (taken or not each.taken)
+    ]
 
 
 def stacked(columns: Sequence[Sequence[Array]]) -> Array:

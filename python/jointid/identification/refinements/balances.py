@@ -9,8 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.identification.refinements.balance_columns import conservative, friction, stacked
-from jointid.identification.refinements.own_columns import own_columns
+from jointid.identification.refinements.balance_columns import (
+    conservative,
+    friction,
+    own_columns,
+    stacked,
+)
 from jointid.identification.refinements.shift_fit import Balance, coefficients
 from jointid.identification.refinements.smooth_windows import SmoothWindows
 from jointid.identification.refinements.stretches import Piece

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.identification.refinements.own_columns import OwnSignal, own_signals
 from jointid.identification.refinements.smooth_windows import Stretch, half_length
+from jointid.problem.own_balance import OwnSignal, own_signals
 from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
@@ -75,7 +75,8 @@ def pieces_of(problem: Problem) -> list[Piece]:
     if total > _MOST:
         count = max(1, len(spans) * _MOST // total)
         spans = [spans[i] for i in np.linspace(0, len(spans) - 1, count).astype(int)]
-    own = {number: own_signals(problem, number) for number, _, _ in spans}
+    terms = problem.choice.model.resolved.terms
+    own = {number: own_signals(terms, problem.recordings[number]) for number, _, _ in spans}
     return [_piece(problem, *span, own[span[0]]) for span in spans]
 
 

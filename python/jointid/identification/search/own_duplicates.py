@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.identification.inference.velocity_noise import measured_again
 from jointid.identification.search.domain import SearchDomain
+from jointid.joint.own_terms import OwnTerms
 from jointid.problem.problem import Problem
-from jointid.recording.extra_noise import extra_measured_again
 
 Array = NDArray[np.float64]
 
@@ -25,7 +24,9 @@ _NAMED = 0.01  # of the largest part in a sum
 _NOTHING = 1e-12  # of the torque's size
 
 
-def refuse_duplicates(problem: Problem, penalty: _core.Penalty, domain: SearchDomain) -> None:
+def refuse_duplicates(
+    penalty: _core.Penalty, domain: SearchDomain, own: OwnTerms, again: Callable[[], Problem]
+) -> None:
     """Refuse an own term with a free coefficient whose column is that of another one, or a sum of others.
 
     The same is what the noise of the data cannot tell apart: measured once more, the columns differ by as much. What is
@@ -33,16 +34,17 @@ def refuse_duplicates(problem: Problem, penalty: _core.Penalty, domain: SearchDo
 
     Parameters
     ----------
-    problem : Problem
     penalty : Penalty
     domain : SearchDomain
+    own : OwnTerms
+    again : callable
+        Returns the problem with signals that were measured once more.
 
     Raises
     ------
     InputError
         Names both.
     """
-    own = problem.choice.model.resolved.terms
     if not own.each:
         return
     count = penalty.coefficients
@@ -61,8 +63,8 @@ def refuse_duplicates(problem: Problem, penalty: _core.Penalty, domain: SearchDo
     ]
     free = [not domain.fixed(name) for name in names]
     products = np.einsum("ni,nj->ij", scaled, scaled)
-    again = _measured_again(problem, penalty, shapes)
-    changed = np.zeros_like(scaled) if again is None else again / sizes_or_one - scaled
+    repeated = _columns_again(again(), penalty, shapes)
+    changed = np.zeros_like(scaled) if repeated is None else repeated / sizes_or_one - scaled
     for index in [index for index in mine if free[index]]:
         others = [k for k in range(count) if k != index and free[k] and present[k]]
         if float(changed[:, index] @ changed[:, index]) > 1.0 / _NOISE:
@@ -85,18 +87,13 @@ def refuse_duplicates(problem: Problem, penalty: _core.Penalty, domain: SearchDo
             )
 
 
-def _measured_again(problem: Problem, penalty: _core.Penalty, shapes: Array) -> Array | None:
+def _columns_again(problem: Problem, penalty: _core.Penalty, shapes: Array) -> Array | None:
     """The penalty's columns from signals with noise of their own size once more; None where its windows are others."""
-    signals = problem.choice.model.resolved.terms.signals
-    runs = tuple(
-        extra_measured_again(measured_again(run, 0, number), signals, 0, number)
-        for number, run in enumerate(problem.recordings)
-    )
     options = _core.WindowOptions(
         duration=penalty.window_duration, cumulative=bool(penalty.cumulative)
     )
     try:
-        again = replace(problem, recordings=runs).penalty(options)
+        again = problem.penalty(options)
     except InputError:  # with this noise the joint seems to stand still
         return None
     same = np.array_equal(again.windows, penalty.windows)

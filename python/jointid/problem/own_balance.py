@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.identification.refinements.smooth_windows import SmoothWindows
 from jointid.joint.own_terms import OwnTerms
 from jointid.problem.own_integrals import own_series, signal_of
-from jointid.problem.problem import Problem
+from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
@@ -39,9 +37,8 @@ class OwnSignal:
     taken: bool
 
 
-def own_signals(problem: Problem, number: int) -> tuple[OwnSignal, ...]:
+def own_signals(own: OwnTerms, recording: Recording) -> tuple[OwnSignal, ...]:
     """Return the own terms' signals of a recording; none without own terms."""
-    own, recording = problem.choice.model.resolved.terms, problem.recordings[number]
     signals = []
     for each in own.each:
         run = recording
@@ -60,25 +57,3 @@ def own_signals(problem: Problem, number: int) -> tuple[OwnSignal, ...]:
             for _, series in own_series(OwnTerms((each,)), run)
         ]
     return tuple(signals)
-
-
-def own_columns(
-    windows: SmoothWindows, own: Sequence[OwnSignal], *, friction: bool, taken: bool
-) -> list[Array]:
-    """Return the mean torque of own terms in each window, each for a coefficient of 1.
-
-    Parameters
-    ----------
-    windows : SmoothWindows
-    own : sequence of OwnSignal
-        Of the windows' stretch.
-    friction : bool
-        Which terms: friction, or what is none.
-    taken : bool
-        Whether known torques, which the drive's torque lacks already, are among them.
-    """
-    return [
-        windows.rate(each.series)
-        for each in own
-        if each.friction == friction and (taken or not each.taken)
-    ]
