@@ -88,6 +88,22 @@ def test_info_shows_the_contents_of_a_recording(capsys: pytest.CaptureFixture[st
     assert "sensor" in capsys.readouterr().out
 
 
+def test_info_says_that_stamps_may_be_milliseconds(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "run.csv"
+    rows = "".join(f"{2 * k},{(k % 7) / 7},{k % 5}\n" for k in range(50))
+    path.write_text(f"time,position_rad,torque_Nm\n{rows}")
+    assert main(["info", str(path)]) == 0
+    said = capsys.readouterr().out
+    assert "the samples are 2 s apart: the time stamps may be in milliseconds" in said
+    assert "load with --unit time=ms" in said
+    assert main(["info", str(path), "--unit", "time=msec"]) == 0
+    said = capsys.readouterr().out
+    assert "warning" not in said
+    assert "duration [s]: 0.098" in said
+
+
 def test_identify_takes_several_recordings(
     tmp_path: Path, thesis_file: str, capsys: pytest.CaptureFixture[str]
 ) -> None:

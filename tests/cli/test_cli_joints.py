@@ -3,6 +3,8 @@
 import json
 from pathlib import Path
 
+import numpy as np
+import numpy.typing as npt
 import pytest
 from moving_joints import recorded, sines, torques
 
@@ -126,6 +128,72 @@ def test_what_cannot_be_done(
     assert code == 2
     assert says in error
     assert error.count("\n") == 1
+
+
+def test_a_number_that_names_no_joint(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """What is advised can be pasted."""
+    motion = sines(2, 1, duration=2.0)
+    robot = jid.RobotRecording(
+        time=motion.time, position=motion.position, names=["elbow_joint", "wrist_3_joint"]
+    )
+    robot.save(path := tmp_path / "arm.csv")
+    code, _, error = ran(capsys, "info", path, "--joints", "3")
+    assert code == 2
+    assert "there are elbow_joint, wrist_3_joint" in error
+    assert "load with --joints elbow_joint (or another one)" in error
+    assert ran(capsys, "info", path, "--joints", "elbow_joint")[0] == 0
+    code, _, error = ran(capsys, "identify", path, "--joints", "3,elbow_joint")
+    assert (code, "load with --joints elbow_joint (or another one)" in error) == (2, True)
+
+
+def text_log(path: Path, headers: list[str], columns: list[npt.ArrayLike]) -> Path:
+    np.savetxt(path, np.column_stack(columns), delimiter=",", header=",".join(headers), comments="")
+    return path
+
+
+def test_a_current_and_a_commanded_torque(
+    arm: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """As a UR robot logs them; what is advised can be pasted."""
+    robot = jid.load_robot(arm)
+    headers = ["timestamp", "actual_q_0", "actual_q_1", "actual_current_0", "actual_current_1"]
+    headers += ["target_moment_0", "target_moment_1"]
+    torque = np.asarray(robot.torque)
+    values: list[npt.ArrayLike] = [robot.time, robot.position, torque / 10.0, torque]
+    log = text_log(tmp_path / "ur.csv", headers, values)
+    advised = "--column torque='target_moment_{joint}' (a commanded torque)"
+    for joints in (("1",), ("1", "--gear-ratio", "100"), ("all",), ("all", "--gear-ratio", "9")):
+        code, out, error = ran(capsys, "identify", log, "--joints", *joints)
+        assert code == 2
+        assert advised in out + error
+        assert (
+            "--joint JOINT (with torque_constant and gear_ratio, which convert it)" in out + error
+        )
+        column = ("--column", "torque=target_moment_{joint}")
+        assert ran(capsys, "identify", log, "--joints", *joints, *column)[0] == 0
+
+
+def test_a_torque_of_the_motor_needs_the_ratio(
+    arm: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    robot = jid.load_robot(arm)
+    headers = ["time_s", "pos_1_rad", "pos_2_rad", "motor_torque_1_Nm", "motor_torque_2_Nm"]
+    values: list[npt.ArrayLike] = [robot.time, robot.position, np.asarray(robot.torque) / 50.0]
+    log = text_log(tmp_path / "kr.csv", headers, values)
+    for joints in ("2", "all"):
+        code, out, error = ran(capsys, "identify", log, "--joints", joints)
+        assert code == 2
+        assert (
+            "load with --gear-ratio RATIO (the motor's angle per angle of the joint)" in out + error
+        )
+        code, out, _ = ran(
+            capsys, "identify", log, "--joints", joints, "--gear-ratio", "50", "--json"
+        )
+        assert code == 0
+        document = json.loads(out)
+        estimate = document["joints"]["2"]["estimate"] if joints == "all" else document
+        value = jid.identify(robot.joint(2)).parameters["coulomb"].value
+        assert estimate["parameters"]["coulomb"]["value"] == pytest.approx(value, rel=1e-6)
 
 
 def test_the_advice_works(arm: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -163,7 +163,17 @@ def test_inertia_and_torque_over_an_angle_are_centred_in_its_range() -> None:
             "scale_of_one.*the same torque as torque_offset",
         ),
         ({"a": V6, "b": 2.0 * V6}, {"a": "viscous", "b": "viscous"}, "viscous_of_a.*viscous_of_b"),
-        ({"a": MODEL, "b": MODEL}, {"a": "known", "b": "known"}, "known_of_a.*known_of_b"),
+        (
+            {"a": V6 + V, "b": V6 - V},
+            {"a": "viscous", "b": "viscous"},
+            "viscous_of_a.*a sum of viscous",
+        ),
+        ({"still": np.full_like(V, 0.3)}, {"still": "viscous@rate"}, "viscous_of_still_rate"),
+        (
+            {"still": 0.3 + 1e-5 * np.random.default_rng(0).normal(size=len(V))},
+            {"still": "coulomb@rate"},
+            "coulomb_of_still_rate.*not more than its own noise",
+        ),
         (
             {"a": V6, "b": MODEL, "sum": V6 + MODEL},
             {"a": "viscous", "b": "scaled", "sum": "scaled"},
@@ -180,6 +190,56 @@ def test_a_term_that_says_nothing_of_its_own_is_refused_by_name(
         identify(run(**extra), terms)
     text = str(caught.value)
     assert re.search(message, text), text
+
+
+def test_a_sum_is_refused_where_only_the_velocity_noise_tells_it() -> None:
+    position = Q + np.random.default_rng(0).normal(scale=2e-5, size=len(Q))
+    more = 2.0 * V6
+    recorded = run(more, a=V6 + V, b=V6 - V)
+    recording = jid.Recording(
+        time=TIME, position=position, torque=recorded.torque, extra=recorded.extra
+    )
+    with pytest.raises(InputError, match=r"viscous_of_a.*a sum of viscous and viscous_of_b"):
+        identify(recording, {"a": "viscous", "b": "viscous"})
+
+
+def test_known_signals_of_equal_shape_are_both_taken_away() -> None:
+    gravity = 15.0 * np.cos(Q)
+    recording = run(2.0 * gravity, link=gravity, payload=gravity.copy())
+    check(identify(recording, {"link": "known", "payload": "known"}))
+    ones = np.ones_like(Q)
+    recording = run(3.0 * A, link=2.0 * ones, rotor=ones)
+    check(identify(recording, {"link": "inertia", "rotor": "inertia"}))
+    free = {"known_of_link": {"vary": True}, "known_of_payload": {"vary": True}}
+    recording = run(2.0 * gravity, link=gravity, payload=gravity)
+    with pytest.raises(InputError, match=r"known_of_link.*known_of_payload"):
+        identify(recording, {"link": "known", "payload": "known"}, parameters=free)
+
+
+@pytest.mark.parametrize("size", [0.05, 0.2])
+def test_noise_of_a_scaled_signal_is_in_the_interval_and_named(size: float) -> None:
+    gravity = 15.0 * np.cos(Q)
+    noise = size * 15.0 * np.random.default_rng(7).normal(size=len(TIME))
+    estimate = identify(run(gravity, tau=gravity + noise), {"tau": "scaled"})
+    gain = estimate.parameters["scale_of_tau"]
+    assert gain.interval is not None
+    assert gain.systematic["extra"] > 0.0
+    assert gain.interval[0] < 1.0 < gain.interval[1]
+    found = {each.code: each for each in estimate.findings}
+    assert ("noisy_signal" in found) == (size == 0.2)
+    if size == 0.2:
+        assert gain.value < 1.0 - 3.0 * gain.stderr  # what the finding is about
+        assert "scale_of_tau" in found["noisy_signal"].parameters
+        assert "tau" in found["noisy_signal"].cause
+    quiet = identify(run(gravity, tau=gravity), {"tau": "scaled"}).parameters["scale_of_tau"]
+    assert "extra" not in quiet.systematic
+
+
+def test_noise_of_a_known_torque_with_a_fixed_gain_biases_nothing() -> None:
+    noise = 4.0 * np.random.default_rng(7).normal(size=len(TIME))
+    estimate = identify(run(MODEL, tau=MODEL + noise), {"tau": "known"})
+    check(estimate)
+    assert "extra" not in estimate.parameters["viscous"].systematic
 
 
 def test_an_extra_signal_that_is_the_position_derivative_is_refused_too() -> None:
@@ -295,3 +355,11 @@ def test_the_series_of_a_window_does_not_depend_on_its_samples() -> None:
     before = abs(V6[k]) / (abs(V6[k]) + abs(V6[k + 1]))
     step = TIME[k + 1] - TIME[k]
     assert series[k + 1] - series[k] == pytest.approx(np.sign(V6[k]) * step * (2 * before - 1))
+
+
+def test_a_signal_that_starts_from_exactly_zero_has_its_sign_from_there() -> None:
+    started = np.maximum(0.0, TIME - TIME[3])
+    ((_, series),) = own_series(OwnTerms.of({"a": "coulomb"}), run(a=started))
+    assert np.diff(series)[:6] == pytest.approx(0.002 * np.array([0, 0, 0, 1, 1, 1]))
+    ((_, series),) = own_series(OwnTerms.of({"a": "coulomb"}), run(a=-started[::-1]))
+    assert np.diff(series)[-5:] == pytest.approx(-0.002 * np.array([1, 1, 0, 0, 0]))

@@ -77,3 +77,43 @@ def test_turns_are_recognised_by_position_and_velocity(
     (warning,) = (each for each in found if each.code == "velocity_mismatch")
     assert f"the {signal}, of which no unit is stated, seems to be in {unit}" in warning.message
     assert warning.advice[0].arguments == {"units": {signal: unit}}
+    assert warning.severity == "blocking"
+
+
+_PER_TURN = {"rad": 2.0 * np.pi, "deg": 360.0, "rev": 1.0, "rpm": 60.0, "deg_s": 360.0}
+_PER_TURN |= {"rev_s": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("position", "velocity"),
+    [("deg", "rpm"), ("deg", "rev_s"), ("rev", "rpm"), ("deg", "deg_s")],
+)
+def test_two_unstated_units_are_recognised_together(
+    position: str, velocity: str, tmp_path: Path
+) -> None:
+    run = jid.load(data_folder() / "well_excited.csv.gz")
+    angle = run.position / (2.0 * np.pi) * _PER_TURN[position]
+    speed = run.velocity / (2.0 * np.pi) * _PER_TURN[velocity]
+    path = tmp_path / "log.csv"
+    header = "time_s,position,velocity,torque_Nm,sensor_raw"
+    table = np.column_stack([run.time, angle, speed, run.torque, run.sensor])  # type: ignore[list-item]
+    np.savetxt(path, table, delimiter=",", header=header, comments="")
+    warning = next(each for each in about_units(path) if each.code != "wrong_scale")
+    assert warning.severity == "blocking"
+    units = warning.advice[0].arguments["units"]
+    assert {name: unit.replace("/", "_") for name, unit in units.items()} == {
+        "position": position,
+        "velocity": velocity,
+    }
+    assert about_units(path, units) == []
+
+
+def test_a_large_factor_without_an_explanation_is_blocking(tmp_path: Path) -> None:
+    run = jid.load(data_folder() / "well_excited.csv.gz")
+    for factor, severity in ((12.3, "blocking"), (1.0 / 12.3, "blocking"), (2.0, "warning")):
+        strange = jid.Recording(
+            time=run.time, position=run.position, velocity=factor * run.velocity, torque=run.torque
+        )
+        found = jid.identify(strange, jid.Joint(inertia=2.5), search="separable").warnings
+        (warning,) = (each for each in found if each.code == "velocity_mismatch")
+        assert warning.severity == severity

@@ -64,6 +64,7 @@ def test_a_call_without_terms_has_the_joints() -> None:
     [
         ({"q6": "viscos"}, "did you mean 'viscous'"),
         ({"q6": ""}, "no such kind"),
+        ({"q6": "viscous@rat"}, "did you mean 'viscous@rate'"),
         ({"q6": 3}, "text like viscous"),
         ({"q6": []}, "text like viscous"),
         ({"q 6": "viscous"}, "letters, digits"),

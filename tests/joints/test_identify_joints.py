@@ -123,6 +123,9 @@ def test_one_joint_that_fails_does_not_lose_the_others() -> None:
 def test_some_joints_of_a_recording(robot: jid.RobotRecording) -> None:
     found = jid.identify_joints(robot, joints=[3], couplings=False)
     assert list(found) == ["3"]
+    assert found[3] is found["3"]
+    with pytest.raises(KeyError, match="the only one is 3"):
+        found["4"]
     with pytest.raises(jid.InputError, match="no such joint"):
         jid.identify_joints(robot, joints=[4])
     with pytest.raises(jid.InputError, match="at least one"):

@@ -79,10 +79,19 @@ def test_a_recording_with_many_gaps() -> None:
 
 def test_a_motor_side_signal_needs_a_joint() -> None:
     error = refused(jid.Recording(**MOTION, current=np.cos(7.0 * TIME)))
-    assert error.argument == "joint"
-    assert error.remedy == ("give a joint with torque_constant and gear_ratio, which convert it",)
+    assert error.argument == "torque"
+    joint = "identify with joint=... (with torque_constant and gear_ratio, which convert it)"
+    assert [str(each) for each in error.remedy] == [joint]
     error = refused(jid.Recording(**MOTION, motor_torque=np.cos(7.0 * TIME)))
-    assert error.remedy == ("give a joint with gear_ratio, which convert it",)
+    ratio, joint = map(str, error.remedy)
+    assert ratio == "load with gear_ratio=... (the motor's angle per angle of the joint)"
+    assert joint == "identify with joint=... (with gear_ratio, which convert it)"
+    commanded = {"commanded_torque": "target_moment_{joint}"}
+    error = refused(jid.Recording(**MOTION, current=np.cos(7.0 * TIME), metadata=commanded))
+    assert (
+        str(error.remedy[0])
+        == "load with columns={'torque': 'target_moment_{joint}'} (a commanded torque)"
+    )
 
 
 def test_a_missing_torque_names_the_call_that_maps_it() -> None:

@@ -11,6 +11,7 @@ from recording_files import ROWS, N, assert_one_sentence, column, refusal
 from jointid.base.errors import InputError
 from jointid.recording.readers.loading import load
 from jointid.recording.readers.loading import table_of as _table
+from jointid.recording.readers.loading_robot import load_robot
 from jointid.recording.recording import Recording
 
 h5py = pytest.importorskip("h5py")
@@ -91,14 +92,55 @@ def test_a_matrix_has_a_column_for_each_joint(turned: bool, ending: str, tmp_pat
         {"position": {"unit": "rad"}},
     )
     assert _table(path).headers == (
-        *("joint_1.effort", "joint_2.effort", "joint_3.effort"),
-        *("joint_1.position [rad]", "joint_2.position [rad]", "joint_3.position [rad]", "t"),
+        *("effort(:,1)", "effort(:,2)", "effort(:,3)"),
+        *("position(:,1) [rad]", "position(:,2) [rad]", "position(:,3) [rad]", "t"),
     )
     for torque in ("joint_3.effort", "effort(:,3)"):
         loaded = load(path, columns={"position": "joint_3.position", "torque": torque})
         assert loaded.position.tolist() == ARM[:, 2].tolist()
         assert loaded.torque is not None
         assert loaded.torque.tolist() == (2.0 * ARM[:, 2]).tolist()
+
+
+@pytest.mark.parametrize(
+    ("position", "velocity", "torque"),
+    [
+        ("data/joint_positions", "data/joint_velocities", "data/joint_torques"),
+        ("positions", "velocities", "torques"),
+        ("observations/qpos", "observations/qvel", "observations/effort"),
+        ("qpos", "qvel", "qfrc_actuator"),
+    ],
+)
+def test_joints_of_matrices_with_plural_names(
+    position: str, velocity: str, torque: str, tmp_path: Path
+) -> None:
+    path = hdf5(
+        tmp_path / "arm.h5",
+        {"timestamps": TIME, "action": ARM, position: ARM, velocity: 2.0 * ARM, torque: 3.0 * ARM},
+        {position: {"unit": "rad"}},
+    )
+    loaded = load(path, joint=3)
+    assert loaded.velocity is not None
+    assert loaded.torque is not None
+    np.testing.assert_array_equal(loaded.position, ARM[:, 2])
+    np.testing.assert_array_equal(loaded.velocity, 2.0 * ARM[:, 2])
+    np.testing.assert_array_equal(loaded.torque, 3.0 * ARM[:, 2])
+    assert load_robot(path).names == ("1", "2", "3")
+    name = position.rpartition("/")[2]
+    for pattern in (f"joint_{{joint}}.{name} [rad]", f"{name}(:,{{joint}})"):
+        assert load_robot(path, columns={"position": pattern}).names == ("1", "2", "3")
+        assert load(path, joint=3, columns={"position": pattern}) == loaded
+
+
+def test_either_version_of_mat_names_the_joints_alike(tmp_path: Path) -> None:
+    scipy_io = pytest.importorskip("scipy.io")
+    mat73(
+        new := tmp_path / "new.mat",
+        lambda file: [variable(file, "tout", TIME), variable(file, "q", ARM)],
+    )
+    scipy_io.savemat(old := tmp_path / "old.mat", {"tout": TIME, "q": ARM})
+    assert load_robot(new).names == load_robot(old).names == ("1", "2", "3")
+    np.testing.assert_array_equal(load(new, joint=2).position, load(old, joint=2).position)
 
 
 def test_groups_of_joints_name_them(tmp_path: Path) -> None:
@@ -115,9 +157,7 @@ def test_fields_of_a_table(tmp_path: Path) -> None:
     rows = np.zeros(N, dtype=kind)
     rows["t"], rows["q"], rows["drive"]["tau"] = TIME, ARM, SPEED
     path = hdf5(tmp_path / "table.h5", {"runs/table": rows})
-    assert _table(path).headers == (
-        *("t", "joint_1.q", "joint_2.q", "joint_3.q", "drive.tau", "drive.n"),
-    )
+    assert _table(path).headers == (*("t", "q(:,1)", "q(:,2)", "q(:,3)", "drive.tau", "drive.n"),)
     loaded = load(path, columns={"position": "joint_2.q", "torque": "drive.tau"})
     np.testing.assert_allclose(loaded.position, ARM[:, 1], rtol=1e-6)
     assert loaded.torque is not None
@@ -202,7 +242,7 @@ def test_a_matlab_struct(tmp_path: Path) -> None:
 
     path = mat73(tmp_path / "run.mat", write)
     assert _table(path).headers == (
-        *("enabled", "joint_1.joints", "joint_2.joints", "joint_3.joints", "position", "time"),
+        *("enabled", "joints(:,1)", "joints(:,2)", "joints(:,3)", "position", "time"),
     )
     loaded = load(path, columns={"torque": "log.joints(:,2)"})
     assert loaded.name == "run"

@@ -151,7 +151,39 @@ def test_twincat_scope(
     np.testing.assert_allclose(loaded.torque, TORQUE[: len(loaded)], atol=1e-4)
     assert len(loaded) == 397  # as far as both reach
     assert loaded.metadata["interpolated"] == {"ActTorque [Nm]": "4 ms"}
+    assert loaded.metadata["cut_samples"] == 3
     assert load(path, columns={"torque": "Axes.Axis 1.ActTorque"}) == loaded
+
+
+@pytest.mark.parametrize("count", [4, 2])
+def test_a_slow_temperature_cuts_no_sample(count: int, tmp_path: Path) -> None:
+    groups = [
+        (1.0, [("ActPos", "°", ANGLE.tolist()), ("ActTorque", "Nm", TORQUE.tolist())]),
+        (100.0, [("MotorTemp", "°C", [40.0 + k for k in range(count)])]),
+    ]
+    loaded = load(written(tmp_path / "a.csv", scope(groups, "\t", ",", fill=False)))
+    np.testing.assert_array_equal(loaded.position, np.deg2rad(ANGLE))
+    if count == 4:  # until 0.3 s of 0.399
+        assert loaded.temperature is not None
+        assert loaded.temperature[-1] == 43.0
+    else:
+        assert loaded.temperature is None
+        (left_out,) = loaded.metadata["left_out"]
+        assert (
+            left_out["reason"] == "its samples are from 0 to 0.1 s, the others' from 0 to 0.399 s"
+        )
+
+
+def test_twincat_scope_with_names_beside_time(tmp_path: Path) -> None:
+    block = "Name\tScope\nFile\tx.svdx\nStarttime of export\t134000000000000000\n\n"
+    names = "Time\tActPos\tTime\tActVelo\tTime\tActTorque\n"
+    rows = [f"{k},0\t{k % 5},5\t{k},0\t{k % 3},5\t{k},0\t{k % 4},5" for k in range(20)]
+    loaded = load(written(tmp_path / "a.csv", block + names + "\n".join(rows)))
+    np.testing.assert_allclose(loaded.time, np.arange(20) * 1e-3, atol=1e-15)
+    assert loaded.position.tolist() == [k % 5 + 0.5 for k in range(20)]
+    assert loaded.velocity.tolist() == [k % 3 + 0.5 for k in range(20)]
+    assert loaded.torque is not None
+    assert loaded.torque.tolist() == [k % 4 + 0.5 for k in range(20)]
 
 
 def test_twincat_scope_without_rows(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from jointid.base.errors import InputError
+from jointid.recording.headers import understood
 from jointid.recording.units import UNITS, find_unit, unit_named, unit_names
 
 
@@ -26,6 +27,7 @@ from jointid.recording.units import UNITS, find_unit, unit_named, unit_names
         ("ms", 2500.0, 2.5),
         ("us", 2.5e6, 2.5),
         ("ns", 2.5e9, 2.5),
+        ("min", 0.5, 30.0),
         ("rad_s", 3.0, 3.0),
         ("mrad_s", 3000.0, 3.0),
         ("deg_s", 90.0, math.pi / 2),
@@ -115,7 +117,7 @@ def test_spellings(text: str, name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["", "furlong", "rad_rad", "Nms", "__", "m/s^2", "s⁻¹", "rad/s²", "-1", "min"]
+    "text", ["", "furlong", "rad_rad", "Nms", "__", "m/s^2", "s⁻¹", "rad/s²", "-1"]
 )
 def test_what_is_no_unit(text: str) -> None:
     assert find_unit(text) is None
@@ -135,7 +137,23 @@ def test_a_plural_is_not_taken_for_a_velocity(text: str, meant: str) -> None:
     assert unit_named(text, dimensions=("angular velocity",)).name == f"{meant}_s"
 
 
-@pytest.mark.parametrize("text", ["MNm", "MN·m", "Mrad", "MN m", "MNmm"])
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        *((text, "ms") for text in ("msec", "Milliseconds", "Msec", "mS")),
+        *(("usec", "us"), ("nsec", "ns"), ("sec", "s"), ("minutes", "min")),
+    ],
+)
+def test_usual_spellings_of_times(text: str, name: str) -> None:
+    assert find_unit(text) is UNITS[name]
+
+
+def test_the_least_value_is_not_in_minutes() -> None:
+    assert understood("position_min").meaning is None
+    assert understood("time [min]").unit is UNITS["min"]
+
+
+@pytest.mark.parametrize("text", ["MNm", "MN·m", "Mrad", "MRad", "Mrad/s", "MN m"])
 def test_mega_is_not_milli(text: str) -> None:
     assert find_unit(text) is None
     if find_unit(f"m{text[1:]}"):

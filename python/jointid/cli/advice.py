@@ -8,7 +8,7 @@ from typing import Any
 
 from jointid.base.advice import Action
 from jointid.cli.arguments import number_or_text
-from jointid.cli.options import FILES, FLAGS, PLACEHOLDERS, option_of
+from jointid.cli.options import FILES, FLAGS, NUMBERS, PLACEHOLDERS, option_of
 from jointid.cli.values import behind_option, in_joint_file
 
 MODEL_FIELDS = frozenset(
@@ -39,7 +39,7 @@ def words_of_action(action: Action, command: str, model: str = "") -> str:
     """
     if action.kind != "call":
         return str(action)
-    if action.function in ("load", "load_robot"):
+    if action.function in ("load", "load_robot", "identify_joints"):
         action = _of_reading(action)
     if action.function == "Joint":
         options: list[str] = []
@@ -70,7 +70,7 @@ def _of_reading(action: Action) -> Action:
 
 def option_with_value(option: str, key: str, value: Any) -> str:
     """An option as it is typed, e.g. `--column velocity=none`."""
-    placeholder = PLACEHOLDERS.get(option) or FILES.get(option, "VALUE")
+    placeholder = {**FILES, **NUMBERS, **PLACEHOLDERS}.get(option, "VALUE")
     if option == "--windows" and isinstance(value, float):
         value = f"{behind_option(value)}s"
     if value is ... or value == "...":

@@ -182,10 +182,11 @@ def report(arguments: argparse.Namespace) -> None:
 def info(arguments: argparse.Namespace) -> None:
     """Show what a recording holds."""
     (recording,) = load_all([arguments.recording], arguments)
+    contents = _contents(recording, Wording.of(arguments))
     if arguments.json:
-        print(json.dumps(_contents(recording), indent=1, ensure_ascii=False))
+        print(json.dumps(contents, indent=1, ensure_ascii=False))
         return
-    for label, value in _contents(recording).items():
+    for label, value in contents.items():
         if isinstance(value, dict):
             print(f"{label}:")
             for signal, entry in value.items():
@@ -243,10 +244,14 @@ def _exit_code(refused: str, arguments: argparse.Namespace) -> int:
     return BAD_USAGE
 
 
-def _contents(recording: Recording) -> dict[str, Any]:
+def _contents(recording: Recording, wording: Wording) -> dict[str, Any]:
+    from jointid.identification.warnings.speed import slow_stamps
     from jointid.recording.file_remarks import remarks
 
     contents = _facts(recording)
+    if (slow := slow_stamps(recording)) is not None:
+        advice = " or ".join(wording.of_action(action) for action in slow.advice)
+        contents["warning"] = f"{slow.cause}; {advice}"
     assumed, left_out = (recording.metadata.get(key) for key in ("assumed_units", "left_out"))
     if assumed and isinstance(assumed, list | tuple):
         contents["SI units assumed"] = ", ".join(map(str, assumed))

@@ -143,6 +143,9 @@ FILES: Mapping[str, str] = {
 }
 """Options that take a file, and what stands for one that the user has to choose."""
 
+NUMBERS: Mapping[str, str] = {"--gear-ratio": "RATIO"}
+"""Options that take a number, and what stands for one that the user has to choose."""
+
 FLAGS = frozenset(
     {
         *("--drop-copies", "--resume", "--tracking", "--standard-errors", "--emulate", "--dry-run"),

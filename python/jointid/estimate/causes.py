@@ -36,6 +36,8 @@ class Cause:
         The same as shares of the values, of those that change noticeably.
     shares : mapping of str to float
         The same of all values, noticeable or not.
+    uncertain : mapping of str to float
+        Of values that their own errors leave open: the change in standard errors, where it is a large share.
     harmful : bool
         Whether a value moves by more than 5 %, or by more than two of its errors.
     alike : tuple of str
@@ -53,6 +55,7 @@ class Cause:
     shifts: Mapping[str, float] = field(default_factory=dict, hash=False)
     relative: Mapping[str, float] = field(default_factory=dict, hash=False)
     shares: Mapping[str, float] = field(default_factory=dict, hash=False)
+    uncertain: Mapping[str, float] = field(default_factory=dict, hash=False)
     harmful: bool = True
     alike: tuple[str, ...] = ()
     advice: tuple[Action, ...] = field(default=(), hash=False)
@@ -62,6 +65,7 @@ class Cause:
         object.__setattr__(self, "shifts", MappingProxyType(dict(self.shifts)))
         object.__setattr__(self, "relative", MappingProxyType(dict(self.relative)))
         object.__setattr__(self, "shares", MappingProxyType(dict(self.shares)))
+        object.__setattr__(self, "uncertain", MappingProxyType(dict(self.uncertain)))
 
     def __str__(self) -> str:
         """The cause in a sentence without its advice."""
@@ -82,9 +86,16 @@ class Cause:
     @property
     def moves(self) -> str:
         """The largest changes, as a part of a sentence."""
-        shown = self.relative if self.harmful else self.shares
+        known = {name: share for name, share in self.shares.items() if name not in self.uncertain}
+        shown = self.relative if self.harmful else known
         moved = sorted(shown.items(), key=lambda entry: -abs(entry[1]))[:3]
-        return ", ".join(f"{name} by {_signed(change)}" for name, change in moved)
+        named = [f"{name} by {_signed(change)}" for name, change in moved]
+        if not self.harmful:
+            named += [
+                f"{name}, itself uncertain, by {_in_errors(size)}"
+                for name, size in self.uncertain.items()
+            ]
+        return ", ".join(named)
 
     @property
     def harmless(self) -> str:
@@ -101,7 +112,7 @@ class Cause:
     def __reduce__(self) -> tuple[object, ...]:
         # A read-only mapping cannot be pickled.
         values: dict[str, Any] = {name: getattr(self, name) for name in self.__slots__}
-        for name in ("numbers", "shifts", "relative", "shares"):
+        for name in ("numbers", "shifts", "relative", "shares", "uncertain"):
             values[name] = dict(values[name])
         return _rebuilt, (values,)
 
@@ -181,6 +192,10 @@ def _rebuilt(values: dict[str, Any]) -> Cause:
 
 def _seconds(value: float) -> str:
     return f"{1e3 * value:.3g} ms" if value < 1.0 else f"{value:.3g} s"
+
+
+def _in_errors(size: float) -> str:
+    return f"{size:.2g} of its {'error' if size < 1.0 else 'errors'}"
 
 
 def _signed(share: float) -> str:

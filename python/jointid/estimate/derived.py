@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.estimate.intervals import squared_half_widths
+from jointid.estimate.intervals import BESIDE, quantile_of, squared_half_widths
 from jointid.problem.constant_torque import undivided
 
 if TYPE_CHECKING:
@@ -40,6 +40,11 @@ class DerivedValue:
         95 % interval, with the correlations of the parameters and what theirs contain.
     formula : str
         How it follows, e.g. "coulomb + static".
+    systematic_total : float
+        What the interval has of the parameters' systematic parts, with their correlations, as one standard error.
+        Default 0.
+    largest_part : str or None
+        Name of the systematic part that moves it most; None (default) without one.
     """
 
     name: str
@@ -49,6 +54,8 @@ class DerivedValue:
     stderr: float | None
     interval: tuple[float, float] | None
     formula: str
+    systematic_total: float = 0.0
+    largest_part: str | None = None
 
 
 def derived_values(estimate: Estimate) -> dict[str, DerivedValue]:
@@ -147,6 +154,11 @@ def _derived(
     stderr = _error(estimate, slopes, estimate.covariance)
     half = _error(estimate, slopes, squared_half_widths(estimate))
     interval = None if stderr is None or half is None else (value - half, value + half)
+    beside, part = 0.0, None
+    if stderr is not None and half is not None:
+        part = _largest_part(estimate, slopes)
+        if part is not None:
+            beside = math.sqrt(max(0.0, (half / quantile_of(estimate)) ** 2 - stderr**2))
     return DerivedValue(
         name=name,
         meaning=meaning,
@@ -155,7 +167,19 @@ def _derived(
         stderr=stderr,
         interval=interval,
         formula=formula,
+        systematic_total=beside,
+        largest_part=part if beside > 0.0 else None,
     )
+
+
+def _largest_part(estimate: Estimate, slopes: Mapping[str, float]) -> str | None:
+    sizes: dict[str, float] = {}
+    for name, slope in slopes.items():
+        for part, size in estimate.parameters[name].systematic.items():
+            if part not in BESIDE:
+                sizes[part] = sizes.get(part, 0.0) + abs(slope) * size
+    largest = max(sizes, key=sizes.__getitem__, default=None)
+    return largest if largest is not None and sizes[largest] > 0.0 else None
 
 
 def _error(estimate: Estimate, slopes: Mapping[str, float], matrix: Array) -> float | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,11 +10,30 @@ from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
+    from jointid.estimate.statistics import ParameterEstimate
 
 Array = NDArray[np.float64]
 
 _NORMAL = 1.959964
 _TINY = 1e-100  # a file may hold any number
+
+
+BESIDE = ("given", "residual_side")  # systematic parts that no interval contains
+
+
+def interval_part(p: ParameterEstimate) -> float:
+    """The systematic parts that a parameter's interval contains, together, as one standard error."""
+    return math.hypot(*(size for name, size in p.systematic.items() if name not in BESIDE))
+
+
+def quantile_of(estimate: Estimate) -> float:
+    """Return the largest quantile of the parameters' intervals, in standard errors; at least the normal one."""
+    found = [_NORMAL]
+    for p in estimate.parameters.values():
+        if p.interval is not None and p.stderr is not None and _TINY < p.stderr < np.inf:
+            error = math.hypot(p.stderr, interval_part(p))
+            found.append(0.5 * (p.interval[1] - p.interval[0]) / error)
+    return max(found)
 
 
 def squared_half_widths(estimate: Estimate) -> Array:
@@ -23,12 +43,14 @@ def squared_half_widths(estimate: Estimate) -> Array:
     covariance.
     """
     scale = np.full(len(estimate.free), _NORMAL)
+    quantile = quantile_of(estimate)
     for i, name in enumerate(estimate.free):
         p = estimate.parameters[name]
         if p.interval is not None and p.stderr is not None and _TINY < p.stderr < np.inf:
             scale[i] = 0.5 * (p.interval[1] - p.interval[0]) / p.stderr
         elif p.stderr == np.inf:
-            scale[i] = 0.0
-    # Of what no recording divides only sums are known; they are as uncertain as the others at most.
-    scale[scale == 0.0] = scale.max(initial=_NORMAL)
+            # Of what no recording divides only sums are known: their chance is the covariance's, at a given offset.
+            chance = float(np.sqrt(max(estimate.covariance[i, i], 0.0)))
+            if _TINY < chance < np.inf:
+                scale[i] = quantile * np.hypot(chance, interval_part(p)) / chance
     return np.asarray(estimate.covariance * np.outer(scale, scale))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-SYSTEMATIC_PARTS = ("windows", "sampling", "lag", "velocity", "residual_side", "given")
+SYSTEMATIC_PARTS = ("windows", "sampling", "lag", "velocity", "extra", "residual_side", "given")
 """What moves a value however long the recording is."""
 
 
@@ -27,7 +27,7 @@ class ParameterEstimate:
         fixed or held at a bound.
     interval : tuple of float or None
         95 % interval: of chance (Student's t, with as many degrees of freedom as the segments give), and of the
-        systematic parts "windows", "sampling", "lag" and "velocity". It holds if the given facts are right.
+        systematic parts "windows", "sampling", "lag", "velocity" and "extra". It holds if the given facts are right.
     min, max : float
         Bounds of the search.
     vary : bool
@@ -39,10 +39,10 @@ class ParameterEstimate:
     systematic : mapping of str to float
         Sizes of errors that do not decrease with the recording's length, by name:
         "windows" (how the value moves when they are halved and doubled), "sampling" (the unknown instant of the
-        sensor's sample), "lag" (delays between signals that are certain), "velocity" (its noise), all as one standard
-        error; "residual_side" (how the value moves when the other signal is compared; a gain by instruments needs no
-        side); "given" (the tolerances of the joint's facts, at their limits).
-        Parts that do not apply are missing.
+        sensor's sample), "lag" (delays between signals that are certain), "velocity" (its noise), "extra" (noise of the
+        extra signals of own terms), all as one standard error; "residual_side" (how the value moves when the other
+        signal is compared; a gain by instruments needs no side); "given" (the tolerances of the joint's
+        facts, at their limits). Parts that do not apply are missing.
     """
 
     name: str

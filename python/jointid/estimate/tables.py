@@ -50,11 +50,10 @@ def _row(p: ParameterEstimate | DerivedValue, text: str) -> Row:
         )
         error = f"{two_digits(p.stderr)}{share}"
         interval = f"{p.interval[0]:.5g} … {p.interval[1]:.5g}"
-    beside = systematic(p) if isinstance(p, ParameterEstimate) else ""
-    return shown_name(p.name), number(p.value), error, beside, interval, p.unit, text
+    return shown_name(p.name), number(p.value), error, systematic(p), interval, p.unit, text
 
 
-def systematic(p: ParameterEstimate) -> str:
+def systematic(p: ParameterEstimate | DerivedValue) -> str:
     """All systematic parts together, and the name of the largest, e.g. "1.3 (given)"."""
     if p.largest_part is None:
         return ""

@@ -25,6 +25,7 @@ from jointid.identification.inference.inference import (
     statistics_of,
 )
 from jointid.identification.inference.lag import of_lags
+from jointid.identification.inference.own_noise import own_systematic
 from jointid.identification.inference.segments import Motion, motion_segments
 from jointid.identification.inference.systematic import systematic_errors
 from jointid.identification.inference.undivided import divided, with_undivided
@@ -112,10 +113,15 @@ def infer(
     effect = velocity_systematic(problem, penalty, best, domain.lower, domain.upper)
     if effect is not None:
         parts["velocity"] = np.where(np.isin(np.arange(len(best)), free), effect.systematic, 0.0)
-        if "windows" in parts:
-            # Other windows have other noise at their edges: what the velocity shows is not counted twice.
-            beyond = np.square(parts["windows"]) - np.square(parts["velocity"])
-            parts["windows"] = np.sqrt(np.maximum(0.0, beyond))
+    own_noise = own_systematic(problem, penalty, best, domain.lower, domain.upper)
+    if own_noise is not None:
+        moved_by = own_noise.effect.systematic
+        parts["extra"] = np.where(np.isin(np.arange(len(best)), free), moved_by, 0.0)
+    noisy = [parts[name] for name in ("velocity", "extra") if name in parts]
+    if "windows" in parts and noisy:
+        # Other windows have other noise at their edges: what the signals show is not counted twice.
+        beyond = np.square(parts["windows"]) - np.square(noisy).sum(axis=0)
+        parts["windows"] = np.sqrt(np.maximum(0.0, beyond))
     parts |= {name: moved for name, moved in beside.items() if moved is not None}
     del free_jacobian
     if not penalty.is_linear:
@@ -183,6 +189,7 @@ def infer(
             cause_of=partial(cause_of, problem, penalty, parameters, torque_level),
             white=noise,
             velocity_effect=effect,
+            own_noise=own_noise,
             correlations={
                 (domain.names[free[i]], domain.names[free[j]]): float(spread.correlation[i, j])
                 for i in range(len(free))

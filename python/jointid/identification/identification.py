@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from jointid.estimate.estimate import Estimate
+from jointid.identification.chosen_model import unfit_in
 from jointid.identification.prepared import prepare
 from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Search
@@ -124,22 +125,29 @@ def identify(
         ]
         # A load that scales all values fits anything.
         return min(found, key=lambda each: (_blocked(each), each.residuals.relative))
-    prepared = prepare(
-        recordings,
-        joint,
-        model=stated,
-        parameters=parameters,
-        residual=residual,
-        windows=windows,
-        torque_hold=torque_hold,
-        mask_standstill=mask_standstill,
-        shift=shift,
-        min_speed=min_speed,
-        threads=chosen.threads,
-        choose=True,
-    )
-    outcome = run_search(chosen, prepared.penalty, prepared.domain)
-    return prepared.estimate(chosen, outcome, started)
+    unfit: dict[str, str] = {}
+    while True:
+        prepared = prepare(
+            recordings,
+            joint,
+            model=stated,
+            parameters=parameters,
+            residual=residual,
+            windows=windows,
+            torque_hold=torque_hold,
+            mask_standstill=mask_standstill,
+            shift=shift,
+            min_speed=min_speed,
+            threads=chosen.threads,
+            choose=True,
+            unfit=unfit,
+        )
+        outcome = run_search(chosen, prepared.penalty, prepared.domain)
+        estimate = prepared.estimate(chosen, outcome, started)
+        reason, fitted = unfit_in(estimate), str(estimate.settings["model"])
+        if not reason or fitted in unfit:
+            return estimate
+        unfit[fitted] = reason  # held-out windows did not show it: the next best model
 
 
 def _blocked(estimate: Estimate) -> bool:

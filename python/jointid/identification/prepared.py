@@ -18,6 +18,7 @@ from jointid.base.errors import InputError
 from jointid.estimate.causes import Cause
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.selection import Selection
+from jointid.identification.chosen_model import chosen_without_delays
 from jointid.identification.conclusion import infer
 from jointid.identification.drift import without_drift
 from jointid.identification.follow_up import EstimateSource
@@ -39,7 +40,6 @@ from jointid.identification.search.engine import Outcome
 from jointid.identification.search.own_duplicates import refuse_duplicates
 from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Search
-from jointid.identification.selection.selecting import select_model
 from jointid.joint.joint import Joint
 from jointid.joint.model import AUTO, Model
 from jointid.joint.parameters import Parameter
@@ -227,6 +227,7 @@ def prepare(
     min_speed: float | None = None,
     threads: int = 0,
     choose: bool = False,
+    unfit: Mapping[str, str] | None = None,
 ) -> Prepared:
     """Return an identification ready to search; parameters as in `identify`.
 
@@ -235,6 +236,8 @@ def prepare(
     choose : bool
         Whether a model without a name is chosen from the recordings. Default False: it is coulomb_viscous,
         and the name "auto" is refused.
+    unfit : mapping of str to str, optional
+        Models that are not chosen, and why. Default: none.
 
     Raises
     ------
@@ -272,16 +275,18 @@ def prepare(
     selection = None
     try:
         if choose and not merged.named:
-            # First: with the wrong model, delays of a fraction of a sample are lost in its misfit.
-            problem, selection = select_model(problem, request, parameters, windows)
-        problem, delays = without_delays(problem, shift)
+            problem, delays, selection = chosen_without_delays(
+                problem, request, parameters, windows, shift, unfit or {}
+            )
+        else:
+            problem, delays = without_delays(problem, shift)
         problem, penalty, slow_motion = without_creep(problem, windows, speed)
         problem, penalty, instant = without_early_reading(problem, penalty, windows)
         problem, penalty = with_instruments(
             problem, penalty, parameters, windows, residual is not None
         )
         domain = domain_for(penalty, problem.joint, parameters, problem.peak_speed)
-        refuse_duplicates(penalty, domain, problem.choice.model.resolved.terms)
+        refuse_duplicates(problem, penalty, domain)
     except InputError as error:
         if error.place == "parameters":  # they are not excited
             raise_if_hardly_moving(runs)

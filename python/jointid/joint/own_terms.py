@@ -35,7 +35,8 @@ CENTRED = ("inertia_over", "torque_over")
 POSITION = "position"
 """Names the joint's own position as the signal of a term."""
 
-_KIND = re.compile(r"([a-z_]+)(?:\(([^()]*)\))?(@rate)?")
+_RATE = "@rate"
+_KIND = re.compile(rf"([a-z_]+)(?:\(([^()]*)\))?({_RATE})?")
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,59}")
 _FIXED = ("known_of_", "known_inertia_of_")
 
@@ -209,7 +210,9 @@ def _own_term(signal: str, text: str) -> OwnTerm:
     found = _KIND.fullmatch(text)
     if not found or found[1] not in KINDS:
         name = found[1] if found else text
-        raise InputError(f"no such kind; {suggestion(name, KINDS)}", argument=place, value=text)
+        rates = [kind + _RATE for kind in KINDS]
+        meant = suggestion(text, rates) if "@" in text else suggestion(name, KINDS)
+        raise InputError(f"no such kind; {meant}", argument=place, value=text)
     kind, centre, rate = found[1], None, bool(found[3])
     if found[2] is not None:
         try:

@@ -18,7 +18,7 @@ from jointid.joints.coupling import shares_of_others
 from jointid.joints.result import FAILED, IDENTIFIED, JointEstimates, JointResult
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
-from jointid.recording.wide.joint_table import joint_named
+from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.robot_recording import RobotRecording
 
 
@@ -141,7 +141,9 @@ def _wanted(robot: RobotRecording, joints: Iterable[str | int] | str | None) -> 
     if joints is None or joints == "all":
         return list(robot.names)
     given = [joints] if isinstance(joints, str | int) else list(joints)
-    names = [joint_named(each, robot.names, robot.name, "joints") for each in given]
+    names = [
+        joint_named(each, robot.names, robot.name, "joints", "identify_joints") for each in given
+    ]
     if not names:
         raise InputError("at least one joint is expected", argument="joints", value=[])
     return list(dict.fromkeys(names))
@@ -186,6 +188,8 @@ def _described(
     if joint is None:
         if recording.sensor is not None:
             return None  # the recording says that there is a sensor, and no joint contradicts it
+        if recording.torque is None:
+            return None  # no joint says what a torque of the motor is at the joint
         joint = Joint(kind=recording.kind)
     changes: dict[str, Any] = {} if joint.name else {"name": f"joint {name}"}
     if robot.gear_ratio is not None and joint.gear_ratio == 1.0:

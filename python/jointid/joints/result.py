@@ -11,6 +11,7 @@ from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.joints.coupling import Share
 from jointid.joints.signals import MEANING
+from jointid.recording.wide.joint_names import joint_named
 
 IDENTIFIED, FAILED = "identified", "failed"
 
@@ -135,7 +136,10 @@ class JointEstimates(Mapping[str, Estimate]):
         return save_json(self, path)
 
     def __getitem__(self, joint: str | int) -> Estimate:
-        result = self.results[str(joint)]
+        try:
+            result = self.results[joint_named(joint, list(self.results), self.name or "estimates")]
+        except InputError as error:
+            raise KeyError(str(error)) from None
         if result.estimate is None:
             raise KeyError(f"joint {joint} failed: {result.error}")
         return result.estimate

@@ -20,6 +20,8 @@ from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
+_ROUNDING = 1e-12  # of a signal's size
+
 
 def own_series(own: OwnTerms, recording: Recording) -> list[tuple[str, Array]]:
     """Return key and series of every own term.
@@ -82,6 +84,8 @@ def known_torque(own: OwnTerms, recording: Recording) -> Array | None:
 
 def rate_of(recording: Recording, values: Array) -> Array:
     """Return the rate of change of a signal, as a derived velocity is that of the position."""
+    if float(np.ptp(values)) <= _ROUNDING * float(np.abs(values).max()):
+        return np.zeros(len(values))  # of a constant, only rounding would be left
     period = recording.sample_period
     return np.asarray(derived_velocity(recording.time, values, recording.gaps, period).velocity)
 
@@ -179,7 +183,8 @@ def _mean_sign(signal: Array) -> Array:
     crossing = sign[:-1] * sign[1:] < 0.0
     with np.errstate(invalid="ignore", divide="ignore"):
         part = sign[:-1] * (size[:-1] - size[1:]) / total
-    return np.where(crossing, part, _middle(sign))
+    # A signal that is exactly 0 at one end of an interval has the other end's sign in all of it.
+    return np.where(crossing, part, np.sign(sign[:-1] + sign[1:]))
 
 
 def _integral(mean: Array, recording: Recording) -> Array:

@@ -119,6 +119,17 @@ def _check_magnitudes(run: Recording, place: str) -> None:
             )
 
 
+def _conversions(recording: Recording, signal: str) -> tuple[Action, ...]:
+    """Return the calls that give the torque at the output without a joint."""
+    if signal == "motor_torque":
+        text = "the motor's angle per angle of the joint"
+        return (Action("call", {"gear_ratio": ...}, text, "load"),)
+    header = recording.metadata.get("commanded_torque")
+    if not isinstance(header, str):
+        return ()
+    return (Action("call", {"columns": {"torque": header}}, "a commanded torque", "load"),)
+
+
 def output_torque(recording: Recording, joint: Joint | None) -> Array:
     """Return the drive's torque at the output [N·m or N].
 
@@ -138,8 +149,11 @@ def output_torque(recording: Recording, joint: Joint | None) -> Array:
         if getattr(recording, signal) is not None:
             raise InputError(
                 f"the recording has {signal}, on the motor side, and no torque at the output",
-                argument="joint",
-                remedy=f"give a joint with {needs}, which convert it",
+                argument="torque",
+                remedy=(
+                    *_conversions(recording, signal),
+                    Action("call", {"joint": ...}, text=f"with {needs}, which convert it"),
+                ),
             )
     raise InputError(
         "the recording has no signal torque",

@@ -31,6 +31,9 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
         count = metadata.get(name)
         if isinstance(count, int) and count:
             found.append(f"{count} messages {what}")
+    cut = metadata.get("cut_samples")
+    if isinstance(cut, int) and cut:
+        found.append(f"{cut} samples at the ends are left out, where a channel has none")
     skipped = metadata.get("not_read")
     if isinstance(skipped, list | tuple) and skipped:
         more = f" and {len(skipped) - _SHOWN} more" if len(skipped) > _SHOWN else ""

@@ -12,9 +12,9 @@ def _words_of(text: str) -> frozenset[str]:
 _QUANTITIES: dict[str, str] = {
     word: quantity
     for quantity, words in {
-        "position": "position positions pos angle angles q theta winkel",
-        "velocity": "velocity velocities vel velo speed omega dq qd qdot dtheta",
-        "torque": "torque torques tau effort efforts moment drehmoment",
+        "position": "position positions pos angle angles q qpos theta winkel",
+        "velocity": "velocity velocities vel velo speed speeds omega dq qd qdot qvel dtheta",
+        "torque": "torque torques tau effort efforts moment drehmoment qfrc",
         "current": "current currents iq",
         "temperature": "temperature temperatures temp temperatur",
     }.items()
@@ -50,6 +50,7 @@ _TIMES = frozenset(
         *(
             "time",
             "t",
+            "tout",
             "timestamp",
             "timestamps",
             "time stamp",
@@ -73,6 +74,7 @@ _TIMES = frozenset(
 )
 # Two words that are one: q_dot is a velocity, i_q a current, time_stamp a stamp.
 _JOINED = {("q", "dot"): "qdot", ("theta", "dot"): "dtheta", ("i", "q"): "iq", ("d", "q"): "dq"}
+_JOINED |= {("qfrc", "actuator"): "qfrc"}  # of MuJoCo; its other qfrc_... are computed
 _WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+|[^\W\d_]+")
 PLAIN, WORDS, OF_A_JOINT = range(3)  # how directly a header names its signal, the clearest first
 

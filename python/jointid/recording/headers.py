@@ -89,6 +89,8 @@ def _divided(header: str) -> tuple[str, Unit | None, str]:
     parts = re.split(r"([_\s,]+)", text)
     for first in range(2, len(parts), 2):  # the longest unit: rad_s before s
         suffix = "_".join(parts[first::2])
+        if suffix.casefold() == "min":
+            break  # the least value: minutes are [min]
         unit = find_unit(suffix) if suffix and not suffix[0].isdigit() else None
         if suffix and is_mega(suffix):
             return "".join(parts[: first - 1]), None, suffix

@@ -67,6 +67,7 @@ UNITS: dict[str, Unit] = {
         ("ms", "time", 1e-3, 0.0),
         ("us", "time", 1e-6, 0.0),
         ("ns", "time", 1e-9, 0.0),
+        ("min", "time", 60.0, 0.0),
         ("rad_s", "angular velocity", 1.0, 0.0),
         ("mrad_s", "angular velocity", 1e-3, 0.0),
         ("deg_s", "angular velocity", math.pi / 180.0, 0.0),
@@ -107,7 +108,11 @@ _ALIASES: dict[str, str] = {
         "deg": "degree degrees",
         "rev": "turn turns revolution revolutions rotation rotations",
         "m": "metre meter metres meters",
-        "s": "sec second seconds",
+        "s": "sec secs second seconds sekunden",
+        "ms": "msec msecs millis millisec millisecond milliseconds millisekunden",
+        "us": "usec usecs micros microsec microsecond microseconds mikrosekunden",
+        "ns": "nsec nsecs nanos nanosec nanosecond nanoseconds nanosekunden",
+        "min": "minute minutes",
         "rad_s": "rads",
         "deg_s": "degs dps",
         "rev_s": "rps turn_s turns_s rotations_s rotationspersecond",
@@ -134,23 +139,36 @@ _BY_FOLDED: dict[str, Unit] = {name.casefold(): unit for name, unit in UNITS.ite
 
 def find_unit(text: str) -> Unit | None:
     """Return the unit that a text names (`rad_s`, `rad/s`, `N·m`, `°`; any case), or None."""
-    name = _HYPHEN.sub("", _PER_TIME.sub(r"_\1", text.strip().translate(_BLANKS)))
-    for spelling, plain in _SPELLINGS.items():
-        name = name.replace(spelling, plain)
+    name = _plain(text)
     if name in UNITS:
         return UNITS[name]
-    if is_mega(name):
-        return None
-    folded = name.casefold()
-    return _BY_FOLDED.get(folded) or UNITS.get(_ALIASES.get(folded, ""))
+    return None if is_mega(text) else _folded(name)
 
 
 def is_mega(text: str) -> bool:
-    """Whether a text is a unit's name with the prefix mega: MNm, Mrad. In capitals alone, MNM, it is milli."""
-    name = text.strip().translate(_BLANKS)
-    unit = _BY_FOLDED.get(_HYPHEN.sub("", name).casefold().replace("_", ""))
+    """Whether a text is a unit's name with the prefix mega: MNm, Mrad/s. In capitals alone, MNM, it is milli.
+
+    A time is never in megaseconds: Msec is another way to write ms.
+    """
+    name = _plain(text)
+    unit = _folded(name)
     milli = unit is not None and unit.name.startswith("m") and unit.factor < 1.0
-    return milli and name.startswith("M") and name != name.upper() and len(name) > 2
+    if not milli or unit is None or unit.dimension == "time":
+        return False
+    return name.startswith("M") and name != name.upper() and len(name) > 2
+
+
+def _plain(text: str) -> str:
+    """Return a unit's name without blanks and dots, `/` as `_`."""
+    name = _HYPHEN.sub("", _PER_TIME.sub(r"_\1", text.strip().translate(_BLANKS)))
+    for spelling, plain in _SPELLINGS.items():
+        name = name.replace(spelling, plain)
+    return name
+
+
+def _folded(name: str) -> Unit | None:
+    folded = name.casefold()
+    return _BY_FOLDED.get(folded) or UNITS.get(_ALIASES.get(folded, ""))
 
 
 def unit_named(

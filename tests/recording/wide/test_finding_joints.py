@@ -32,6 +32,11 @@ def meant(headers: list[str]) -> dict[str, dict[str, str]]:
         ("/joint_states/elbow/position", "/joint_states/elbow/effort", "elbow"),
         ("panda_joint1_position", "panda_joint1_effort", "panda_joint1"),
         ("panda_joint1.position [rad]", "panda_joint1.effort [Nm]", "panda_joint1"),
+        ("joint_positions(:,3) [deg]", "joint_torques(:,3) [N*m]", "3"),
+        ("joint_3.joint_positions [deg]", "joint_3.efforts", "joint_3"),
+        ("positions_3", "motor_currents_3", "3"),
+        ("qpos[2]", "qfrc_actuator[2]", "2"),
+        ("angles.3", "torques.3", "3"),
         ("elbow_2_position_rad", "elbow_2_torque_Nm", "elbow_2"),
     ],
 )
@@ -65,6 +70,32 @@ def test_what_a_model_or_a_tool_says_is_no_signal() -> None:
     ]
     found = joint_headers(["time", "q1", *computed])
     assert [each.meaning for each in found["1"][1:]] == [None] * len(computed)
+
+
+@pytest.mark.parametrize(
+    ("headers", "signals"),
+    [
+        (["positions_1", "velocities_1"], ["position", "velocity"]),
+        (["qpos_1", "qvel_1", "qfrc_bias_1"], ["position", "velocity", None]),
+        (
+            ["q_1", "joint_temperatures_1", "torque_sensors_1"],
+            ["position", "temperature", "sensor"],
+        ),
+    ],
+)
+def test_plural_words(headers: list[str], signals: list[str | None]) -> None:
+    found = joint_headers(headers)["1"]
+    assert [each.meaning and each.meaning.signal for each in found] == signals
+
+
+def test_a_controllers_state() -> None:
+    """What is commanded is the reference; error and output are not measured."""
+    parts = ("reference", "feedback", "error", "output")
+    found = joint_headers(
+        [f"{part}.{signal}[0]" for part in parts for signal in ("positions", "effort")]
+    )
+    meant = [each.meaning and (each.meaning.signal, each.meaning.rank) for each in found["0"]]
+    assert meant == [("reference", 0), ("torque", 3), ("position", 0), ("torque", 0), *[None] * 4]
 
 
 def test_side_and_pattern_of_a_column() -> None:

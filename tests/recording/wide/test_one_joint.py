@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
+from jointid.recording.wide.joint_names import joint_named
 
 
 def written(folder: Path, headers: list[str], seed: int = 0) -> tuple[Path, dict[str, np.ndarray]]:
@@ -64,6 +65,65 @@ def test_a_number_finds_the_name_with_it(tmp_path: Path) -> None:
     )
 
 
+UR = ["shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"]
+
+
+def test_a_number_in_a_name_is_not_the_joints_number(tmp_path: Path) -> None:
+    """Joint 3 of this robot is the elbow, which no number names."""
+    path, columns = written(tmp_path, ["t", *(f"{name}.position [rad]" for name in UR)])
+    expected = (
+        r"there are shoulder_lift_joint, elbow_joint, .*load with joint='shoulder_lift_joint'"
+    )
+    with pytest.raises(jid.InputError, match=expected) as caught:
+        jid.load(path, joint=3)
+    pasted = caught.value.remedy[0].arguments["joint"]  # type: ignore[union-attr]
+    loaded = jid.load(path, joint=pasted)
+    np.testing.assert_array_equal(loaded.position, columns["shoulder_lift_joint.position [rad]"])
+    with pytest.raises(jid.InputError, match=r"load_robot with joints=\['shoulder_lift_joint'\]"):
+        jid.load_robot(path, [3])
+    robot = jid.load_robot(path)
+    with pytest.raises(KeyError, match="there are shoulder_lift_joint"):
+        robot[3]
+    with pytest.raises(jid.InputError, match="the only one is wrist_3_joint"):
+        robot.select(["wrist_3_joint"]).joint(3)
+
+
+def test_a_misspelt_word_of_a_name(tmp_path: Path) -> None:
+    path, _ = written(tmp_path, ["t", *(f"{name}.position [rad]" for name in UR)])
+    with pytest.raises(jid.InputError, match="did you mean 'elbow_joint'"):
+        jid.load(path, joint="elbw")
+    with pytest.raises(KeyError, match="did you mean 'elbow_joint'"):
+        jid.load_robot(path)["elbw"]
+    with pytest.raises(jid.InputError) as caught:  # one of three
+        jid.load(path, joint="wrst")
+    assert caught.value.remedy == ()
+
+
+@pytest.mark.parametrize(
+    ("names", "third"),
+    [
+        (["panda_joint1", "panda_joint2", "panda_joint3"], "panda_joint3"),
+        (["iiwa14_joint_a1", "iiwa14_joint_a3"], "iiwa14_joint_a3"),
+        (["left_joint_1", "left_joint_03"], "left_joint_03"),
+        (["panda_joint3"], "panda_joint3"),
+        (["left_joint_3", "right_joint_3"], None),
+        (["joint_1_left", "joint_3_right"], None),
+        (["base", "joint_3"], None),
+        (["joint_3", "joint_03"], None),
+        (["wrist_3_joint"], None),
+        (["elbow"], None),
+    ],
+)
+def test_a_number_stands_for_a_name_where_all_are_numbered_alike(
+    names: list[str], third: str | None
+) -> None:
+    if third is not None:
+        assert joint_named(3, names, "here") == third
+        return
+    with pytest.raises(jid.InputError, match="there is no such joint"):
+        joint_named(3, names, "here")
+
+
 def test_a_joint_in_a_file_without_joints(tmp_path: Path) -> None:
     path, _ = written(tmp_path, ["time_s", "position_rad"])
     with pytest.raises(jid.InputError, match="name no joints"):
@@ -105,6 +165,20 @@ def test_two_positions_are_refused_with_a_line_to_paste(tmp_path: Path) -> None:
     assert columns_to_paste == {"position": "encoder_pos_{joint}_rad"}
     loaded = jid.load(path, joint=1, columns=columns_to_paste)
     np.testing.assert_array_equal(loaded.position, columns["encoder_pos_1_rad"])
+
+
+def test_joints_where_only_a_pattern_names_them(tmp_path: Path) -> None:
+    headers = ["t", "Foo<1>", "Foo<2>", "Bar<1>", "Bar<2>"]
+    path, columns = written(tmp_path, headers)
+    given = {"position": "Foo<{joint}>", "torque": "bar<{joint}>"}
+    loaded = jid.load(path, joint=2, columns=given)
+    np.testing.assert_array_equal(loaded.position, columns["Foo<2>"])
+    np.testing.assert_array_equal(loaded.torque, columns["Bar<2>"])
+    assert jid.load_robot(path, columns=given).names == ("1", "2")
+    with pytest.raises(jid.InputError, match=r"2 joints \(1, 2\)"):
+        jid.load(path, columns=given)
+    with pytest.raises(jid.InputError, match=r"joints is 'all': the headers name no"):
+        jid.load_robot(path)
 
 
 def test_a_column_number_is_that_of_the_file(tmp_path: Path) -> None:

@@ -231,6 +231,11 @@ def _cause(
         shifts=shifts,
         relative={name: share for name, share in shares.items() if harm[name] > _NOTICED},
         shares=shares,
+        uncertain={
+            name: abs(shifts[name]) / _error_of(parameters[name])
+            for name, share in shares.items()
+            if abs(share) > _MOVED and harm[name] <= 1.0 and _error_of(parameters[name]) > 0.0
+        },
         harmful=max(harm.values(), default=0.0) > 1.0,
         alike=each.alike,
         advice=advice_against(fit, each),
@@ -253,8 +258,7 @@ def _harm(
     errors : float
         Standard errors from which a small shift does harm, too.
     """
-    # With what is systematic: a shift that the interval states already is nothing new.
-    error = (p.interval[1] - p.interval[0]) / (2.0 * _NORMAL) if p.interval is not None else 0.0
+    error = _error_of(p)
     moved = abs(shift) / error if error > 0.0 else 0.0
     after = error * np.sqrt(max(left, 0.0))
     scale = abs(shift / share) if share else 0.0
@@ -262,6 +266,11 @@ def _harm(
         return 0.0
     harm = abs(share) / _MOVED
     return max(harm, moved / errors) if abs(share) > least else harm
+
+
+def _error_of(p: ParameterEstimate) -> float:
+    """Its error with what is systematic: a shift that the interval states already is nothing new."""
+    return (p.interval[1] - p.interval[0]) / (2.0 * _NORMAL) if p.interval is not None else 0.0
 
 
 def _scale(

@@ -9,6 +9,10 @@ from jointid.identification.causes.attribution import Attributed
 from jointid.identification.causes.candidates import FILTERED
 from jointid.identification.causes.fitted import Fitted
 
+_HALF = 0.2  # of a sample period: so near to half a period early, a torque is one that is held
+_HELD = Action(
+    "call", {"torque_hold": "zoh"}, text="if the torque is a command that is held between samples"
+)
 _OTHERWISE: dict[str, tuple[Action, ...]] = {
     "inertia_varies": (
         Action("record", text="motion about one pose, or with a gentler acceleration"),
@@ -54,7 +58,10 @@ def advice_against(fit: Fitted, cause: Attributed) -> tuple[Action, ...]:
     if name == "delay" and detail == FILTERED:
         return (Action("call", {"columns": {"velocity": None}}, function="load"),)
     if name == "delay":
-        return (Action("inspect", text=f"when the {detail} is sampled and logged"),)
+        look = Action("inspect", text=f"when the {detail} is sampled and logged")
+        early = -float(cause.coefficients[0]) / fit.problem.recordings[0].sample_period
+        unheld = detail == "torque" and fit.problem.hold(0) != "zoh"
+        return (_HELD, look) if unheld and abs(early - 0.5) < _HALF else (look,)
     # Friction at low speed: the next richer law where there is one.
     richer = {"coulomb_viscous": "stribeck", "stribeck": "stribeck_general"}.get(model.name)
     if richer is None or (richer == "stribeck_general" and model.asymmetric):

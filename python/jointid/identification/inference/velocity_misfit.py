@@ -17,7 +17,18 @@ from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]
 
-IMITATED = ("slow_motion", "presliding", "stribeck_exponent", "delay")
+# The last ones are how fast the static excess decays, whatever the speed it decays at.
+IMITATED = (
+    "slow_motion",
+    "presliding",
+    "delay",
+    *dict.fromkeys(
+        name
+        for term in _core.terms()
+        for name in term.shapes
+        if term.friction and _core.shape(name).speed_power == 0.0
+    ),
+)
 _DRAWS = 4
 
 

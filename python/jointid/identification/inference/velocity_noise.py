@@ -2,57 +2,35 @@
 
 from __future__ import annotations
 
-import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.base.errors import InputError
+from jointid.identification.inference.noise_effect import REPEATS, NoiseEffect, noise_effect
 from jointid.problem.problem import Problem
 from jointid.recording.recording import Recording
 from jointid.recording.velocity_noise import follows_position, noise_of_velocity
 
 Array = NDArray[np.float64]
 
-REPEATS = 4
 _HARMLESS = 3e-4  # of the peak speed, as where the velocity is derived
 _SHARE = 1e-3  # of the velocity's change over a window: below, the windows were chosen for it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class VelocityEffect:
-    """Change of the parameters when the velocity becomes as noisy again.
+class VelocityEffect(NoiseEffect):
+    """Change of the parameters when the velocity becomes as noisy again, because friction is not linear in it.
 
     Attributes
     ----------
-    shift : ndarray, shape (p,)
-        Its median over some draws: a systematic part of about this size is in the estimate, because
-        friction is not linear in the velocity.
-    spread : ndarray, shape (p,)
-        Standard deviation over the draws.
     noise : float
         Standard deviation of the velocity that was added: the noisiest recording's, a median over its
         samples [rad/s or m/s].
-    draws : int
     """
 
-    shift: Array
-    spread: Array
     noise: float
-    draws: int
-
-    @property
-    def systematic(self) -> Array:
-        """Size of the shift without what chance adds to it."""
-        chance = np.square(self.spread) / self.draws
-        return np.asarray(np.sqrt(np.maximum(0.0, np.square(self.shift) - chance)))
-
-    @property
-    def size(self) -> Array:
-        """Root of the sum of both squares."""
-        return np.asarray(np.hypot(self.shift, self.spread))
 
 
 def velocity_systematic(
@@ -68,8 +46,7 @@ def velocity_systematic(
 
     A derived velocity is derived again, so that its smoothing is part of what is tried: from the smooth position,
     rounded to the encoder's steps once more, or, where the position has no steps, from one with as much noise as it
-    has. A recorded velocity gets noise of its own size. The parameters are then fitted again over the same windows
-    (simulation and extrapolation, Cook and Stefanski 1994).
+    has. A recorded velocity gets noise of its own size. The parameters are then fitted again.
 
     Parameters
     ----------
@@ -84,27 +61,20 @@ def velocity_systematic(
     noisy = [is_noisy(run, penalty.noise_share) for run in problem.recordings]
     if not any(noisy):
         return None
-    options = _core.WindowOptions(
-        duration=penalty.window_duration, cumulative=bool(penalty.cumulative)
+    effect = noise_effect(
+        problem,
+        penalty,
+        best,
+        (lower, upper),
+        lambda run, draw, number: measured_again(run, draw, number) if noisy[number] else run,
+        repeats,
     )
-    moved = []
-    for draw in range(repeats):
-        runs = tuple(
-            measured_again(run, draw, number) if too else run
-            for number, (run, too) in enumerate(zip(problem.recordings, noisy, strict=True))
-        )
-        other = dataclasses.replace(problem, recordings=runs)
-        try:
-            found = other.parts(options).refit(lower, upper, best, threads=problem.threads)
-        except InputError:  # with this noise the joint seems to stand still
-            continue
-        moved.append(found - best)
-    if len(moved) < 2:
+    if effect is None:
         return None
     return VelocityEffect(
-        shift=np.median(moved, axis=0),
-        spread=np.std(moved, axis=0, ddof=1),
-        draws=len(moved),
+        shift=effect.shift,
+        spread=effect.spread,
+        draws=effect.draws,
         noise=max(
             noise_of_velocity(run)
             for run, too in zip(problem.recordings, noisy, strict=True)

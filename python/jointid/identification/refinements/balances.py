@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.identification.refinements.balance_columns import conservative, friction, stacked
+from jointid.identification.refinements.own_columns import own_columns
 from jointid.identification.refinements.shift_fit import Balance, coefficients
 from jointid.identification.refinements.smooth_windows import SmoothWindows
 from jointid.identification.refinements.stretches import Piece
@@ -71,8 +72,11 @@ class Motion:
                 clear=half + spare if clear else 0,
             )
             first = conservative(each, piece.circle, varying=varying)
+            first += own_columns(each, piece.own, friction=False, taken=False)
+            rubbing = friction(each, piece.circle)
+            rubbing += own_columns(each, piece.own, friction=True, taken=False)
             windows.append(each)
-            columns.append([*first, *friction(each, piece.circle)])
+            columns.append([*first, *rubbing])
             count = len(first)
         return Balance(
             windows=windows,
@@ -109,6 +113,7 @@ class Motion:
                 # acceleration is then that of the interval before the sample.
                 jump = np.diff(piece.torque, prepend=piece.torque[:1])
                 first[0] = first[0] - 0.5 / self.inertia * each.mean(jump)
+            first += own_columns(each, piece.own, friction=False, taken=True)
             windows.append(each)
             columns.append(first)
         return Balance(

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.identification.refinements.own_columns import OwnSignal, own_signals
 from jointid.identification.refinements.smooth_windows import Stretch, half_length
 from jointid.problem.problem import Problem
 
@@ -37,6 +38,8 @@ class Piece:
     sensor : ndarray or None
     held : bool
         Whether the torque is held between samples.
+    own : tuple of OwnSignal
+        Of the model's own terms.
     """
 
     stretch: Stretch
@@ -44,6 +47,7 @@ class Piece:
     torque: Array
     sensor: Array | None
     held: bool
+    own: tuple[OwnSignal, ...] = ()
 
     @cached_property
     def half(self) -> int:
@@ -71,7 +75,8 @@ def pieces_of(problem: Problem) -> list[Piece]:
     if total > _MOST:
         count = max(1, len(spans) * _MOST // total)
         spans = [spans[i] for i in np.linspace(0, len(spans) - 1, count).astype(int)]
-    return [_piece(problem, *span) for span in spans]
+    own = {number: own_signals(problem, number) for number, _, _ in spans}
+    return [_piece(problem, *span, own[span[0]]) for span in spans]
 
 
 def few_of(pieces: Sequence[Piece]) -> list[Piece] | None:
@@ -102,10 +107,13 @@ def _part(piece: Piece, first: int) -> Piece:
         torque=piece.torque[cut],
         sensor=None if piece.sensor is None else piece.sensor[cut],
         held=piece.held,
+        own=tuple(replace(each, series=each.series[cut]) for each in piece.own),
     )
 
 
-def _piece(problem: Problem, number: int, first: int, last: int) -> Piece:
+def _piece(
+    problem: Problem, number: int, first: int, last: int, own: tuple[OwnSignal, ...]
+) -> Piece:
     recording = problem.recordings[number]
     usable = np.asarray(_core.usable_intervals(problem.in_core[number], True), dtype=bool)
     both = np.ones(len(recording), dtype=bool)
@@ -136,4 +144,5 @@ def _piece(problem: Problem, number: int, first: int, last: int) -> Piece:
         torque=even(torque),
         sensor=None if recording.sensor is None else even(recording.sensor),
         held=problem.hold(number) == "zoh",
+        own=tuple(replace(each, series=even(each.series)) for each in own),
     )

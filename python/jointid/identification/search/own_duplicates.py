@@ -2,37 +2,47 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
+from jointid.identification.inference.velocity_noise import measured_again
 from jointid.identification.search.domain import SearchDomain
-from jointid.joint.own_terms import OwnTerms
+from jointid.problem.problem import Problem
+from jointid.recording.extra_noise import extra_measured_again
 
 Array = NDArray[np.float64]
 
-_SAME = 1e-4  # of a column's squares that another column leaves
-_SPANNED = 1e-9  # of a column's squares that all others together leave
+# Of a column's squares that another column, or all others together, leave. Two ways to differentiate one signal, and
+# intervals with a reversal, leave about 1e-5; a coefficient that rests on less than this rests on them.
+_SAME = 1e-4
+_NOISE = 4.0  # times the squares of what measuring once more changes
 _NAMED = 0.01  # of the largest part in a sum
 _NOTHING = 1e-12  # of the torque's size
 
 
-def refuse_duplicates(penalty: _core.Penalty, domain: SearchDomain, own: OwnTerms) -> None:
-    """Refuse an own term whose column is that of another term, or a sum of others.
+def refuse_duplicates(problem: Problem, penalty: _core.Penalty, domain: SearchDomain) -> None:
+    """Refuse an own term with a free coefficient whose column is that of another one, or a sum of others.
+
+    The same is what the noise of the data cannot tell apart: measured once more, the columns differ by as much. What is
+    fixed is alike whatever it is: the torques of a link and of its payload are both taken away.
 
     Parameters
     ----------
+    problem : Problem
     penalty : Penalty
     domain : SearchDomain
-    own : OwnTerms
 
     Raises
     ------
     InputError
         Names both.
     """
+    own = problem.choice.model.resolved.terms
     if not own.each:
         return
     count = penalty.coefficients
@@ -42,7 +52,8 @@ def refuse_duplicates(penalty: _core.Penalty, domain: SearchDomain, own: OwnTerm
     sizes = np.linalg.norm(columns, axis=0)
     level = float(np.linalg.norm(np.asarray(penalty.target)))
     present = sizes > _NOTHING * level
-    scaled = columns / np.where(present, sizes, 1.0)
+    sizes_or_one = np.where(present, sizes, 1.0)
+    scaled = columns / sizes_or_one
     mine = [
         index
         for index, name in enumerate(names)
@@ -50,23 +61,55 @@ def refuse_duplicates(penalty: _core.Penalty, domain: SearchDomain, own: OwnTerm
     ]
     free = [not domain.fixed(name) for name in names]
     products = np.einsum("ni,nj->ij", scaled, scaled)
-    for index in mine:
-        for other in range(count):
-            both = free[index] and free[other]
-            if other == index or not present[other] or not (both or other in mine):
-                continue
-            if 1.0 - products[index, other] ** 2 < _SAME and (both or free[index] == free[other]):
-                raise _refused(names[index], [names[other]], "the same torque as")
+    again = _measured_again(problem, penalty, shapes)
+    changed = np.zeros_like(scaled) if again is None else again / sizes_or_one - scaled
     for index in [index for index in mine if free[index]]:
         others = [k for k in range(count) if k != index and free[k] and present[k]]
+        if float(changed[:, index] @ changed[:, index]) > 1.0 / _NOISE:
+            raise _no_signal(names[index])
+        for other in others:
+            if 1.0 - products[index, other] ** 2 < _SAME:
+                raise _refused(names[index], [names[other]], "the same torque as")
         if not others:
             continue
         found, *_ = np.linalg.lstsq(scaled[:, others], scaled[:, index], rcond=1e-12)
-        left = scaled[:, index] - scaled[:, others] @ found
-        if float(left @ left) < _SPANNED:
+        whole = np.zeros(count)
+        whole[index], whole[others] = 1.0, -found
+        left = float(np.sum(np.square(np.einsum("ni,i->n", scaled, whole))))
+        noise = float(np.sum(np.square(np.einsum("ni,i->n", changed, whole))))
+        if left < max(_SAME, _NOISE * noise):
             parts = np.abs(found) > _NAMED * np.abs(found).max()
             alike = [names[k] for k, part in zip(others, parts, strict=True) if part]
-            raise _refused(names[index], alike, "a sum of")
+            raise _refused(
+                names[index], alike, "a sum of" if len(alike) > 1 else "the same torque as"
+            )
+
+
+def _measured_again(problem: Problem, penalty: _core.Penalty, shapes: Array) -> Array | None:
+    """The penalty's columns from signals with noise of their own size once more; None where its windows are others."""
+    signals = problem.choice.model.resolved.terms.signals
+    runs = tuple(
+        extra_measured_again(measured_again(run, 0, number), signals, 0, number)
+        for number, run in enumerate(problem.recordings)
+    )
+    options = _core.WindowOptions(
+        duration=penalty.window_duration, cumulative=bool(penalty.cumulative)
+    )
+    try:
+        again = replace(problem, recordings=runs).penalty(options)
+    except InputError:  # with this noise the joint seems to stand still
+        return None
+    same = np.array_equal(again.windows, penalty.windows)
+    return np.asarray(again.columns(shapes)) if same else None
+
+
+def _no_signal(name: str) -> InputError:
+    return InputError(
+        "its signal is not more than its own noise throughout these recordings",
+        argument="terms",
+        value=name,
+        remedy=("leave it out", Action("record", text="motion in which it changes")),
+    )
 
 
 def _refused(name: str, others: list[str], relation: str) -> InputError:

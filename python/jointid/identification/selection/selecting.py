@@ -34,6 +34,7 @@ def select_model(
     request: Request,
     parameters: Mapping[str, Any] | None,
     windows: Windows,
+    unfit: Mapping[str, str] | None = None,
 ) -> tuple[Problem, Selection]:
     """Choose the model of a problem that nobody named.
 
@@ -45,6 +46,8 @@ def select_model(
         Of the call.
     parameters, windows
         As in `identify`.
+    unfit : mapping of str to str, optional
+        Models that cannot win, by text, and why. Default: none.
 
     Returns
     -------
@@ -75,13 +78,30 @@ def select_model(
                 known = known_parameters(tuple(penalty.names), problem.joint, parameters)
                 columns = ShapedColumns.of(penalty, known, problem.peak_speed, problem.threads)
                 sums = BlockSums.of(columns.matrix, blocks, problem.threads)
-                entries = [entry_of(rival, columns, sums) for rival in rivals]
+                entries = [_unless(unfit or {}, entry_of(rival, columns, sums)) for rival in rivals]
                 energy = float(sums.products[:, -1, -1].sum())
     winner, selection = _judged(entries, energy) if entries else _alone(rivals[0])
+    return _with(problem, winner), selection
+
+
+def simplest_model(
+    problem: Problem, request: Request, parameters: Mapping[str, Any] | None
+) -> Problem:
+    """Return the problem with the simplest of the models that compete; arguments as in `select_model`."""
+    return _with(problem, candidates(problem.recordings, problem.joint, request, parameters)[0])
+
+
+def _with(problem: Problem, candidate: Candidate) -> Problem:
     joint = problem.joint
     if joint is not None:
-        joint = joint.replace(model=winner.model.replace(per_recording=joint.model.per_recording))
-    return replace(problem, joint=joint, choice=winner.choice), selection
+        model = candidate.model.replace(per_recording=joint.model.per_recording)
+        joint = joint.replace(model=model)
+    return replace(problem, joint=joint, choice=candidate.choice)
+
+
+def _unless(unfit: Mapping[str, str], entry: Entry) -> Entry:
+    reason = unfit.get(str(entry.candidate.choice.model.resolved))
+    return replace(entry, refused=reason) if reason else entry
 
 
 def _alone(candidate: Candidate) -> tuple[Candidate, Selection]:

@@ -14,6 +14,7 @@ from jointid.estimate.delays import Delay
 from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.identification.inference.covariance import Triangle
+from jointid.identification.inference.own_noise import OwnNoise
 from jointid.identification.inference.velocity_noise import VelocityEffect
 from jointid.identification.warnings.inspection import Inspected
 from jointid.joint.joint import Joint
@@ -79,6 +80,8 @@ class Evidence:
         At the estimated shape parameters.
     velocity_effect : VelocityEffect or None
         What the velocity's noise does to the parameters; None where it is harmless.
+    own_noise : OwnNoise or None
+        What the noise of the extra signals of own terms does to them; None where it is harmless.
     correlations : mapping
         Of each pair of free parameters, offsets centred.
     delays : mapping of str to Delay
@@ -113,6 +116,7 @@ class Evidence:
     delays: Mapping[str, Delay]
     slow_motion: SlowMotion | None
     velocity_effect: VelocityEffect | None = None
+    own_noise: OwnNoise | None = None
     white: bool = False
     causes: Causes | None = None
     cause_of: Callable[..., Cause | None] = _no_cause

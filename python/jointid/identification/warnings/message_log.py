@@ -14,7 +14,7 @@ MESSAGE_LOG = FindingType(
     code="message_log",
     severity="info",
     meaning="a log of messages is unfinished, has no stamps of its own, or repeated or late messages; or a file holds "
-    "objects that are not read",
+    "objects that are not read, or channels that end before the others",
     advice="nothing, if that is known; else record again, with stamps taken where the samples are",
 )
 

@@ -19,6 +19,7 @@ FILES = (
     "repeated",
     "time_jitter",
     "noisy_velocity",
+    "noisy_signal",
     "load_scale",
     "model_too_rich",
     "at_bound",

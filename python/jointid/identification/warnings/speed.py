@@ -24,8 +24,8 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     gear = abs(evidence.joint.gear_ratio) if evidence.joint is not None else 1.0
     for inspected in evidence.inspections:
         recording, peak = inspected.recording, inspected.found.peak_speed
-        if recording.sample_period >= _SLOW:
-            yield _slow_stamps(recording)
+        if (slow := slow_stamps(recording)) is not None:
+            yield slow
             continue
         agreement = inspected.found.agreement
         if recording.kind == "prismatic" or (
@@ -60,8 +60,11 @@ def _of_the_motor(recording: Recording) -> bool:
     return recording.metadata.get("side") == "motor"
 
 
-def _slow_stamps(recording: Recording) -> Finding:
+def slow_stamps(recording: Recording) -> Finding | None:
+    """Return what is said about stamps that are probably no seconds; None where they may be."""
     period = recording.sample_period
+    if period < _SLOW:
+        return None
     unit = time_unit(period)
     return IMPLAUSIBLE_UNITS.finding(
         f"the samples are {period:.3g} s apart: the time stamps may be in {TIME_UNITS[unit]}",

@@ -18,13 +18,18 @@ IMPLAUSIBLE_UNITS = FindingType(
 )
 _DEGREES = {"position": "deg", "velocity": "deg/s"}
 
-# Position's change over the integral of the velocity → the signal that is in another unit than SI.
-_FACTORS = (
-    (1.0 / (2.0 * math.pi), "position", "rev"),
-    (2.0 * math.pi, "velocity", "rev_s"),
-    (2.0 * math.pi / 60.0, "velocity", "rpm"),
-    (1e-3, "time", "ms"),
-    (1e3, "position", "mrad"),
+# Position's change over the integral of the velocity, both read in SI → the units that they are in.
+_FACTORS: tuple[tuple[float, dict[str, str]], ...] = (
+    (1.0 / (2.0 * math.pi), {"position": "rev"}),
+    (2.0 * math.pi, {"velocity": "rev_s"}),
+    (2.0 * math.pi / 60.0, {"velocity": "rpm"}),
+    (1e-3, {"time": "ms"}),
+    (1e3, {"position": "mrad"}),
+    (6.0, {"position": "deg", "velocity": "rpm"}),
+    (360.0, {"position": "deg", "velocity": "rev_s"}),
+    (1.0 / 60.0, {"position": "rev", "velocity": "rpm"}),
+    (1.0 / 360.0, {"position": "rev", "velocity": "deg_s"}),
+    (100.0 * math.pi / 3.0, {"position": "mrad", "velocity": "rpm"}),
 )
 _CLOSE = 0.03
 
@@ -39,11 +44,15 @@ def unit_by_factor(recording: Recording, factor: float) -> tuple[str, tuple[Acti
         Position's change over the integral of the velocity.
     """
     assumed = recording.metadata.get("assumed_units")
-    for known, signal, unit in _FACTORS if recording.kind == "revolute" else ():
+    for known, units in _FACTORS if recording.kind == "revolute" else ():
         near = abs(factor / known - 1.0) < _CLOSE
-        if near and isinstance(assumed, list | tuple) and signal in assumed:
-            advice = Action("call", {"units": {signal: unit}}, function="load")
-            return f": the {signal}, of which no unit is stated, seems to be in {unit}", (advice,)
+        if near and isinstance(assumed, list | tuple) and set(units) <= set(assumed):
+            names, verb = " and ".join(units), "seem" if len(units) > 1 else "seems"
+            advice = Action("call", {"units": units}, function="load")
+            return (
+                f": the {names}, of which no unit is stated, {verb} to be in {' and '.join(units.values())}",
+                (advice,),
+            )
     return "", (Action("inspect", text="the units of both"),)
 
 

@@ -20,11 +20,12 @@ REVERSED_SIGN = FindingType(
 )
 VELOCITY_MISMATCH = FindingType(
     code="velocity_mismatch",
-    meaning="the velocity differs from the position's rate by more than 3 %",
+    meaning="the velocity differs from the position's rate by more than 3 %; blocking beyond a factor of 3",
     advice="correct its unit, or leave the velocity column out",
 )
 
 MISMATCH = 0.03  # of the position's rate
+_OTHER_UNIT = 3.0  # a factor that no filter, gear or gain explains
 _DEGREE = np.pi / 180.0
 _WITHOUT_VELOCITY = Action(
     "call", {"columns": {"velocity": None}}, text="it is then derived centrally", function="load"
@@ -37,6 +38,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         if found is None:
             continue
         scale = {"scale": Measured(found.scale)}
+        suspected, advice = unit_by_factor(recording, found.scale)
         if found.scale < 0.0:
             yield REVERSED_SIGN.finding(
                 "the velocity has the opposite sign of the position's change: one of the two signs is reversed",
@@ -45,7 +47,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
                 ),
                 evidence=scale,
             )
-        elif _near(found.scale, _DEGREE) or _near(found.scale, 1.0 / _DEGREE):
+        elif not suspected and (_near(found.scale, _DEGREE) or _near(found.scale, 1.0 / _DEGREE)):
             which = "velocity" if found.scale < 1.0 else "position"
             factor = max(found.scale, 1.0 / found.scale)
             yield IMPLAUSIBLE_UNITS.finding(
@@ -54,12 +56,13 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
                 evidence={"factor": Measured(factor)},
             )
         elif abs(found.scale - 1.0) > MISMATCH:
-            suspected, advice = unit_by_factor(recording, found.scale)
+            large = not 1.0 / _OTHER_UNIT < found.scale < _OTHER_UNIT
             yield VELOCITY_MISMATCH.finding(
                 f"the position moves by {found.scale:.4g} times the integral of the velocity{suspected}",
                 *advice,
                 _WITHOUT_VELOCITY,
                 evidence=scale,
+                severity="blocking" if large else None,
             )
 
 

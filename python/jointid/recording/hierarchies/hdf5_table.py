@@ -17,8 +17,8 @@ class Hdf5Table:
     """An HDF5 file as a table of columns; only the columns used are read.
 
     A column is a vector (n, n x 1 or 1 x n) or a field of a table, named by its dataset or field; by its whole
-    path where this name alone is not unique. The columns of a matrix are ``joint_1.NAME``, ``joint_2.NAME``; it
-    has a row for each joint if it is wider than long.
+    path where this name alone is not unique. The columns of a matrix are ``NAME(:,1)``, ``NAME(:,2)`` as
+    of other MATLAB files, or ``joint_1.NAME``, ``joint_2.NAME``; it has a row for each joint if it is wider than long.
 
     Parameters
     ----------
@@ -67,7 +67,10 @@ class Hdf5Table:
             other: k
             for k, vector in enumerate(self._vectors)
             for other in dict.fromkeys(
-                (_full(vector, "/"), "/" + _full(vector, "/"), _full(vector, "."), names[k])
+                (
+                    *(_full(vector, "/"), "/" + _full(vector, "/"), _full(vector, "."), names[k]),
+                    *(_as_of_a_joint(vector) if count[names[k]] == 1 else ()),
+                )
             )
             if count[other] <= 1
         }
@@ -104,10 +107,18 @@ def _not_read(left_out: Sequence[str]) -> str:
 
 
 def _name(vector: Vector, vectors: Sequence[Vector]) -> str:
-    """Return a vector's name by the contract of wide tables: the joint before the signal."""
+    """Return a vector's name: of a matrix the number of its column behind it, as in other MATLAB files."""
     if vector.name or vector.part is None:
         return _joint_group(vector, vectors) + vector.last
-    return f"joint_{vector.part + 1}.{vector.last}"
+    return f"{vector.last}(:,{vector.part + 1})"
+
+
+def _as_of_a_joint(vector: Vector) -> tuple[str, ...]:
+    """Return the other names of a matrix's column: the joint's number before that of the signal."""
+    if vector.name or vector.part is None:
+        return ()
+    name = f"joint_{vector.part + 1}.{vector.last}"
+    return name, _with_unit(name, vector.unit)
 
 
 def _joint_group(vector: Vector, vectors: Sequence[Vector]) -> str:

@@ -12,9 +12,9 @@ from jointid.recording.contents import read_contents
 from jointid.recording.extra import named_extra
 from jointid.recording.readers.loading import file_name, table_of
 from jointid.recording.signals import FloatArray
+from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.joint_table import (
     JointTable,
-    joint_named,
     joints_of,
     nothing_named,
 )
@@ -86,9 +86,9 @@ def load_robot(
         columns or units or scale or where or kind or torque_hold or extra
     ):
         return _changed(whole, joints, gear_ratio, name)
-    known = joints_of(table)
+    known = joints_of(table, columns)
     if not known:
-        raise nothing_named(table, "all" if joints is None else joints)
+        raise nothing_named(table, "all" if joints is None else joints, "joints")
     names = _wanted(joints, known, table.header_place)
     wanted = named_extra(extra)
     tables = [JointTable(table, each, columns or {}, wanted) for each in names]
@@ -153,7 +153,7 @@ def _wanted(
         return list(known)
     if isinstance(joints, str | int):
         joints = [joints]
-    names = [joint_named(each, known, place, "joints") for each in joints]
+    names = [joint_named(each, known, place, "joints", "load_robot") for each in joints]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None or not names:
         raise InputError(

@@ -10,12 +10,18 @@ from typing import Any
 import numpy as np
 
 from jointid.base.errors import InputError
+from jointid.recording.headers import understood
 from jointid.recording.readers.csv_dialect import number_of
 from jointid.recording.signals import FloatArray
 from jointid.recording.stamps import looks_exact, stamps_of
 
 _BLOCK = 80  # lines: no export has more above its rows
 _KEYS = ("Data-Type", "SampleTime[ms]", "SymbolName", "VariableSize", "Starttime of export")
+_TIME = re.compile(
+    r"Time(?: ?[\[(]ms[\])])?"
+)  # newer versions name channels beside it, without keys
+# Where these are not sampled, the others are still a recording.
+_OPTIONAL = ("temperature", "reference")
 _COPY = re.compile(r"(.*\S) \((\d+)\)")
 
 
@@ -43,7 +49,9 @@ class ScopeTable:
     """An export of TwinCAT Scope as a table with one time column.
 
     Channels that were sampled with another period than the fastest of those read are interpolated
-    linearly at its samples, where all overlap; `notes` names them.
+    linearly at its samples, where all overlap; `notes` names them and the number of samples cut. A
+    temperature or a reference cuts none: it keeps its last value for one period, and one that is
+    missing for longer cannot be read.
 
     Parameters
     ----------
@@ -72,6 +80,8 @@ class ScopeTable:
             if len(cells) > 1 and all(self._number(cell) is not None for cell in cells[:2]):
                 first = k
                 break
+            if _TIME.fullmatch(cells[0]):
+                cells = ["Name" if _TIME.fullmatch(cell) else cell for cell in cells]
             if cells[0]:
                 keys[cells[0]] = cells
                 name_line = k if cells[0] == "Name" else name_line
@@ -105,15 +115,18 @@ class ScopeTable:
         times = {time: self._samples(group)[0] for time, group in groups.items()}
         base = self._base
         if base is None:
-            every = times or {g.time: self._samples(g)[0] for g in self._groups}
-            base = min(
-                every.values(), key=lambda t: float(np.median(np.diff(t))) if len(t) > 1 else np.inf
-            )
-            for time in every.values():
-                if len(time) and len(base):
-                    base = base[(base >= time[0]) & (base <= time[-1])]
+            needed = {
+                self._of[self._channels[column - 1]].time
+                for column in columns
+                if column > 0 and not self._is_optional(column)
+            }
+            every = {time: times[time] for time in times if time in needed or not needed}
+            base = self._common(every or {g.time: self._samples(g)[0] for g in self._groups})
             if 0 in columns:
                 self._base = base
+        for column in columns:
+            if column > 0 and self._is_optional(column):
+                self._refuse_part(column, base)
         found = []
         for column in columns:
             if column == 0:
@@ -127,6 +140,36 @@ class ScopeTable:
                 values = np.interp(base, time, values) if len(time) else np.full(len(base), np.nan)
             found.append(values)
         return found
+
+    def _common(self, every: Mapping[int, FloatArray]) -> FloatArray:
+        """Return the instants of the fastest channels at which all have samples."""
+        fastest = min(
+            every.values(), key=lambda t: float(np.median(np.diff(t))) if len(t) > 1 else np.inf
+        )
+        base = fastest
+        for time in every.values():
+            if len(time) and len(base):
+                base = base[(base >= time[0]) & (base <= time[-1])]
+        if len(base) < len(fastest):
+            self.notes["cut_samples"] = len(fastest) - len(base)
+        return base
+
+    def _is_optional(self, column: int) -> bool:
+        meaning = understood(self.headers[column]).meaning
+        return meaning is not None and meaning.signal in _OPTIONAL
+
+    def _refuse_part(self, column: int, base: FloatArray) -> None:
+        """Raise for a channel that ends more than one of its periods before the others, or begins after them."""
+        time, _ = self._samples(self._of[self._channels[column - 1]])
+        if not len(time) or not len(base):
+            return
+        period = float(np.median(np.diff(time))) if len(time) > 1 else 0.0
+        if time[0] - period > base[0] or time[-1] + period < base[-1]:
+            raise InputError(
+                f"its samples are from {time[0] / 1e3:.6g} to {time[-1] / 1e3:.6g} s, the others' from "
+                f"{base[0] / 1e3:.6g} to {base[-1] / 1e3:.6g} s",
+                place=f"{self.source}, channel {self.headers[column]!r}",
+            )
 
     def text(self, column: int) -> list[str]:
         """Return the values of a column as text."""

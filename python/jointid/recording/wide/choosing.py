@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 from jointid.recording.extra import named_extra
 from jointid.recording.table import Table
+from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.joint_table import (
     JointTable,
-    joint_named,
     joints_of,
     nothing_named,
     several_joints,
@@ -74,10 +74,10 @@ def one_joint(
         if len(several) > 1:
             raise which_joint(table, several)
         joint = several[0]
-    joints = joints_of(table)
+    joints = joints_of(table, columns)
     if not joints:
         raise nothing_named(table, joint)
-    name = joint_named(joint, joints, table.header_place)
+    name = joint_named(joint, joints, table.header_place, function="load")
     found = JointTable(table, name, columns or {}, named_extra(extra))
     one = OneJoint(
         table=found, columns=found.columns, extra=found.extra, side=found.side, joint=name

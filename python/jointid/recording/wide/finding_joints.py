@@ -2,11 +2,19 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from jointid.recording.headers import parsed
 from jointid.recording.units import find_unit
-from jointid.recording.wide.words import CARRIERS, KNOWN, NUMBERED, Meaning, meaning_of
+from jointid.recording.wide.words import (
+    CARRIERS,
+    COMMAND,
+    COMPUTED,
+    KNOWN,
+    NUMBERED,
+    Meaning,
+    meaning_of,
+)
 
 _UNIT = re.compile(r"\s*[\[(]\s*[^\[\](){}]*[^\[\](){}\d\s:,][^\[\](){}]*[\])]\s*$")
 _INDEX = re.compile(r"\[(\d+)\]|\((?::,)?(\d+)(?:,:)?\)")
@@ -78,14 +86,14 @@ def _without_unit(header: str) -> tuple[str, str]:
     return header[:cut], header[cut:]
 
 
-def _words(header: str) -> tuple[str, ...]:
+def words_of(header: str) -> tuple[str, ...]:
     """The words of a header without its unit."""
     name, _, _ = parsed(_CAMEL.sub("_", header) if find_unit(header) is None else header)
     return tuple(word for word in name.split("_") if word)
 
 
 def _column(index: int, joint: str, shown: str, pattern: str) -> JointHeader:
-    meaning = meaning_of(_words(shown))
+    meaning = meaning_of(words_of(shown))
     return JointHeader(index=index, joint=joint, header=shown, pattern=pattern, meaning=meaning)
 
 
@@ -100,9 +108,11 @@ def _indexed(index: int, header: str) -> JointHeader | None:
     start = place.start(1) if place[1] else place.start(2)
     pattern = f"{stem[:start]}{_MARK}{stem[start + len(number) :]}{unit}"
     shown = f"{stem[: place.start()]}{stem[place.end() :]}"
-    # What stands before the last point or slash is where the signal comes from.
-    shown = re.split(r"[./]", shown)[-1]
-    return _column(index, number, f"{shown}{unit}", pattern)
+    # What stands before the last point or slash is where the signal comes from; it may be a command, or no signal.
+    *path, last = re.split(r"[./]", shown)
+    source = {word.casefold() for part in path for word in _split(_CAMEL.sub("_", part))}
+    column = _column(index, number, "_".join([*sorted(source & COMMAND), f"{last}{unit}"]), pattern)
+    return replace(column, meaning=None) if source & COMPUTED else column
 
 
 def _dotted(index: int, header: str) -> JointHeader | None:
@@ -115,11 +125,11 @@ def _dotted(index: int, header: str) -> JointHeader | None:
             continue
         pattern = f"{before[: len(before.rstrip()) - len(name)]}{_MARK}{found}{behind}{unit}"
         column = _column(index, name, f"{behind}{unit}", pattern)
-        if column.meaning and not set(_words(name)) <= KNOWN:
+        if column.meaning and not set(words_of(name)) <= KNOWN:
             return column
         joint = behind.strip()
         other = _column(index, joint, f"{before}{unit}", f"{before}{found}{_MARK}{unit}")
-        named = joint and not joint.isdigit() and not set(_words(joint)) <= KNOWN
+        named = joint and not joint.isdigit() and not set(words_of(joint)) <= KNOWN
         if other.meaning and named and find_unit(joint) is None:
             return other
     return None

@@ -9,10 +9,10 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.column_lookup import column_index, listed
 from jointid.recording.headers import ALIASES, parsed
-from jointid.recording.signals import FloatArray, check_signal_name, closest, dimensions
+from jointid.recording.signals import FloatArray, check_signal_name, dimensions
 from jointid.recording.table import Table, first_cell
-from jointid.recording.wide.finding_joints import JointHeader, joint_headers
-from jointid.recording.wide.words import JOINT, MOTOR
+from jointid.recording.wide.finding_joints import JointHeader, joint_headers, words_of
+from jointid.recording.wide.words import COMMAND, JOINT, MOTOR, TORQUES
 
 Columns = Mapping[str, str | int | None]
 _MARK = "{joint}"
@@ -77,7 +77,9 @@ class JointTable:
         self.other_names = {table.headers[index]: place[index] for index in self._indices} | {
             name: place[index] for name, index in table.other_names.items() if index in place
         }
-        self.notes: Mapping[str, Any] = getattr(table, "notes", {})
+        self.notes: dict[str, Any] = dict(getattr(table, "notes", {}))
+        if not {"torque", "motor_torque"} & set(chosen):
+            self.notes |= _commanded_torque(mine)
         saved = table.saved
         self.saved: Mapping[str, Any] | None = (
             None if saved is None else {key: saved[key] for key in saved if key != "robot"}
@@ -100,57 +102,34 @@ class JointTable:
         return self._table.place(self._indices[column], row)
 
 
-def joints_of(table: Table) -> tuple[str, ...]:
-    """Return the joints that a table's headers name."""
-    return tuple(joint_headers(table.headers))
-
-
-def joint_named(joint: object, joints: Sequence[str], place: str, argument: str = "joint") -> str:
-    """Return the joint that a name or a number names.
+def joints_of(table: Table, columns: Columns | None = None) -> tuple[str, ...]:
+    """Return the joints that a table's headers name.
 
     Parameters
     ----------
-    joint : str or int
-        A name, or a joint's number: 3 is "3", "03", or the only name with the number 3, "joint_3".
-    joints : sequence of str
-    place : str
-        For messages.
-    argument : str
-        What it was given for.
-
-    Raises
-    ------
-    InputError
-        There is no such joint.
+    table : Table
+    columns : mapping, optional
+        As given to `load`. Where the headers name no joint that fits the position's ``{joint}``, the joints are
+        what stands in its place. Default: none.
     """
-    if isinstance(joint, bool) or not isinstance(joint, str | int):
-        raise InputError(
-            "a joint's name or number is expected", argument=argument, value=joint, place=place
-        )
-    text = str(joint)
-    if text in joints:
-        return text
-    if text.isdigit():
-        numbered = [
-            each for each in joints if list(map(int, re.findall(r"\d+", each))) == [int(text)]
-        ]
-        if len(numbered) == 1:
-            return numbered[0]
-    near = closest(text, joints)
-    raise InputError(
-        f"there is no such joint; {'the only one is' if len(joints) == 1 else 'there are'} "
-        f"{', '.join(joints) or 'none'}",
-        argument=argument,
-        value=joint,
-        place=place,
-        remedy=f"did you mean {near!r}" if near and not text.isdigit() else (),
-    )
+    named = tuple(joint_headers(table.headers))
+    pattern = columns.get("position") if isinstance(columns, Mapping) else None
+    if not isinstance(pattern, str) or pattern.count(_MARK) != 1:
+        return named
+    before, behind = map(re.escape, pattern.strip().split(_MARK))
+    form = re.compile(f"{before}(.+){behind}", re.IGNORECASE)
+    headers = (*table.headers, *table.other_names)
+    found = [match[1] for header in headers if (match := form.fullmatch(header.strip()))]
+    return named if set(named) & set(found) else tuple(dict.fromkeys(found)) or named
 
 
 def several_joints(table: Table, columns: Columns | None) -> tuple[str, ...]:
     """Return the joints of a table that no call with these columns could mean as one; empty if it could."""
     given = columns or {}
-    if given.get("position") is not None:
+    position = given.get("position")
+    if isinstance(position, str) and _MARK in position:
+        return joints_of(table, given)
+    if position is not None:
         return ()
     if any(ALIASES.get(parsed(header)[0]) == "position" for header in table.headers):
         return ()
@@ -226,6 +205,18 @@ def _chosen(
     return chosen, side
 
 
+def _commanded_torque(mine: list[JointHeader]) -> dict[str, str]:
+    """Return the header of a commanded torque that is not read, for the message that a torque is missing."""
+    commanded = [
+        each.pattern
+        for each in mine
+        if (words := set(words_of(each.header))) & COMMAND
+        and words & TORQUES
+        and words <= COMMAND | TORQUES
+    ]
+    return {"commanded_torque": commanded[0]} if len(commanded) == 1 else {}
+
+
 def _readable(column: JointHeader) -> bool:
     """Whether a column's unit is one of its signal; of what nobody needs another one blocks nothing."""
     if column.meaning is None or column.meaning.signal in _NEEDED:
@@ -255,11 +246,11 @@ def _only(table: Table, signal: str, found: list[JointHeader]) -> JointHeader:
     )
 
 
-def nothing_named(table: Table, joint: object) -> InputError:
+def nothing_named(table: Table, joint: object, argument: str = "joint") -> InputError:
     """Return the error for a joint in a file whose headers name none."""
     return InputError(
         f"the headers name no joints with a position; they are {listed(table.headers)}",
-        argument="joint",
+        argument=argument,
         value=joint,
         place=table.header_place,
         remedy="headers such as joint1_position, position.1 or elbow.position name a joint",

@@ -14,7 +14,7 @@ from jointid.recording.attributes import check_attributes, json_mapping
 from jointid.recording.recording import Recording
 from jointid.recording.signals import FloatArray, signal_array
 from jointid.recording.slicing import slice_between
-from jointid.recording.wide.joint_table import joint_named
+from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.robot_signals import (
     ROBOT_SIGNALS,
     checked_names,
@@ -177,7 +177,7 @@ class RobotRecording(Mapping[str, Recording]):
         Parameters
         ----------
         joint : str or int
-            Name, or number in the name: 3 is "3" or the only name with this number, such as "joint_3".
+            Name or number: 3 is "3", or "joint_3" where all names are numbered alike.
 
         Returns
         -------

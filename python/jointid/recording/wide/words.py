@@ -8,20 +8,20 @@ SIDES = (JOINT, MOTOR)
 _NOUNS: dict[str, str] = {
     word: signal
     for signal, words in {
-        "position": "position pos angle ang q theta",
-        "velocity": "velocity vel speed qd dq qdot omega",
-        "torque": "torque tau effort trq eff",
-        "current": "current cur",
-        "temperature": "temperature temp",
-        "sensor": "sensor",
-        "reference": "reference ref",
+        "position": "position positions pos angle angles ang q qpos theta",
+        "velocity": "velocity velocities vel speed speeds qd dq qdot qvel omega",
+        "torque": "torque torques tau effort efforts trq eff qfrc",
+        "current": "current currents cur",
+        "temperature": "temperature temperatures temp temps",
+        "sensor": "sensor sensors",
+        "reference": "reference references ref",
     }.items()
     for word in words.split()
 }
 _MOTOR = frozenset(("motor", "mot", "rotor", "drive"))
 _LINK = frozenset(("link", "output", "load", "linkside", "loadside"))
 _LINK_SIDE = frozenset(("linkside", "loadside", "outputside"))
-_COMMAND = frozenset(
+COMMAND = frozenset(
     (
         *("target", "desired", "des", "command", "commanded", "cmd", "goal", "setpoint"),
         *("reference", "ref"),
@@ -33,11 +33,15 @@ _NEUTRAL = frozenset(
         *("states", "encoder", "enc", "feedback", "fbk", "fb", "raw"),
     )
 )
-KNOWN = frozenset(_NOUNS) | _MOTOR | _LINK | _LINK_SIDE | _COMMAND | _NEUTRAL
-NUMBERED = frozenset(_NOUNS) | _MOTOR | _LINK | _COMMAND | _NEUTRAL | {"j", "a"}
+KNOWN = frozenset(_NOUNS) | _MOTOR | _LINK | _LINK_SIDE | COMMAND | _NEUTRAL
+NUMBERED = frozenset(_NOUNS) | _MOTOR | _LINK | COMMAND | _NEUTRAL | {"j", "a"}
 """Words that a joint's number may follow without anything between: q3, joint3, A1."""
 CARRIERS = frozenset(("joint", "axis", "achse", "dof", "j", "a"))
 """Words that say no more than that a joint's number follows."""
+TORQUES = frozenset(("moment", "moments", "torque", "torques", "joint", "joints"))
+"""Words of a commanded torque, as far as it is not read by itself."""
+COMPUTED = frozenset(("error", "errors", "err", "output", "limit", "limits", "min", "max"))
+"""Words that name the part of a message that is not measured: a controller's error and output."""
 _RANKS = 3
 
 
@@ -77,12 +81,14 @@ def meaning_of(words: tuple[str, ...]) -> Meaning | None:
     Meaning(signal='position', side='joint', rank=0)
     """
     said = set(words)
+    if "qfrc" in said:  # MuJoCo's torques at the joints; what is not the actuators' is computed
+        said -= {"actuator"}
     if not said or not said <= KNOWN:
         return None
     signals = {_NOUNS[word] for word in said if word in _NOUNS}
     if signals == {"torque", "sensor"}:
         return Meaning(signal="sensor", side=JOINT)
-    commanded = bool(said & _COMMAND)
+    commanded = bool(said & COMMAND)
     if commanded:
         signals -= {"reference"}
         if signals <= {"position"}:  # a reference without another word is a position's

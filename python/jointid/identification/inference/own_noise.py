@@ -1,0 +1,95 @@
+"""What the noise of extra signals does to each parameter, found by measuring them once more."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.identification.inference.noise_effect import NoiseEffect, noise_effect
+from jointid.joint.own_terms import OwnTerms
+from jointid.problem.problem import Problem
+from jointid.recording.derived import derived_velocity
+from jointid.recording.extra_noise import extra_measured_again, noise_of_extra
+from jointid.recording.recording import Recording
+
+Array = NDArray[np.float64]
+
+_HARMLESS = 3e-3  # of the signal's standard deviation
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OwnNoise:
+    """Noise of extra signals, and what it does.
+
+    Attributes
+    ----------
+    effect : NoiseEffect
+        Change of the parameters when all these signals become as noisy again.
+    noise : tuple of (str, float)
+        The signals, each with the standard deviation of its noise in its own unit.
+    """
+
+    effect: NoiseEffect
+    noise: tuple[tuple[str, float], ...]
+
+
+def own_systematic(
+    problem: Problem, penalty: _core.Penalty, best: Array, lower: Array, upper: Array
+) -> OwnNoise | None:
+    """Return the effect of the extra signals' noise, or None where it is harmless or no coefficient is free.
+
+    Noise in a signal makes the coefficient of its term too small (attenuation), and moves what is correlated with it.
+    A known torque or inertia with a fixed gain does nothing of the kind: its noise is noise of the torque.
+
+    Parameters
+    ----------
+    problem : Problem
+    penalty : Penalty
+        Over the windows used.
+    best, lower, upper : ndarray, shape (p,)
+        The parameters found and their bounds.
+    """
+    own = problem.choice.model.resolved.terms
+    if not own.each:
+        return None
+    free = {
+        name.partition("[")[0]
+        for name, low, high in zip(penalty.names, lower, upper, strict=True)
+        if high > low
+    }
+    noisy = _noisy(problem, own, free)
+    if not noisy:
+        return None
+    effect = noise_effect(
+        problem,
+        penalty,
+        best,
+        (lower, upper),
+        lambda run, draw, number: extra_measured_again(run, list(noisy), draw, number),
+    )
+    return None if effect is None else OwnNoise(effect=effect, noise=tuple(noisy.items()))
+
+
+def _noisy(problem: Problem, own: OwnTerms, free: set[str]) -> dict[str, float]:
+    """The signals whose noise may matter, each with the largest of its noise."""
+    noisy: dict[str, float] = {}
+    for each in own.each:
+        if each.signal not in own.signals or not free & set(each.keys):
+            continue
+        for run in problem.recordings:
+            sigma = noise_of_extra(run, each.signal)
+            if _matters(run, each.signal, each.rate, sigma):
+                noisy[each.signal] = max(sigma, noisy.get(each.signal, 0.0))
+    return noisy
+
+
+def _matters(run: Recording, signal: str, rate: bool, sigma: float) -> bool:
+    values = run.extra[signal]
+    if not sigma > 0.0:
+        return False
+    if rate:
+        return derived_velocity(run.time, values, run.gaps, run.sample_period).refined
+    return sigma > _HARMLESS * float(np.std(values))

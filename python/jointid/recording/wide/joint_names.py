@@ -1,0 +1,104 @@
+"""Which joint a name or a number names."""
+
+import re
+from collections.abc import Sequence
+
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
+from jointid.recording.signals import closest
+from jointid.recording.wide.words import CARRIERS
+
+_DIGITS = re.compile(r"(\d+)")
+_BETWEEN = re.compile(r"[\W\d_]+")
+
+
+def joint_named(
+    joint: object,
+    joints: Sequence[str],
+    place: str,
+    argument: str = "joint",
+    function: str = "",
+) -> str:
+    """Return the joint that a name or a number names.
+
+    Parameters
+    ----------
+    joint : str or int
+        A name, or a joint's number: 3 is "3" or "03". It is also "joint_3", but only where all names are numbered
+        alike: a robot's third joint need not be the one called "wrist_3_joint".
+    joints : sequence of str
+    place : str
+        For messages.
+    argument : str
+        What it was given for.
+    function : str
+        The function that was called, for the call that a message proposes. Default: it proposes none.
+
+    Raises
+    ------
+    InputError
+        There is no such joint.
+    """
+    if isinstance(joint, bool) or not isinstance(joint, str | int):
+        raise InputError(
+            "a joint's name or number is expected", argument=argument, value=joint, place=place
+        )
+    text = str(joint)
+    if text in joints:
+        return text
+    number = int(text) if text.isdecimal() else None
+    numbered = {} if number is None else _numbered_alike(joints)
+    if number in numbered:
+        return numbered[number]
+    names = (
+        f"{'the only one is' if len(joints) == 1 else 'there are'} {', '.join(joints) or 'none'}"
+    )
+    if number is not None and not numbered:
+        names += ", which are not numbered alike" if len(joints) > 1 else ""
+    near = _near(text, joints) if number is None else ""
+    remedy: str | Action | tuple[()] = f"did you mean {near!r}" if near else ()
+    if number is not None and not numbered and function and joints:
+        value = joints[0] if argument == "joint" else [joints[0]]
+        other = "or another one" if len(joints) > 1 else ""
+        remedy = Action("call", {argument: value}, function=function, text=other)
+    raise InputError(
+        f"there is no such joint; {names}",
+        argument=argument,
+        value=joint,
+        place=place,
+        remedy=remedy,
+    )
+
+
+def _numbered_alike(joints: Sequence[str]) -> dict[int, str]:
+    """Return the names by their number where the same text stands around it in all; empty otherwise."""
+    parts = [_DIGITS.split(name) for name in joints]
+    if len({len(each) for each in parts}) != 1:
+        return {}
+    if len(joints) > 1:
+        places = range(len(parts[0]))
+        differing = [place for place in places if len({each[place] for each in parts}) > 1]
+    else:  # its own number is the last one, if it is said to be a joint's
+        before = _words(parts[0][-3])[-1:] if len(parts[0]) > 1 else ["no number"]
+        differing = [len(parts[0]) - 2] if set(before) <= CARRIERS else []
+    if len(differing) != 1 or differing[0] % 2 == 0:
+        return {}
+    found = {int(each[differing[0]]): name for each, name in zip(parts, joints, strict=True)}
+    return found if len(found) == len(joints) else {}
+
+
+def _near(text: str, joints: Sequence[str]) -> str:
+    """Return the name meant by a misspelt one, or by a misspelt word of it; empty if it may be another."""
+    whole = closest(text, joints)
+    if whole:
+        return whole
+    words: dict[str, list[str]] = {}
+    for name in joints:
+        for word in dict.fromkeys(_words(name)):
+            words.setdefault(word, []).append(name)
+    owners = words.get(closest(text, words) or "", [])
+    return owners[0] if len(owners) == 1 else ""
+
+
+def _words(name: str) -> list[str]:
+    return _BETWEEN.sub(" ", name).casefold().split()
