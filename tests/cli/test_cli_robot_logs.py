@@ -44,7 +44,7 @@ def test_a_topic_is_chosen_by_pasting(tmp_path: Path, capsys: pytest.CaptureFixt
 
 
 def test_a_group_is_chosen_by_pasting(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    time = np.arange(30.0)
+    time = np.arange(30.0) / 1000.0
     path = str(tmp_path / "demos.h5")
     with h5py.File(path, "w") as file:
         for k in range(3):

@@ -218,11 +218,11 @@ BAD: list[Bad] = [
         "member 'position': an array of numbers is expected",
     ),
     (
-        *("a.npz", {"time": np.arange(9), "position": np.ones(8)}, {}),
+        *("a.npz", {"time": np.arange(9) / 1000, "position": np.ones(8)}, {}),
         "position: 8 samples, but time has 9",
     ),
     (
-        *("a.npz", {"time": np.arange(9), "position": np.full(9, np.inf)}, {}),
+        *("a.npz", {"time": np.arange(9) / 1000, "position": np.full(9, np.inf)}, {}),
         "member 'position', index 0: position is inf",
     ),
     (

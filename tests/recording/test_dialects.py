@@ -91,7 +91,7 @@ def test_quoted_numbers_and_text_beside_decimal_commas(tmp_path: Path) -> None:
 
 def test_decimal_commas_with_exponents(tmp_path: Path) -> None:
     rows = [f"{k};-1,5e-{k};,5;2" for k in range(9)]
-    loaded = load(written(tmp_path / "a.csv", ["t;q;v;tau", *rows]), columns={"velocity": 2})
+    loaded = load(written(tmp_path / "a.csv", ["t_s;q;v;tau", *rows]), columns={"velocity": 2})
     assert loaded.position.tolist() == [float(f"-1.5e-{k}") for k in range(9)]
     assert loaded.velocity.tolist() == [0.5] * 9
 

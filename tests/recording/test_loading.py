@@ -196,8 +196,8 @@ def test_from_dataframe() -> None:
         ),
         (lambda f: f.assign(pos_deg="x"), "data frame, column 'pos_deg': 'x' at index 0 is not"),
         (
-            lambda f: f.astype({"t_s": "datetime64[ns]"}),
-            "column 't_s': an array of numbers is expected",
+            lambda f: f.astype({"pos_deg": "datetime64[ns]"}),
+            "column 'pos_deg': an array of numbers is expected",
         ),
         (lambda f: f.drop(columns="t_s"), "data frame: no column is recognised as time"),
         (lambda f: f.to_numpy(), "df is a ndarray: a data frame with columns is expected"),

@@ -121,7 +121,7 @@ def test_either_order_of_bytes_and_objects_left_out(order: str, tmp_path: Path) 
         + element(order, 1, b"MCOS", short=True),
     )
     # MATLAB stores doubles that are whole numbers in fewer bytes.
-    times = variable(order, "t", 6, 3, struct.pack(f"{order}10h", *range(-5, 5)), 10)
+    times = variable(order, "t_s", 6, 3, struct.pack(f"{order}10h", *range(-5, 5)), 10)
     angles = variable(order, "q", 7, 7, struct.pack(f"{order}10f", *[0.5] * 10), 10)
     loaded = load(written(tmp_path / "a.mat", level_5(order, opaque, times, angles)))
     assert loaded.time.tolist() == list(range(-5, 5))

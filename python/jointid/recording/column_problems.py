@@ -10,10 +10,10 @@ from jointid.base.errors import InputError
 from jointid.recording.column_lookup import listed
 from jointid.recording.columns import Candidates, Column
 from jointid.recording.headers import plain, understood
-from jointid.recording.plausibility import unit_of_steps
 from jointid.recording.signals import FloatArray, dimensions, header_unit
+from jointid.recording.stamp_units import unit_of_stamps
 from jointid.recording.table import Table
-from jointid.recording.units import is_mega, unit_names
+from jointid.recording.units import UNITS, is_mega, unit_names
 
 _LIKELY = {
     "time": ("time", "stamp", "clock", "zeit"),
@@ -287,6 +287,7 @@ def _proposal(table: Table, proposed: Mapping[str, int], kind: str | None) -> Ac
             units[signal] = header_unit(signal, kind or "revolute")
             if signal == "time":
                 units[signal] = _unit_of_time(table, index)
+    units = {signal: unit for signal, unit in units.items() if unit}
     arguments: dict[str, Any] = {"columns": columns}
     if len(columns) > 1 and units:
         return Action(
@@ -299,17 +300,20 @@ def _proposal(table: Table, proposed: Mapping[str, int], kind: str | None) -> Ac
 
 
 def _unit_of_time(table: Table, index: int) -> str:
-    """Return the unit that the stamps of a proposed column probably have."""
+    """Return the unit that the stamps of a proposed column probably have; empty if that is asked later."""
     try:
         (stamps,) = table.numbers([index])
-        unit = unit_of_steps(stamps, "")
-    except InputError:  # dates, or text: no unit is needed; what it is in is seen when it is read
+    except InputError:  # dates, or text: no unit is needed
         return "s"
-    steps = np.diff(stamps[:1000])
-    even = (
-        len(steps) > 0 and float(np.median(steps)) >= 1.0 and bool((steps == np.floor(steps)).all())
-    )
-    return "ms" if unit == "s" and even else unit
+    if not len(stamps):
+        return "s"
+    try:
+        with np.errstate(all="ignore"):
+            unit = unit_of_stamps(float(stamps[0]), stamps - stamps[0], "")
+    except InputError as error:  # milliseconds are likelier than seconds, other pairs are alike
+        second = Action("call", {"units": {"time": "s"}}, function="load")
+        return "ms" if second in error.remedy else ""
+    return "s" if unit is None else unit.name if unit.name in UNITS else ""
 
 
 def _chosen(signal: str, column: Column) -> Action:

@@ -5,6 +5,7 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from jointid.base.errors import InputError
 from jointid.recording.signals import FloatArray, signal_array
@@ -48,6 +49,12 @@ class FrameTable:
             )
             for k in columns
         ]
+
+    def raw(self, column: int) -> npt.NDArray[Any]:
+        """Return the values of a column as the frame has them; of dates with a zone those of UTC."""
+        values = self._frame[self._labels[column]]
+        zone = getattr(getattr(values, "dt", None), "tz", None)
+        return np.asarray(values if zone is None else values.dt.tz_convert(None))
 
     def text(self, column: int) -> list[str]:
         """Return the values of a column as text."""

@@ -4,17 +4,20 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.column_problems import TORQUES
 from jointid.recording.columns import Column
-from jointid.recording.plausibility import unit_of_steps
 from jointid.recording.signals import FloatArray
+from jointid.recording.stamp_units import unit_of_stamps
 from jointid.recording.table import Table
 from jointid.recording.time_column import exact_time, stamps_note
 from jointid.recording.units import UNITS
 
 _NEEDED = ("time", "position", "torque")
+_COARSE = 1e6  # s: products with larger times are rounded by 0.1 ns and more
 MOTION = ("velocity", "sensor")  # without them the estimate is another: the user decides
 
 
@@ -50,14 +53,8 @@ def read_values(
         values |= dict(zip(numbers, table.numbers(list(numbers.values())), strict=True))
     except InputError:
         values |= _readable(table, found, numbers, left_out)
-    time = found["time"]
-    if table.saved is None and time.unit is None and time.scale is None:
-        unit = unit_of_steps(
-            values["time"], f"{table.header_place}, column {table.headers[time.index]!r}"
-        )
-        if unit != "s":
-            found["time"] = replace(time, unit=UNITS[unit])
-            notes["recognised_units"] = {"time": unit}
+    if table.saved is None and found["time"].scale is None and len(values["time"]):
+        _recognise_time(table, found, values, notes)
     return {signal: values[signal] for signal in found}
 
 
@@ -70,6 +67,26 @@ def with_remedy(error: InputError, signal: str) -> InputError:
         place=error.place,
         remedy=(*error.remedy, Action("call", {"columns": {signal: None}}, function="load")),
     )
+
+
+def _recognise_time(
+    table: Table, found: dict[str, Column], values: dict[str, FloatArray], notes: dict[str, Any]
+) -> None:
+    """Enter the unit of stamps without one; subtract the first of those that a product would round."""
+    time, stamps = found["time"], values["time"]
+    first = float(stamps[0])
+    with np.errstate(all="ignore"):
+        since = stamps - first
+    if time.unit is None:
+        place = f"{table.header_place}, column {table.headers[time.index]!r}"
+        unit = unit_of_stamps(first, since, place)
+        if unit is not None:
+            time = found["time"] = replace(time, unit=unit)
+            notes["recognised_units"] = {"time": unit.name}
+    factor = 1.0 if time.unit is None else time.unit.factor
+    if _COARSE < abs(first) * factor < np.inf:
+        values["time"] = since
+        notes["first_stamp"] = repr(first)
 
 
 def _readable(

@@ -4,11 +4,14 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from jointid.recording.headers import plain
 from jointid.recording.signals import FloatArray
+from jointid.recording.stamp_units import unit_of_stamps
 from jointid.recording.units import UNITS, Unit
 
 _ISO = re.compile(
@@ -20,15 +23,13 @@ _DAY_FIRST = re.compile(rf"(\d{{1,2}})([./])(\d{{1,2}})\2(\d{{4}}),?[T ]+{_CLOCK
 _CLOCK_ALONE = re.compile(_CLOCK)
 _NUMBER = re.compile(r"(-?\d+)(?:[.,](\d+))?")
 _EPOCH = datetime(1970, 1, 1)
+_LARGE = 10**12  # smaller integers are exact as floats of seconds
 _LONGEST = 25  # digits: more are no stamps
 _WHOLE = re.compile(r"(.*?)_?(tv_)?(?:secs?|seconds)")
 _PARTS = (
     (re.compile(r"(.*?)_?(tv_)?(?:n(?:ano)?secs?|nanoseconds)"), 1e9),
     (re.compile(r"(.*?)_?(tv_)?(?:u(?:s|sec)s?|microseconds)"), 1e6),
 )
-# Sizes of stamps since 1970 between 2001 and 2286, by unit; of Windows' file times, 100 ns since 1601.
-_SINCE_1970 = {"s": 10, "ms": 13, "us": 16, "ns": 19}
-_FILE_TIME = Unit(name="100 ns", dimension="time", factor=1e-7)
 _SECOND = 10**9
 _DAY = 86400 * _SECOND
 
@@ -44,7 +45,7 @@ class Stamps:
     first : str
         The first stamp, as the file has it.
     recognised : str
-        Unit that their size shows. Default: the file states it.
+        Unit that their size and steps show. Default: the file states it.
     """
 
     seconds: FloatArray
@@ -58,10 +59,10 @@ def looks_exact(cell: str) -> bool:
     if number is None:
         return any(each.fullmatch(cell.strip()) for each in (_ISO, _DAY_FIRST, _CLOCK_ALONE))
     whole, fraction = len(number[1].lstrip("-")), len(number[2] or "")
-    return 13 <= whole <= _LONGEST or (whole in (9, 10) and whole + fraction >= 16)
+    return 13 <= whole <= _LONGEST or (whole in (9, 10) and fraction > 0)
 
 
-def stamps_of(cells: Sequence[str], unit: Unit | None) -> Stamps | None:
+def stamps_of(cells: Sequence[str], unit: Unit | None, place: str = "") -> Stamps | None:
     """Return stamps as seconds since the first, or None for cells that are no such stamps.
 
     They are subtracted as integers. In 01.11.2025 the day is first; 01/11/2025 is read where the month
@@ -72,7 +73,14 @@ def stamps_of(cells: Sequence[str], unit: Unit | None) -> Stamps | None:
     ----------
     cells : sequence of str
     unit : Unit or None
-        As stated for numbers. None: recognised by their size.
+        As stated for numbers. None: recognised by their size and steps.
+    place : str
+        For messages. Default: none.
+
+    Raises
+    ------
+    InputError
+        They may be in either of two units.
 
     Examples
     --------
@@ -90,19 +98,63 @@ def stamps_of(cells: Sequence[str], unit: Unit | None) -> Stamps | None:
             seconds=np.array([each - first for each in nanoseconds], dtype=np.float64) / _SECOND,
             first=cells[0].strip(),
         )
-    recognised = "" if unit else _unit_by_size(cells[0])
-    if recognised:
-        unit = _FILE_TIME if recognised == _FILE_TIME.name else UNITS[recognised]
     numbers = _of_numbers(cells)
-    if unit is None or numbers is None:
+    if numbers is None:
         return None
     values, parts = numbers
     differences = np.array([each - values[0] for each in values], dtype=np.float64)
-    return Stamps(
-        seconds=differences / (parts * round(1.0 / unit.factor)),
-        first=cells[0].strip(),
-        recognised=recognised,
-    )
+    return _with_unit(differences, parts, cells[0].strip(), float(values[0]) / parts, unit, place)
+
+
+def stamps_of_integers(
+    values: npt.NDArray[Any], unit: Unit | None, place: str = ""
+) -> Stamps | None:
+    """Return integers as seconds since the first, or None where floats hold them as well.
+
+    Parameters
+    ----------
+    values : ndarray of int, shape (n,)
+    unit, place
+        As in `stamps_of`.
+
+    Raises
+    ------
+    InputError
+        As `stamps_of`.
+
+    Examples
+    --------
+    >>> stamps_of_integers(np.array([1729990799999000123, 1729990800000000123]), None).seconds.tolist()
+    [0.0, 0.001]
+    """
+    if not len(values) or abs(int(values[0])) < _LARGE:
+        return None
+    if int(values.max()) - int(values.min()) >= 2**63 or int(values.max()) >= 2**63:
+        values = values.astype(object)
+    elif values.dtype != np.object_:
+        values = values.astype(np.int64)
+    differences = (values - values[0]).astype(np.float64)
+    return _with_unit(differences, 1, str(values[0]), float(values[0]), unit, place)
+
+
+def stamps_of_clock(values: npt.NDArray[Any]) -> Stamps:
+    """Return dates with a time, or durations, as seconds since the first.
+
+    Parameters
+    ----------
+    values : ndarray of datetime64 or timedelta64, shape (n,)
+        Without NaT; not empty.
+    """
+    nanoseconds = (values - values[0]).astype("m8[ns]").astype(np.int64)
+    return Stamps(seconds=nanoseconds.astype(np.float64) / _SECOND, first=str(values[0]))
+
+
+def _with_unit(
+    differences: FloatArray, parts: int, shown: str, first: float, unit: Unit | None, place: str
+) -> Stamps:
+    found = unit or unit_of_stamps(first, differences / parts, place) or UNITS["s"]
+    scale = parts * round(1.0 / found.factor) if found.factor <= 1.0 else parts / found.factor
+    return Stamps(seconds=differences / scale, first=shown, recognised="" if unit else found.name)
 
 
 def fraction_of(headers: Sequence[str], whole: int) -> tuple[int, float] | None:
@@ -225,14 +277,3 @@ def _of_numbers(cells: Sequence[str]) -> tuple[list[int], int] | None:
     if digits > _LONGEST or max(len(whole) for whole, _ in pairs) > _LONGEST:
         return None
     return [int(whole + fraction.ljust(digits, "0")) for whole, fraction in pairs], 10**digits
-
-
-def _unit_by_size(cell: str) -> str:
-    number = _NUMBER.fullmatch(cell.strip())
-    if number is None:
-        return ""
-    if 1.2e17 < int(number[1]) < 1.5e17:  # 1981 to 2076
-        return _FILE_TIME.name
-    if 5e17 < int(number[1]) < 1e18:  # EtherCAT's clocks: ns since 2000
-        return "ns"
-    return next((unit for unit, size in _SINCE_1970.items() if len(number[1]) == size), "")

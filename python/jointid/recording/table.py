@@ -3,6 +3,9 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
+import numpy as np
+import numpy.typing as npt
+
 from jointid.recording.signals import FloatArray
 
 
@@ -43,3 +46,11 @@ def first_cell(table: Table, column: int) -> str:
     """Return the first cell of a column as it stands in the file; empty where cells are no text."""
     found: str = table.first_cell(column) if hasattr(table, "first_cell") else ""
     return found
+
+
+def raw_values(table: Table, column: int) -> npt.NDArray[Any] | None:
+    """Return a column as the file has it, integers and dates not rounded; None where cells are text."""
+    if not hasattr(table, "raw"):
+        return None
+    values = table.raw(column)
+    return None if values is None else np.asarray(values)

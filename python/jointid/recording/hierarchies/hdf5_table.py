@@ -5,6 +5,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy.typing as npt
+
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
 from jointid.recording.headers import parsed
@@ -82,17 +84,15 @@ class Hdf5Table:
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
         """Return columns as arrays of shape (n,), or raise `InputError`."""
-        import h5py
-
-        try:
-            with h5py.File(self._path, "r", locking=False) as file:
-                found = [values_of(file, self._vectors[column]) for column in columns]
-        except Exception as error:
-            raise self._damage(error) from None
         return [
             signal_array("", values, f"{self.source}, dataset {self.headers[column]!r}")
-            for column, values in zip(columns, found, strict=True)
+            for column, values in zip(columns, self._read(columns), strict=True)
         ]
+
+    def raw(self, column: int) -> npt.NDArray[Any]:
+        """Return the values of a column as the file has them."""
+        (values,) = self._read([column])
+        return values
 
     def text(self, column: int) -> list[str]:
         """Return the values of a column as text."""
@@ -101,6 +101,15 @@ class Hdf5Table:
     def place(self, column: int, row: int) -> str:
         """Return file, dataset and 0-based index of a value."""
         return f"{self.source}, dataset {self.headers[column]!r}, index {row}"
+
+    def _read(self, columns: Sequence[int]) -> list[npt.NDArray[Any]]:
+        import h5py
+
+        try:
+            with h5py.File(self._path, "r", locking=False) as file:
+                return [values_of(file, self._vectors[column]) for column in columns]
+        except Exception as error:
+            raise self._damage(error) from None
 
     def _damage(self, error: Exception) -> InputError:
         return InputError(f"the file is damaged ({reason_of(error)})", place=str(self._path))

@@ -5,6 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy.typing as npt
+
 from jointid.base.errors import InputError
 from jointid.recording.hierarchies.hdf5_table import Hdf5Table
 from jointid.recording.readers.mat_elements import Array, DamageError, Variable, variables_of
@@ -62,6 +64,10 @@ class MatTable:
             signal_array("", self._arrays[k], f"{self.source}, variable {self.headers[k]!r}")
             for k in columns
         ]
+
+    def raw(self, column: int) -> npt.NDArray[Any]:
+        """Return the values of a column as the file has them."""
+        return self._arrays[column]
 
     def text(self, column: int) -> list[str]:
         """Return the values of a vector as text."""

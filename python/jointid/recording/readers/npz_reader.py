@@ -71,6 +71,10 @@ class NpzTable:
         names = [self.headers[column] for column in columns]
         return [signal_array("", self._member(name), self._place(name)) for name in names]
 
+    def raw(self, column: int) -> npt.NDArray[Any]:
+        """Return the values of a column as the file has them."""
+        return self._member(self.headers[column])
+
     def text(self, column: int) -> list[str]:
         """Return the values of a member as text."""
         return [str(value) for value in np.ravel(self._member(self.headers[column])).tolist()]

@@ -6,6 +6,7 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
@@ -55,6 +56,19 @@ class ParquetTable:
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
         """Return columns as arrays of shape (n,), or raise `InputError`."""
         return [self._numbers(column) for column in columns]
+
+    def raw(self, column: int) -> npt.NDArray[Any] | None:
+        """Return integers and dates as the file has them, None for other columns."""
+        import pyarrow
+
+        values, types = self._values(column), pyarrow.types
+        dates = types.is_timestamp(values.type) or types.is_duration(values.type)
+        if not dates and (values.null_count or not types.is_integer(values.type)):
+            return None
+        try:
+            return np.asarray(values.to_numpy())
+        except _damage() as error:
+            raise self._unreadable(column, error) from None
 
     def text(self, column: int) -> list[str]:
         """Return the values of a column as text."""

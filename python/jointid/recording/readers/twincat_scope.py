@@ -13,7 +13,8 @@ from jointid.base.errors import InputError
 from jointid.recording.headers import understood
 from jointid.recording.readers.csv_dialect import number_of
 from jointid.recording.signals import FloatArray
-from jointid.recording.stamps import looks_exact, stamps_of
+from jointid.recording.stamps import Stamps, looks_exact, stamps_of
+from jointid.recording.units import UNITS
 
 _BLOCK = 80  # lines: no export has more above its rows
 _KEYS = ("Data-Type", "SampleTime[ms]", "SymbolName", "VariableSize", "Starttime of export")
@@ -192,7 +193,7 @@ class ScopeTable:
             ]
             stamps = [row[group.time] for row in cells]
             values = self._column(cells, index)
-            exact = stamps_of(stamps, None) if stamps and looks_exact(stamps[0]) else None
+            exact = _exact(stamps) if stamps and looks_exact(stamps[0]) else None
             time = self._column(cells, group.time) if exact is None else exact.seconds * 1000.0
         new = (
             np.concatenate([[True], np.diff(time) != 0.0]) if len(time) else np.zeros(0, dtype=bool)
@@ -230,6 +231,13 @@ class ScopeTable:
 
     def _number(self, cell: str) -> float | None:
         return number_of(cell, self._separator)
+
+
+def _exact(stamps: Sequence[str]) -> Stamps | None:
+    try:
+        return stamps_of(stamps, None)
+    except InputError:  # of numbers that may be either, Scope's own unit
+        return stamps_of(stamps, UNITS["ms"])
 
 
 def _groups(names: Sequence[str]) -> tuple[_Group, ...]:

@@ -5,12 +5,14 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
+import numpy.typing as npt
+
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.column_lookup import column_index, listed
 from jointid.recording.headers import ALIASES, parsed
 from jointid.recording.signals import FloatArray, check_signal_name
-from jointid.recording.table import Table, first_cell
+from jointid.recording.table import Table, first_cell, raw_values
 from jointid.recording.wide.finding_joints import JointHeader, joint_headers, words_of
 from jointid.recording.wide.joint_columns import own_columns
 from jointid.recording.wide.words import COMMAND, TORQUES
@@ -99,6 +101,10 @@ class JointTable:
     def first_cell(self, column: int) -> str:
         """Return the first cell of a column as it stands in the file."""
         return first_cell(self._table, self._indices[column])
+
+    def raw(self, column: int) -> npt.NDArray[Any] | None:
+        """Return a column as the file has it."""
+        return raw_values(self._table, self._indices[column])
 
     def place(self, column: int, row: int) -> str:
         """Return where a cell is."""
