@@ -93,7 +93,7 @@ def test_info_says_that_stamps_may_be_milliseconds(
 ) -> None:
     path = tmp_path / "run.csv"
     rows = "".join(f"{2 * k},{(k % 7) / 7},{k % 5}\n" for k in range(50))
-    path.write_text(f"time,position_rad,torque_Nm\n{rows}")
+    path.write_text(f"time_s,position_rad,torque_Nm\n{rows}")
     assert main(["info", str(path)]) == 0
     said = capsys.readouterr().out
     assert "the samples are 2 s apart: the time stamps may be in milliseconds" in said

@@ -10,8 +10,8 @@ import pytest
 
 # As numpy does: what stops its import becomes a page about a bad install.
 SLOW = """import time
-print("importing", flush=True)
 try:
+    print("importing", flush=True)
     time.sleep(60.0)
 except BaseException:
     raise ImportError("a bad install")

@@ -12,7 +12,9 @@ PATH = data_folder() / "well_excited.csv.gz"
 
 @pytest.mark.parametrize("factor", [1e300, -1e150, 1e-300])
 def test_a_magnitude_without_a_square_is_refused(factor: float) -> None:
-    run = jid.load(PATH, scale={"torque": factor})
+    recorded = jid.load(PATH)
+    assert recorded.torque is not None
+    run = recorded.with_signals(torque=factor * recorded.torque)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         with pytest.raises(jid.InputError, match=r"check unit and scale$") as refused:

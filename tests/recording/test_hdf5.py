@@ -134,10 +134,12 @@ def test_joints_of_matrices_with_plural_names(
 
 def test_either_version_of_mat_names_the_joints_alike(tmp_path: Path) -> None:
     scipy_io = pytest.importorskip("scipy.io")
-    mat73(
-        new := tmp_path / "new.mat",
-        lambda file: [variable(file, "tout", TIME), variable(file, "q", ARM)],
-    )
+
+    def fill(file: Any) -> None:
+        variable(file, "tout", TIME)
+        variable(file, "q", ARM)
+
+    mat73(new := tmp_path / "new.mat", fill)
     scipy_io.savemat(old := tmp_path / "old.mat", {"tout": TIME, "q": ARM})
     assert load_robot(new).names == load_robot(old).names == ("1", "2", "3")
     np.testing.assert_array_equal(load(new, joint=2).position, load(old, joint=2).position)

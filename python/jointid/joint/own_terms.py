@@ -29,6 +29,12 @@ _PARAMETERS = {
 KINDS = tuple(_PARAMETERS)
 """How a signal may enter; see `Model`."""
 
+FRICTION = ("viscous", "coulomb")
+"""Kinds that are friction, of another joint or of this one."""
+
+INERTIA = ("inertia", "inertia_own", "inertia_others", "scaled_inertia")
+"""Kinds whose signal is an inertia."""
+
 CENTRED = ("inertia_over", "torque_over")
 """Kinds that are functions of an angle, centred in its range."""
 

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.joint.own_terms import OwnTerms
+from jointid.joint.own_terms import FRICTION, INERTIA, OwnTerms
 from jointid.problem.own_integrals import own_series, signal_of
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
 
-_FRICTION = ("viscous", "coulomb")
-_INERTIA = ("inertia", "inertia_own", "inertia_others", "scaled_inertia")
 _CONSTANT = 1e-6  # of its size: an inertia that varies by less is the joint's own
 
 
@@ -42,7 +40,7 @@ def own_signals(own: OwnTerms, recording: Recording) -> tuple[OwnSignal, ...]:
     signals = []
     for each in own.each:
         run = recording
-        if each.kind in _INERTIA and not each.rate:
+        if each.kind in INERTIA and not each.rate:
             inertia = signal_of(each, run)
             mean = float(inertia.mean())
             if float(np.ptp(inertia)) <= _CONSTANT * abs(mean):
@@ -51,7 +49,7 @@ def own_signals(own: OwnTerms, recording: Recording) -> tuple[OwnSignal, ...]:
         signals += [
             OwnSignal(
                 series=series,
-                friction=each.kind in _FRICTION,
+                friction=each.kind in FRICTION,
                 taken=each.kind == "known" and not each.rate,
             )
             for _, series in own_series(OwnTerms((each,)), run)
