@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
+from jointid.cli.demo import data_folder
 from jointid.estimate.selection import Selection
 from jointid.identification.selection.selecting import excess
 
@@ -150,3 +151,17 @@ def test_what_needs_one_model_for_all_refuses_auto() -> None:
         jid.OnlineIdentifier(model="auto", window=2.0)
     with pytest.raises(jid.InputError, match="a model with a name is needed here"):
         jid.sweep(recording(), grid={"model": ["auto"]}, trials=1)
+
+
+def test_a_known_torque_contains_its_gravity() -> None:
+    # Free gravity beside it fits the log better, with an inertia of 0 and an offset that gravity cancels.
+    folder = data_folder()
+    columns = {"coriolis": "model_coriolis_torque_Nm", "arm": "model_inertia_kgm2"}
+    recording = jid.load(folder / "kr300_joint1.csv.gz", extra=columns)
+    joint = jid.Joint(gear_ratio=256.86)
+    estimate = jid.identify(recording, joint, terms={"coriolis": "known", "arm": "inertia"})
+    assert "gravity_cos" not in estimate.parameters
+    interval = estimate.parameters["viscous"].interval
+    assert interval is not None
+    lower, upper = interval
+    assert lower < 2050.0 < upper

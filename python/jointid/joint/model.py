@@ -41,7 +41,8 @@ class Model:
     gravity : {"none", "known", "free"}, optional
         Torque of gravity that loads the drive and not the sensor: none, computed from the joint's link, or
         identified. Default: none; where `identify` chooses the name, it also chooses between none and
-        free, if the joint is revolute and has neither sensor nor link nor harmonics of order 1.
+        free, if the joint is revolute and has neither sensor nor link, harmonics of order 1 or own terms that
+        are torques.
     asymmetric : bool, optional
         Whether friction differs between the two directions. Default False.
     ripple : collection of float, optional

@@ -35,6 +35,9 @@ FRICTION = ("viscous", "coulomb")
 INERTIA = ("inertia", "inertia_own", "inertia_others", "scaled_inertia")
 """Kinds whose signal is an inertia."""
 
+TORQUES = ("known", "scaled", "torque_over")
+"""Kinds that are a torque of a load, or a function of an angle, as gravity is."""
+
 CENTRED = ("inertia_over", "torque_over")
 """Kinds that are functions of an angle, centred in its range."""
 

@@ -10,6 +10,7 @@ from jointid.base.errors import InputError
 from jointid.joint.checks import check_mapping
 from jointid.joint.joint import Joint
 from jointid.joint.model import Gravity, Model
+from jointid.joint.own_terms import TORQUES, OwnTerms
 from jointid.problem.terms import Request, TermChoice, choose_terms
 from jointid.recording.recording import Recording
 
@@ -40,7 +41,8 @@ def candidates(
     """Return the models that compete, the simplest first; the last one has the terms of all.
 
     Gravity competes where it is not stated and where only the drive's torque shows it: on a revolute
-    joint without a torque sensor, whose link is not described, and without a harmonic of order 1.
+    joint without a torque sensor, whose link is not described, without a harmonic of order 1, and without an own
+    term that is a torque: who states a model's torque has stated its gravity.
 
     Parameters
     ----------
@@ -79,6 +81,9 @@ def _may_load(
         and not choice.sensor
         and (joint is None or joint.link is None)
         and _GRAVITY_ORDER not in (stated.harmonics or ())
+        and not any(
+            own.kind in TORQUES and not own.rate for own in OwnTerms.of(stated.terms or {}).each
+        )
     )
 
 
