@@ -59,7 +59,7 @@ def test_a_group_and_a_joint_in_one_line(
     path = str(tmp_path / "demos.h5")
     with h5py.File(path, "w") as file:
         for k in range(2):
-            file[f"data/demo_{k}/time"] = np.arange(30.0)
+            file[f"data/demo_{k}/time"] = 0.01 * np.arange(30.0)
             file[f"data/demo_{k}/q"] = np.outer(np.arange(30.0), [1.0, 2.0])
     assert main(["info", path]) == 2
     error = capsys.readouterr().err

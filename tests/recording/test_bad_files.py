@@ -83,7 +83,7 @@ BAD: list[Bad] = [
     ),
     (
         "a.csv",
-        headed("time_s,torque_Nm,x_A,y"),
+        headed("time_s,y,torque_Nm,x_A"),
         {},
         r"candidates are 'y'; load with columns=\{'position': 'y'\}$",
     ),
@@ -93,7 +93,7 @@ BAD: list[Bad] = [
         {"columns": {"position": "time_s"}},
         "no column is left for time: 'time_s' is chosen as position$",
     ),
-    ("a.csv", headed("t,x,y,z"), {}, r"candidates are 'x', 'y', 'z'; .* columns=\{'position'"),
+    ("a.csv", headed("t,x,y,z"), {}, r"candidates are 'x', 'y'; .* columns=\{'position'"),
     (
         "a.csv",
         headed("t,q_rad,q_deg,x"),
