@@ -43,11 +43,11 @@ def determinable(quiet: jid.Recording, noise: float, delay: float, near: float) 
     columns = [late(quiet, "sensor", delay), np.cos(angle), np.sin(angle), np.ones(len(angle))]
     moving = slice(int(np.ceil(delay / quiet.sample_period)) + 2, None)
     known = np.column_stack(columns)[moving]
-    told = rate[moving] - known @ np.linalg.lstsq(known, rate[moving], rcond=None)[0]
+    informative = rate[moving] - known @ np.linalg.lstsq(known, rate[moving], rcond=None)[0]
     noise = noise / quiet.metadata["log"]["gain"]
-    size = np.abs(told)
-    whole = noise / float(np.linalg.norm(told))
-    smooth = noise / float(np.linalg.norm(told[size < _JUMP * np.median(size)]))
+    size = np.abs(informative)
+    whole = noise / float(np.linalg.norm(informative))
+    smooth = noise / float(np.linalg.norm(informative[size < _JUMP * np.median(size)]))
     apart = abs(delay - quiet.sample_period * round(delay / quiet.sample_period))
     if NORMAL * smooth <= near:
         return True

@@ -198,12 +198,12 @@ def tables(found: Mapping[str, tuple[Case, Sequence[Outcome]]]) -> list[str]:
             errors = np.array([each.error for each in named])
             inside = [each.error < NORMAL * each.stated + 2e-5 for each in named]
             can = [each for each in runs if each.determinable]
-            told = np.count_nonzero([each.error < NEAR for each in can])
+            near = np.count_nonzero([each.error < NEAR for each in can])
             unsaid = [e >= NEAR and not said for e, said in zip(errors, inside, strict=True)]
             wide = [NORMAL * each.stated > NEAR for each in named]
             lines.append(
                 f"| {title} | {len(runs)} | {np.count_nonzero(errors < NEAR)} |"
-                f" {f'{len(can)}, {told}' if case.silent else ''} |"
+                f" {f'{len(can)}, {near}' if case.silent else ''} |"
                 f" {np.count_nonzero(errors >= NEAR)} | {sum(unsaid)} |"
                 f" {1e3 * np.median(errors) if len(errors) else np.nan:.2f} ms |"
                 f" {sum(inside)} of {len(named)} | {sum(wide)} | {sum(bool(each.false) for each in runs)} |"

@@ -20,7 +20,7 @@ _PERIOD = 0.1  # [s] between two drawings
 class _Bar:
     """A bar on a terminal, and nothing elsewhere."""
 
-    def __init__(self, *, enabled: bool, stream: TextIO | None) -> None:
+    def __init__(self, *, enabled: bool = True, stream: TextIO | None = None) -> None:
         self._stream = stream if stream is not None else sys.stderr
         self._enabled = enabled and self._stream.isatty()
         self._drawn = 0.0
@@ -87,9 +87,6 @@ class JointsProgress(_Bar):
         Default: standard error.
     """
 
-    def __init__(self, *, enabled: bool = True, stream: TextIO | None = None) -> None:
-        super().__init__(enabled=enabled, stream=stream)
-
     def __call__(self, joint: str, number: int, count: int) -> None:
         """Show a joint."""
         self._draw(number / count, f"joint {joint}, {number + 1} of {count}")
@@ -104,9 +101,6 @@ class ComparisonProgress(_Bar):
     stream : text file, optional
         Default: standard error.
     """
-
-    def __init__(self, *, enabled: bool = True, stream: TextIO | None = None) -> None:
-        super().__init__(enabled=enabled, stream=stream)
 
     def __call__(self, step: ComparisonStep) -> None:
         """Show a fit."""

@@ -5,16 +5,17 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from jointid.base.argument_checks import require_kind, require_path
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
 from jointid.estimate.estimate import Estimate
-from jointid.exports.registry import TARGETS, target_of
-from jointid.exports.subject import subject_of
-from jointid.exports.target import Existing, Order, Target
 from jointid.joint.checks import check_flag, positive_number
 from jointid.joint.joint import Joint
+
+if TYPE_CHECKING:
+    from jointid.exports.target import Existing, Target
 
 _LARGEST = 64 * 2**20  # bytes of a file that is edited
 
@@ -78,6 +79,12 @@ def export(
     >>> jid.export(estimate, "arm.xml", into="arm.xml", joint_name="shoulder", approximate=True)  # doctest: +SKIP
     PosixPath('arm.xml')
     """
+    from jointid.exports.registry import (
+        target_of,  # writers of formats: not needed by `import jointid`
+    )
+    from jointid.exports.subject import subject_of
+    from jointid.exports.target import Order
+
     if isinstance(source, Mapping):
         names = [str(name) for name in source]
         raise InputError(
@@ -112,6 +119,9 @@ def export(
 
 def _existing(target: Target, into: str | os.PathLike[str] | None, joint: str) -> Existing | None:
     """The file to edit, read."""
+    from jointid.exports.registry import TARGETS
+    from jointid.exports.target import Existing
+
     if into is None:
         return None
     path = require_path("into", into)

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import re
-import xml.parsers.expat
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from xml.sax.saxutils import escape, quoteattr
+from xml.parsers import expat
 
 from jointid.base.errors import InputError
 
@@ -57,7 +56,7 @@ def elements(content: bytes, place: str) -> list[Element]:
         raise InputError("text in UTF-8 is expected", place=place, remedy="save the file as UTF-8")
     found: list[Element] = []
     open_: list[int] = []
-    parser = xml.parsers.expat.ParserCreate()
+    parser = expat.ParserCreate()
 
     def begin(tag: str, attributes: dict[str, str]) -> None:
         start = parser.CurrentByteIndex
@@ -83,8 +82,8 @@ def elements(content: bytes, place: str) -> list[Element]:
     parser.EndElementHandler = end
     try:
         parser.Parse(content, True)
-    except xml.parsers.expat.ExpatError as error:
-        reason = xml.parsers.expat.ErrorString(error.code)
+    except expat.ExpatError as error:
+        reason = expat.ErrorString(error.code)
         raise InputError(f"not XML: {reason}", place=f"{place}, line {error.lineno}") from None
     return found
 
@@ -112,13 +111,13 @@ def with_attributes(content: bytes, element: Element, changes: Mapping[str, str]
         name = found[2].decode()
         if name not in left:
             return found[0]
-        return found[1] + found[2] + found[3] + quoteattr(left.pop(name)).encode()
+        return found[1] + found[2] + found[3] + attribute(left.pop(name)).encode()
 
     tag = _PAIR.sub(replaced, tag)
     closing = b"/>" if tag.endswith(b"/>") else b">"
     body = tag[: -len(closing)]
     kept = body.rstrip()
-    added = b"".join(f" {name}={quoteattr(value)}".encode() for name, value in left.items())
+    added = b"".join(f" {name}={attribute(value)}".encode() for name, value in left.items())
     tag = kept + added + body[len(kept) :] + closing
     return content[: element.start] + tag + content[element.inner :]
 
@@ -150,11 +149,17 @@ def _characters(text: str) -> str:
 
 def attribute(value: str) -> str:
     """Return an attribute's value with its quotes."""
+    from xml.sax.saxutils import (
+        quoteattr,  # brings the standard library's network clients: only when a file is written
+    )
+
     return quoteattr(_characters(value))
 
 
 def text(value: str) -> str:
     """Return text between tags."""
+    from xml.sax.saxutils import escape
+
     return escape(_characters(value))
 
 

@@ -52,7 +52,7 @@ class Share:
     own_too : bool
         Whether the joint's own motion, beyond the model, explains much of it as well.
     certain : bool
-        Whether it stands out by itself. A share that does not is told only where the other joint's residual
+        Whether it stands out by itself. A share that does not is reported only where the other joint's residual
         owes a certain one to this joint: what couples two joints acts on both.
     """
 

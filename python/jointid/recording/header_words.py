@@ -9,7 +9,7 @@ def _words_of(text: str) -> frozenset[str]:
     return frozenset(text.split())
 
 
-_QUANTITIES: dict[str, str] = {
+QUANTITIES: dict[str, str] = {
     word: quantity
     for quantity, words in {
         "position": "position positions pos angle angles q qpos theta winkel",
@@ -21,6 +21,7 @@ _QUANTITIES: dict[str, str] = {
     }.items()
     for word in words.split()
 }
+"""Word → the quantity that it names."""
 _MEASURED = _words_of("actual act measured meas measurement estimate feedback fbk")
 _COMMANDED = _words_of(
     "desired des d target cmd command commanded set setpoint setpoints ref reference goal soll"
@@ -39,7 +40,7 @@ _ROLES: dict[str, str] = {
     "sensor": "sensor",
 }
 _SIGNALS: dict[tuple[str, str], str] = {
-    **{("", quantity): quantity for quantity in _QUANTITIES.values()},
+    **{("", quantity): quantity for quantity in QUANTITIES.values()},
     ("motor", "torque"): "motor_torque",
     ("motor", "current"): "current",
     ("motor", "temperature"): "temperature",
@@ -140,16 +141,16 @@ def _understood(words: list[str], joint: str) -> Meaning | None:
     numbers: list[str] = []
     for k, word in enumerate(words):
         after = words[k + 1] if k + 1 < len(words) else ""
-        if word == "current" and _QUANTITIES.get(after) in ("position", "velocity"):
+        if word == "current" and QUANTITIES.get(after) in ("position", "velocity"):
             measured = True  # the current position is the actual one
         elif (word == "m" and quantity == "torque") or word in _ROLES:
             if role:
                 return None
             role = _ROLES.get(word, "motor")
-        elif word in _QUANTITIES:
+        elif word in QUANTITIES:
             if quantity:
                 return None
-            quantity = _QUANTITIES[word]
+            quantity = QUANTITIES[word]
         elif word in _MEASURED:
             measured = True
         elif word in _COMMANDED:

@@ -64,12 +64,14 @@ def test_a_log_of_one_joint_names_none(headers: list[str]) -> None:
 def test_what_a_model_or_a_tool_says_is_no_signal() -> None:
     computed = [
         "model_gravity_torque_1_Nm",
-        "target_moment_1",
         "actual_TCP_speed_1",
         "inertia_1_kgm2",
     ]
     found = joint_headers(["time", "q1", *computed])
     assert [each.meaning for each in found["1"][1:]] == [None] * len(computed)
+    commanded = joint_headers(["time", "q1", "target_moment_1"])["1"][1].meaning
+    assert commanded is not None
+    assert commanded.asked
 
 
 @pytest.mark.parametrize(

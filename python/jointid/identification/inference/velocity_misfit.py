@@ -55,7 +55,7 @@ def beyond_velocity_noise(
     Notes
     -----
     A velocity that is measured once more has the same noise once more, and adds to the misfit what that noise has
-    added before. A cause that explains a smaller share of the misfit is not told from it.
+    added before. A cause that explains a smaller share of the misfit is not distinguished from it.
     """
     if not any(each.name in IMITATED for each in causes):
         return tuple(causes)

@@ -29,7 +29,7 @@ class McapSource:
     """
 
     def __init__(self, path: Path) -> None:
-        import mcap.stream_reader  # noqa: F401  # a missing package is told before the file is opened
+        import mcap.stream_reader  # noqa: F401  # a missing package is reported before the file is opened
 
         self._path = path
         self._size = path.stat().st_size
@@ -61,13 +61,13 @@ class McapSource:
         from mcap.reader import SeekingReader
 
         summary = None
+        # The library documents no error for damaged bytes. Without a summary all is read in order.
         try:
             reader = SeekingReader(stream, record_size_limit=self._size)
         except Exception:
             raise DamageError("it is not an MCAP file") from None
         try:
             summary = reader.get_summary()
-        # The library documents no error for damaged bytes; without a summary all is read in order.
         except Exception:
             summary = None
         if summary is not None and summary.channels:

@@ -2,11 +2,13 @@
 
 from pathlib import Path
 
-from jointid.recording.hierarchies.hdf5_table import Hdf5Table
 from jointid.recording.readers.reader import Reader
+from jointid.recording.table import Table
 
 
-def _opened(path: Path, *, part: str | None = None, kind: str | None = None) -> Hdf5Table:  # noqa: ARG001
+def _opened(path: Path, *, part: str | None = None, kind: str | None = None) -> Table:  # noqa: ARG001
+    from jointid.recording.hierarchies.hdf5_table import Hdf5Table
+
     return Hdf5Table(path, part)
 
 

@@ -2,13 +2,14 @@
 
 from pathlib import Path
 
-from jointid.recording.messages.mcap_source import McapSource
-from jointid.recording.messages.message_table import MessageTable
-from jointid.recording.messages.opening import opened
 from jointid.recording.readers.reader import Reader
+from jointid.recording.table import Table
 
 
-def _opened(path: Path, *, part: str | None = None, kind: str | None = None) -> MessageTable:
+def _opened(path: Path, *, part: str | None = None, kind: str | None = None) -> Table:
+    from jointid.recording.messages.mcap_source import McapSource
+    from jointid.recording.messages.opening import opened
+
     return opened(path, McapSource, topic=part, kind=kind)
 
 

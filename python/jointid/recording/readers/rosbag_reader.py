@@ -2,14 +2,15 @@
 
 from pathlib import Path
 
-from jointid.recording.messages.message_table import MessageTable
-from jointid.recording.messages.opening import opened
-from jointid.recording.messages.ros1_source import Ros1Source
-from jointid.recording.messages.ros2_source import FolderSource, SqliteSource
 from jointid.recording.readers.reader import Reader
+from jointid.recording.table import Table
 
 
-def _opened(path: Path, *, part: str | None = None, kind: str | None = None) -> MessageTable:
+def _opened(path: Path, *, part: str | None = None, kind: str | None = None) -> Table:
+    from jointid.recording.messages.opening import opened
+    from jointid.recording.messages.ros1_source import Ros1Source
+    from jointid.recording.messages.ros2_source import FolderSource, SqliteSource
+
     if path.is_dir():
         return opened(path, FolderSource, topic=part, kind=kind)
     ros1 = path.name.lower().endswith(".bag")

@@ -29,11 +29,14 @@ class OwnColumns:
         Of the gear, on which the position is: "joint" or "motor".
     other_sides : dict of str to str
         Signal → its side, where that is not `side`.
+    asked : tuple of JointHeader
+        Commanded and filtered torques, which are never taken by themselves.
     """
 
     of: dict[str, int | None]
     side: str = JOINT
     other_sides: dict[str, str] = field(default_factory=dict)
+    asked: tuple[JointHeader, ...] = ()
 
 
 def own_columns(
@@ -90,7 +93,7 @@ def own_columns(
             _choose_torque(table, meant, chosen, other_sides)
     if asked and not any(chosen.get(signal) is not None for signal in TORQUES):
         _ask(table, mine, shared, given, asked)
-    return OwnColumns(of=chosen, side=side, other_sides=other_sides)
+    return OwnColumns(of=chosen, side=side, other_sides=other_sides, asked=tuple(asked))
 
 
 def _side(

@@ -13,9 +13,8 @@ from jointid.recording.column_lookup import column_index, listed
 from jointid.recording.headers import ALIASES, parsed
 from jointid.recording.signals import FloatArray, check_signal_name
 from jointid.recording.table import Table, first_cell, raw_values
-from jointid.recording.wide.finding_joints import JointHeader, joint_headers, words_of
+from jointid.recording.wide.finding_joints import joint_headers
 from jointid.recording.wide.joint_columns import own_columns
-from jointid.recording.wide.words import COMMAND, TORQUES
 
 Columns = Mapping[str, str | int | None]
 _MARK = "{joint}"
@@ -83,8 +82,8 @@ class JointTable:
             name: place[index] for name, index in table.other_names.items() if index in place
         }
         self.notes: dict[str, Any] = dict(getattr(table, "notes", {}))
-        if not {"torque", "motor_torque"} & set(chosen):
-            self.notes |= _commanded_torque(mine)
+        if len(found.asked) == 1 and not {"torque", "motor_torque"} & set(chosen):
+            self.notes["commanded_torque"] = found.asked[0].pattern
         saved = table.saved
         self.saved: Mapping[str, Any] | None = (
             None if saved is None else {key: saved[key] for key in saved if key != "robot"}
@@ -178,18 +177,6 @@ def _index(table: Table, column: object, joint: str, signal: str) -> int | None:
 def _extra_index(table: Table, column: str | int, joint: str, name: str) -> int:
     header = column.replace(_MARK, joint) if isinstance(column, str) else column
     return column_index(table, header, f"extra.{name}")
-
-
-def _commanded_torque(mine: list[JointHeader]) -> dict[str, str]:
-    """Return the header of a commanded torque that is not read, for the message that a torque is missing."""
-    commanded = [
-        each.pattern
-        for each in mine
-        if (words := set(words_of(each.header))) & COMMAND
-        and words & TORQUES
-        and words <= COMMAND | TORQUES
-    ]
-    return {"commanded_torque": commanded[0]} if len(commanded) == 1 else {}
 
 
 def nothing_named(table: Table, joint: object, argument: str = "joint") -> InputError:

@@ -2,17 +2,19 @@
 
 from dataclasses import dataclass, replace
 
+from jointid.recording.header_words import QUANTITIES
+
 JOINT, MOTOR = "joint", "motor"
 SIDES = (JOINT, MOTOR)
 
-_NOUNS: dict[str, str] = {
+# Beside a joint's number or name a shorter word is clear.
+_NOUNS: dict[str, str] = QUANTITIES | {
     word: signal
     for signal, words in {
-        "position": "position positions pos angle angles ang q qpos theta",
-        "velocity": "velocity velocities vel speed speeds qd dq qdot qvel omega",
-        "torque": "torque torques tau effort efforts trq eff qfrc",
-        "current": "current currents cur",
-        "temperature": "temperature temperatures temp temps",
+        "position": "ang",
+        "torque": "trq eff moments",
+        "current": "cur",
+        "temperature": "temps",
         "sensor": "sensor sensors",
         "reference": "reference references ref",
     }.items()
@@ -42,8 +44,6 @@ CARRIERS = frozenset(("joint", "axis", "achse", "dof", "j", "a"))
 _FILTERED = frozenset(("filtered", "filt", "smoothed"))
 _AT_OUTPUT = _LINK_SIDE | {"output"}
 _SAYS_JOINT = _AT_OUTPUT | {"joint", "joints"}
-TORQUES = frozenset(("moment", "moments", "torque", "torques", "joint", "joints"))
-"""Words of a commanded torque, as far as it is not read by itself."""
 COMPUTED = frozenset(("error", "errors", "err", "output", "limit", "limits", "min", "max"))
 """Words that name the part of a message that is not measured: a controller's error and output."""
 
