@@ -105,8 +105,9 @@ FOLDERS: dict[str, Folder] = {
     "online": Folder(may_use={*_SOUGHT, "identification/inference"}, packages={"numpy"}),
     "simulation": Folder(may_use=_DATA, packages={"numpy"}),
     "study": Folder(may_use={*_SOUGHT, "simulation"}, packages={"numpy", "pandas", "pyarrow"}),
+    "design": Folder(may_use={*_DATA, "simulation", "plot"}, packages={"numpy"}),
     "plot": Folder(
-        may_use={*_DATA, "simulation", "estimate", "study"},
+        may_use={*_DATA, "simulation", "estimate", "study", "design"},
         packages={"numpy", "matplotlib"},
     ),
     "report": Folder(
@@ -158,6 +159,7 @@ FOLDERS: dict[str, Folder] = {
                 "joints",
                 "simulation",
                 "study",
+                "design",
                 "plot",
                 "report",
                 "exports",
@@ -172,7 +174,7 @@ FOLDERS: dict[str, Folder] = {
         may_use={
             *(_SOUGHT - {"problem"}),
             *("recording/readers", "recording/wide", "comparison", "joints", "online"),
-            *("simulation", "study"),
+            *("simulation", "study", "design"),
             *("plot", "exports", "hardware", "commissioning", "cli"),
         },
     ),

@@ -11,20 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
 from jointid.cli.arguments import by_name, decimal, number_or_text, pair
+from jointid.simulation.arguments import LAWS
 
 if TYPE_CHECKING:
     from jointid.simulation.arguments import Controller
     from jointid.simulation.scenario import Scenario
     from jointid.simulation.trajectory import Trajectory
 
-CONTROLLERS = {
-    "adaptive_robust": "AdaptiveRobust",
-    "compensated_pid": "CompensatedPid",
-    "lugre_observer": "LugreObserver",
-    "pid": "Pid",
-    "pd": "Pd",
-    "open_loop": "OpenLoop",
-}
 TRAJECTORIES = ("thesis", "sine", "multisine", "sigmoid", "step", "trapezoid")
 
 
@@ -33,7 +26,7 @@ def scenario_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--controller",
         default="adaptive_robust",
-        help=f"{', '.join(CONTROLLERS)} (default: adaptive_robust)",
+        help=f"{', '.join(LAWS)} (default: adaptive_robust)",
     )
     command.add_argument(
         "--believe",
@@ -45,7 +38,8 @@ def scenario_arguments(command: argparse.ArgumentParser) -> None:
         "--trajectory",
         default="thesis",
         metavar="NAME[:OPTION=VALUE,…]",
-        help=f"{', '.join(TRAJECTORIES)}, or a recording to follow; angles in rad, or as 60deg",
+        help=f"{', '.join(TRAJECTORIES)}, a motion of `jointid design` (.toml), or a recording to follow; "
+        "angles in rad, or as 60deg",
     )
     for name, shown, explanation in (
         ("--gain", "NAME=VALUE", "a setting of the controller; may be repeated"),
@@ -108,12 +102,11 @@ def scenario_of(joint_file: Path, arguments: argparse.Namespace) -> Scenario:
 
 
 def _controller(name: str, gains: Sequence[tuple[str, str]]) -> Controller:
-    from jointid import _core
     from jointid.joint.checks import suggestion
 
-    if name not in CONTROLLERS:
-        raise InputError(suggestion(name, [*CONTROLLERS]), argument="controller", value=name)
-    kind = getattr(_core, CONTROLLERS[name])
+    if name not in LAWS:
+        raise InputError(suggestion(name, [*LAWS]), argument="controller", value=name)
+    kind = LAWS[name]
     usual = kind().asdict()
     chosen = _checked("gain", gains, usual)
     if "stiffness" in usual and not chosen.get("stiffness"):
@@ -128,7 +121,7 @@ def _controller(name: str, gains: Sequence[tuple[str, str]]) -> Controller:
 
 
 def trajectory_of(text: str) -> Trajectory:
-    """A trajectory from its name and options, or from a recording's file.
+    """A trajectory from its name and options, or from the file of a motion or a recording.
 
     Raises
     ------
@@ -136,10 +129,13 @@ def trajectory_of(text: str) -> Trajectory:
         No such trajectory, option or file.
     """
     from jointid.recording.readers.loading import load
+    from jointid.simulation.motion_file import load_motion
     from jointid.simulation.trajectory import Trajectory
 
     name, _, options = text.partition(":")
     if name not in TRAJECTORIES:
+        if Path(text).suffix.lower() == ".toml":
+            return load_motion(text).trajectory
         if Path(text).exists():
             return Trajectory.from_recording(load(text))
         raise InputError(
