@@ -53,7 +53,7 @@ def test_peaks_are_read_with_it(tmp_path: Path) -> None:
 
 
 def test_only_sums_of_sines_are_written() -> None:
-    with pytest.raises(InputError, match="trajectory.form is 'step': a sum of sines"):
+    with pytest.raises(InputError, match=r"trajectory\.form is 'step': a sum of sines"):
         motion_table(jid.Trajectory.step(0.1, duration=1.0))
 
 
