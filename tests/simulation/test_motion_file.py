@@ -8,7 +8,7 @@ import pytest
 
 import jointid as jid
 from jointid.base.errors import InputError
-from jointid.base.toml_text import toml_text
+from jointid.base.toml_text import toml_of
 from jointid.simulation.motion_file import COMMENTS, load_motion, motion_table
 
 SINES: dict[str, Any] = {
@@ -19,7 +19,7 @@ SINES: dict[str, Any] = {
     "fade": 1.0,
     "duration": 8.0,
 }
-TEXT = toml_text({"trajectory": {"form": "sines", **SINES}}, COMMENTS)
+TEXT = toml_of({"trajectory": {"form": "sines", **SINES}}, COMMENTS)
 PEAKS = "\n[peaks]\nposition = [-0.4, 0.8]\nvelocity = 1.0\nacceleration = 2.0\ntorque = 90.0\n"
 
 
@@ -31,7 +31,7 @@ def written(folder: Path, text: str) -> Path:
 
 def test_what_is_written_is_read(tmp_path: Path) -> None:
     motion = jid.Trajectory.sines(**SINES)
-    path = written(tmp_path, toml_text({"trajectory": motion_table(motion)}, COMMENTS))
+    path = written(tmp_path, toml_of({"trajectory": motion_table(motion)}, COMMENTS))
     assert load_motion(path).trajectory == motion
     assert load_motion(path).peaks is None
     assert "frequency = [1.0, 2.5]  # rad/s" in path.read_text(encoding="utf-8")

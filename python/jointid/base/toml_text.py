@@ -11,7 +11,7 @@ from typing import Any
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
-def toml_text(tables: Mapping[str, Any], comments: Mapping[str, str] | None = None) -> str:
+def toml_of(tables: Mapping[str, Any], comments: Mapping[str, str] | None = None) -> str:
     """Return tables as TOML.
 
     Parameters
@@ -29,7 +29,7 @@ def toml_text(tables: Mapping[str, Any], comments: Mapping[str, str] | None = No
 
     Examples
     --------
-    >>> print(toml_text({"limits": {"velocity": 3.4}}, {"limits.velocity": "rad/s"}), end="")
+    >>> print(toml_of({"limits": {"velocity": 3.4}}, {"limits.velocity": "rad/s"}), end="")
     [limits]
     velocity = 3.4  # rad/s
     """

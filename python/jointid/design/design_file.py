@@ -15,7 +15,7 @@ from jointid.base.errors import InputError
 from jointid.base.files import write_whole
 from jointid.base.schema import Flag, Kind, ListOf, Number, Plain, Record, TableOf, Text
 from jointid.base.toml_file import read_toml
-from jointid.base.toml_text import toml_text
+from jointid.base.toml_text import toml_of
 from jointid.design.design import Design
 from jointid.design.expected_error import ExpectedError
 from jointid.design.motion_limits import MotionLimits
@@ -119,7 +119,7 @@ def save_design(design: Design, path: str | os.PathLike[str]) -> None:
     place = require_path("path", path)
     if place.suffix.lower() != ".toml" and not place.is_dir():
         raise InputError("a design is saved as .toml", argument="path", value=place.name)
-    write_whole(place, toml_text(document_of(design), _SAYS).encode())
+    write_whole(place, toml_of(document_of(design), _SAYS).encode())
 
 
 def load_design(path: str | os.PathLike[str]) -> Design:
