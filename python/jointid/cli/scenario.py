@@ -14,6 +14,7 @@ from jointid.cli.arguments import by_name, decimal, number_or_text, pair
 from jointid.simulation.arguments import LAWS
 
 if TYPE_CHECKING:
+    from jointid._core import Sensors
     from jointid.simulation.arguments import Controller
     from jointid.simulation.scenario import Scenario
     from jointid.simulation.trajectory import Trajectory
@@ -71,17 +72,15 @@ def scenario_of(joint_file: Path, arguments: argparse.Namespace) -> Scenario:
     InputError
         Something that cannot be used.
     """
-    from jointid._core import Sensors
     from jointid.joint.joint import Joint
     from jointid.simulation.scenario import Scenario
 
     joint = Joint.load(joint_file)
-    sensors = _checked("sensors", arguments.sensor, Sensors().asdict())
     scenario = Scenario(
         joint,
-        _controller(arguments.controller, arguments.gain),
+        controller_of(arguments.controller, arguments.gain),
         trajectory_of(arguments.trajectory),
-        Sensors(**sensors),
+        sensors_of(arguments.sensor),
         control_period=arguments.control_period,
         duration=arguments.duration,
     )
@@ -101,7 +100,14 @@ def scenario_of(joint_file: Path, arguments: argparse.Namespace) -> Scenario:
     return scenario.changed(estimates)
 
 
-def _controller(name: str, gains: Sequence[tuple[str, str]]) -> Controller:
+def controller_of(name: str, gains: Sequence[tuple[str, str]]) -> Controller:
+    """A controller from its name and the texts of its gains.
+
+    Raises
+    ------
+    InputError
+        No such controller or gain, or one that it needs is missing.
+    """
     from jointid.joint.checks import suggestion
 
     if name not in LAWS:
@@ -118,6 +124,19 @@ def _controller(name: str, gains: Sequence[tuple[str, str]]) -> Controller:
         )
     controller: Controller = kind(**chosen)
     return controller
+
+
+def sensors_of(pairs: Sequence[tuple[str, str]]) -> Sensors:
+    """Sensors from the texts of their properties.
+
+    Raises
+    ------
+    InputError
+        No such property, or a value that it cannot have.
+    """
+    from jointid._core import Sensors
+
+    return Sensors(**_checked("sensors", pairs, Sensors().asdict()))
 
 
 def trajectory_of(text: str) -> Trajectory:
@@ -204,11 +223,15 @@ def _checked(
 
 def _values(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str, Any]:
     """Numbers, angles such as 60deg, true and false, texts."""
-    values: dict[str, Any] = {}
-    for name, text in by_name(argument, pairs).items():
-        degrees = number_or_text(text.removesuffix("deg"))
-        if text.endswith("deg") and not isinstance(degrees, str):
-            values[name] = math.radians(degrees)
-        else:
-            values[name] = {"true": True, "false": False}.get(text, number_or_text(text))
-    return values
+    return {
+        name: {"true": True, "false": False}.get(text, number_or_angle(text))
+        for name, text in by_name(argument, pairs).items()
+    }
+
+
+def number_or_angle(text: str) -> Any:
+    """An int, a float, an angle such as 60deg in [rad], else the text."""
+    degrees = number_or_text(text.removesuffix("deg"))
+    if text.endswith("deg") and not isinstance(degrees, str):
+        return math.radians(degrees)
+    return number_or_text(text)

@@ -49,8 +49,15 @@ _NOT_EMULATED |= {"converter_bits", "converter_range", "converter_noise", "conve
 _EMULATED = ("integration_step", "position")
 
 
-def load_bench(path: str | Path) -> Bench:
-    """Read a bench file: see `Bench.load`."""
+def load_bench(path: str | Path, *, with_motion: bool = True) -> Bench:
+    """Read a bench file: see `Bench.load`.
+
+    Parameters
+    ----------
+    path : path
+    with_motion : bool
+        False: its motion is not read, and any stands in its place; for who makes the motion. Default True.
+    """
     source = str(path)
     document = read_document(path)
     joint = joint_from_document(document, source)
@@ -67,14 +74,16 @@ def load_bench(path: str | Path) -> Bench:
         if isinstance(value, dict) and key not in tables:
             session.refuse(key, f"unknown table; {suggestion(key, tables)}")
     for key, meaning in _REQUIRED.items():
-        if key not in session.entries:
+        if key not in session.entries and (with_motion or key != "trajectory"):
             raise InputError(f"there is no table [session.{key}], {meaning}", place=source)
     if "gear_ratio" not in document.get("drive", {}):
         raise InputError(
             "missing; 1 where there is no gear", argument="gear_ratio", place=f"{source}: [drive]"
         )
     bus = session.table("bus").make(BusOptions)
-    motion = _motion(session.table("trajectory"), Path(path).parent)
+    motion = Motion(trajectory=Trajectory.thesis())
+    if with_motion:
+        motion = _motion(session.table("trajectory"), Path(path).parent)
     trajectory = motion.trajectory
     options = session.without(*tables).make(SessionOptions, resolution=None)
     try:
