@@ -17,6 +17,7 @@ from jointid.joint.link import Limits
 
 if TYPE_CHECKING:
     from jointid.hardware.bench.bench import Bench
+    from jointid.hardware.session.limits import SessionLimits
     from jointid.simulation.arguments import Controller
 
 _LIMITS = ("position", "velocity", "acceleration", "torque", "sensor_range")
@@ -52,11 +53,31 @@ def limits_of(arguments: argparse.Namespace, joint: Joint, bench: Bench | None) 
             )
         )
     try:
-        return MotionLimits.of(given, joint)
+        limits = MotionLimits.of(given, joint)
     except InputError as error:  # its place is the option
         raise InputError(
             error.reason, argument=error.argument, value=error.value, remedy=error.remedy
         ) from None
+    if bench is not None:
+        _check_session(limits, bench.limits)
+    return limits
+
+
+def _check_session(limits: MotionLimits, session: SessionLimits) -> None:
+    """Refuse a limit beyond the one at which the session of the joint file stops."""
+    low, high = session.position
+    if limits.position[0] < low or limits.position[1] > high:
+        raise InputError(
+            f"the joint file's session stops at {low:g} to {high:g}",
+            argument="position",
+            value=limits.position,
+        )
+    for name in ("velocity", "torque"):
+        stated, allowed = getattr(limits, name), getattr(session, name)
+        if stated > allowed:
+            raise InputError(
+                f"the joint file's session stops at {allowed:g}", argument=name, value=stated
+            )
 
 
 def controller_for(
