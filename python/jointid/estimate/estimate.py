@@ -58,6 +58,9 @@ class Estimate(Questions):
     covariance : ndarray, shape (p, p)
         Of the free parameters. Where nothing divides an offset from the difference of two directions' Coulomb
         friction, the offset has an infinite variance and the others have theirs at a given offset.
+    information : ndarray, shape (p, p), or None
+        Inverse of the covariance, of chance alone; zero along a direction that the recordings do not determine.
+        None in an estimate that was saved before there was one.
     residuals : ResidualStatistics
     windows : WindowTable
     convergence : Convergence or None
@@ -106,6 +109,7 @@ class Estimate(Questions):
     delays: Mapping[str, Delay] = field(default_factory=dict)
     slow_motion: SlowMotion | None = None
     selection: Selection | None = field(default=None, repr=False)
+    information: Array | None = field(default=None, repr=False)
     follow_up: FollowUp | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:
