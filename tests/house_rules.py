@@ -105,6 +105,9 @@ FOLDERS: dict[str, Folder] = {
     "online": Folder(may_use={*_SOUGHT, "identification/inference"}, packages={"numpy"}),
     "simulation": Folder(may_use=_DATA, packages={"numpy"}),
     "study": Folder(may_use={*_SOUGHT, "simulation"}, packages={"numpy", "pandas", "pyarrow"}),
+    "design": Folder(
+        may_use={"base", "joint", "simulation", "plot"}, packages={"numpy", "matplotlib"}
+    ),
     "plot": Folder(
         may_use={*_DATA, "simulation", "estimate", "study"},
         packages={"numpy", "matplotlib"},
@@ -158,6 +161,7 @@ FOLDERS: dict[str, Folder] = {
                 "joints",
                 "simulation",
                 "study",
+                "design",
                 "plot",
                 "report",
                 "exports",
@@ -172,7 +176,7 @@ FOLDERS: dict[str, Folder] = {
         may_use={
             *(_SOUGHT - {"problem"}),
             *("recording/readers", "recording/wide", "comparison", "joints", "online"),
-            *("simulation", "study"),
+            *("simulation", "study", "design"),
             *("plot", "exports", "hardware", "commissioning", "cli"),
         },
     ),

@@ -40,6 +40,9 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.comparison.comparison import compare_models
 from jointid.comparison.result import Comparison
+from jointid.design.design import Design
+from jointid.design.design_file import load_design
+from jointid.design.motion_limits import MotionLimits
 from jointid.estimate.bootstrap import Bootstrap
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.selection import Selection
@@ -82,6 +85,7 @@ __all__ = [
     "Bristle",
     "Comparison",
     "CompensatedPid",
+    "Design",
     "Estimate",
     "GaOptions",
     "Generation",
@@ -92,6 +96,7 @@ __all__ = [
     "Link",
     "LugreObserver",
     "Model",
+    "MotionLimits",
     "OnlineEstimate",
     "OnlineIdentifier",
     "OpenLoop",
@@ -123,6 +128,7 @@ __all__ = [
     "identify",
     "identify_joints",
     "load",
+    "load_design",
     "load_robot",
     "load_runs",
     "plot",

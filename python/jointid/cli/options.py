@@ -79,6 +79,23 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "table": "--table",
         "plot": "--plot",
     },
+    "design": {
+        **{name: option for name, option in _SCENARIO.items() if name != "trajectory"},
+        "position": "--position",
+        "velocity": "--velocity",
+        "acceleration": "--acceleration",
+        "torque": "--torque",
+        "sensor_range": "--sensor-range",
+        "prior": "--prior",
+        "parameters": "--parameter",
+        "criterion": "--criterion",
+        "evaluations": "--evaluations",
+        "joints": "--draws",
+        "seed": "--seed",
+        "threads": "--threads",
+        "output": "--output",
+        "plot": "--plot",
+    },
     "run": {
         "cycles": "--cycles",
         "emulate": "--emulate",
@@ -130,6 +147,7 @@ PLACEHOLDERS: Mapping[str, str] = {
     "--gain": "VALUE",
     "--sensor": "VALUE",
     "--grid": "VALUE",
+    "--prior": "LOW,HIGH",
 }
 """Options of the form NAME=VALUE, and what stands for a value that the user has to choose."""
 
