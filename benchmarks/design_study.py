@@ -1,7 +1,7 @@
 """What designed motions are worth, by identifications from many simulated recordings. By hand.
 
-It writes docs/design_accuracy.md. Every error is counted: recordings are simulated with noise, and identified with default settings (the minimum that the
-separable search finds is that of the default one).
+It writes docs/design_accuracy.md. Every error is counted: recordings are simulated with noise, and
+identified with default settings (the minimum that the separable search finds is that of the default one).
 """
 
 import argparse
@@ -47,11 +47,9 @@ WRONG = {
     "sensor_gain": 1.0,
     "sensor_offset": 0.0,
 }
-LIMITS = {
-    "position": (-math.radians(60.0), math.radians(60.0)),
-    "velocity": 3.4,
-    "torque": 160.0,
-}
+LIMITS = jid.MotionLimits(
+    position=(-math.radians(60.0), math.radians(60.0)), velocity=3.4, torque=160.0
+)
 MOTIONS = {
     "20°, 6 s": jid.Trajectory.thesis(),
     "60°, 3 s": jid.Trajectory.thesis(math.radians(60.0), cycle=3.0),
@@ -214,13 +212,10 @@ def worst(rms: Values) -> tuple[float, str]:
 
 def kept(reached: list[float]) -> bool:
     """Whether all limits were kept."""
-    low, high = LIMITS["position"]  # type: ignore[misc]
-    return (
-        reached[0] >= low
-        and reached[1] <= high
-        and reached[2] <= LIMITS["velocity"]  # type: ignore[operator]
-        and reached[3] <= LIMITS["torque"]  # type: ignore[operator]
-    )
+    low, high = LIMITS.position
+    assert LIMITS.torque is not None
+    within = low <= reached[0] and reached[1] <= high
+    return within and reached[2] <= LIMITS.velocity and reached[3] <= LIMITS.torque
 
 
 def designed(case: Case, factor: float = 1.0, seed: int = 0, **options: Any) -> tuple[Any, float]:
@@ -262,7 +257,7 @@ def run_random(hanging: bool, count: int, runs: int) -> list[dict[str, Any]]:
     joint = posed(hanging)
     design = jid.design_excitation(joint, LIMITS, sensors=SENSORS)
     random = np.random.default_rng(77)
-    bounds = {n: (p.min, p.max) for n, p in joint.parameters.items()}
+    bounds = {n: (p.min or 0.0, p.max or 0.0) for n, p in joint.parameters.items()}
     found = []
     for number in range(count):
         truth = {n: float(random.uniform(low, high)) for n, (low, high) in bounds.items()}
