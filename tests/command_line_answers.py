@@ -60,6 +60,8 @@ def advised(sentence: str, line: list[str], fill: dict[str, str]) -> list[list[s
     """The alternatives that a sentence advises, each as the options to add."""
     alternatives = []
     for part in re.split(r" or |; |, ", sentence):
+        if "designed by jointid" in part:  # a command of its own
+            continue
         options: list[str] = []
         for option, text in OPTION.findall(part):
             value = text.strip()
