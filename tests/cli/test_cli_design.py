@@ -11,12 +11,12 @@ import pytest
 
 import jointid as jid
 from jointid.cli.command_line import main
-from jointid.cli.progress import DesignProgress
+from jointid.cli.progress import MotionProgress
 from jointid.hardware.bench.bench import Bench
 
 Printed = pytest.CaptureFixture[str]
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
-QUICK = ["--duration", "4", "--evaluations", "60", "--draws", "2"]
+QUICK = ["--duration", "4", "--evaluations", "100", "--draws", "2", "--rehearsals", "10"]
 WITHIN = ["--position", "-60deg,60deg", "--velocity", "3.4"]
 TRUTH = {"coulomb": 25.0, "static": 20.0, "stribeck": 100.0, "viscous": 20.0}
 TRUTH |= {"sensor_gain": 2.4, "sensor_offset": 15.0}
@@ -129,7 +129,7 @@ def test_ctrl_c_ends_it_at_once_and_writes_nothing(bench: Path, capsys: Printed)
 
 def test_the_bar_is_drawn_on_a_terminal_only(bench: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     steps = []
-    monkeypatch.setattr(DesignProgress, "__call__", lambda _, step: steps.append(step))
+    monkeypatch.setattr(MotionProgress, "__call__", lambda _, step: steps.append(step))
     assert main(["design", "joint.toml", *QUICK]) == 0
     assert steps
     assert steps[-1].number <= steps[-1].total

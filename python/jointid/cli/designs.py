@@ -119,9 +119,14 @@ def _sought(design: argparse.ArgumentParser) -> None:
         default="worst",
         help="worst (default): the largest relative error; determinant: all errors together",
     )
-    design.add_argument("--evaluations", type=whole, help="motions to try (default 4000)")
+    design.add_argument("--evaluations", type=whole, help="motions to try (default 2000)")
     design.add_argument(
-        "--draws", type=whole, help="joints drawn from what is believed (default 8)"
+        "--draws", type=whole, help="joints drawn from what is believed (default 4)"
+    )
+    design.add_argument(
+        "--rehearsals",
+        type=whole,
+        help="simulated recordings from which the errors are counted (default 160)",
     )
     design.add_argument("--seed", type=whole_seed, default=0, help="seed of the search (default 0)")
     design.add_argument(
@@ -132,13 +137,18 @@ def _sought(design: argparse.ArgumentParser) -> None:
 def design(arguments: argparse.Namespace) -> int:
     """Design a motion, and write it."""
     from jointid.cli.design_settings import controller_for, joint_and_bench, limits_of, prior_of
-    from jointid.cli.progress import DesignProgress
-    from jointid.design.designing import DesignSearch, design_excitation
+    from jointid.cli.progress import MotionProgress
+    from jointid.design.design_search import DesignSearch
+    from jointid.design.designing import design_excitation
 
     _check_outputs(arguments)
     joint, bench = joint_and_bench(arguments.joint)
     limits = limits_of(arguments, joint, bench)
-    budget = {"evaluations": arguments.evaluations, "joints": arguments.draws}
+    budget = {
+        "evaluations": arguments.evaluations,
+        "joints": arguments.draws,
+        "rehearsals": arguments.rehearsals,
+    }
     search = DesignSearch(
         seed=arguments.seed,
         threads=arguments.threads,
@@ -147,13 +157,13 @@ def design(arguments: argparse.Namespace) -> int:
     period = arguments.control_period
     if period is None:
         period = 1e-3 if bench is None else bench.options.period
-    with DesignProgress(enabled=not arguments.quiet) as progress:
+    with MotionProgress(enabled=not arguments.quiet) as progress:
         found = design_excitation(
             joint,
             limits,
             arguments.duration,
             controller=controller_for(arguments, joint, bench),
-            sensors=sensors_of(arguments.sensor),
+            sensors=sensors_of(arguments.sensor) if arguments.sensor else None,
             parameters=arguments.parameter,
             criterion=arguments.criterion,
             prior=prior_of(arguments.prior),

@@ -91,6 +91,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "criterion": "--criterion",
         "evaluations": "--evaluations",
         "joints": "--draws",
+        "rehearsals": "--rehearsals",
         "seed": "--seed",
         "threads": "--threads",
         "output": "--output",
