@@ -8,7 +8,9 @@ from documents import ROOT, blocks, enter, read, run_console_blocks, run_python_
 
 import jointid as jid
 from jointid.hardware.bench.bench import Bench
+from jointid.hardware.session.limits import SessionLimits
 from jointid.simulation.motion_file import load_motion
+from jointid.simulation.peaks import Peaks
 
 PAGE = read("docs/design.md")
 BENCH = PAGE.partition("\n## Through the bench")[2].partition("\n## ")[0]
@@ -48,10 +50,7 @@ def test_the_motion_by_hand_is_a_motion(tmp_path: Path) -> None:
 
 
 def test_the_refusal_on_the_page_is_the_programs() -> None:
-    (refusal,) = (block for block in blocks(PAGE, "") if block.startswith("jointid run:"))
+    refusal = PAGE.partition("\njointid run: joint.toml: ")[2].partition("\n```")[0]
     shown = " ".join(refusal.split())
-    from jointid.hardware.session.limits import SessionLimits
-    from jointid.simulation.peaks import Peaks
-
     peaks = Peaks(position=(-1.0102, 1.0083), velocity=1.0, acceleration=1.0, torque=1.0)
     assert shown.endswith(f"joints go {SessionLimits(position=(-0.8, 0.8)).passed_by(peaks)}")
