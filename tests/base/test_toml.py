@@ -4,6 +4,7 @@ import math
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from jointid.base.errors import InputError
@@ -29,6 +30,11 @@ def test_what_is_written_is_read() -> None:
 def test_numbers_that_are_not_finite_are_texts() -> None:
     text = toml_of({"a": {"b": math.inf, "c": -math.inf, "d": [math.nan]}})
     assert tomllib.loads(text) == {"a": {"b": "inf", "c": "-inf", "d": ["nan"]}}
+
+
+def test_numbers_of_numpy_are_numbers() -> None:
+    text = toml_of({"a": np.float64(0.1), "b": [np.float64(-2.5)], "c": np.float64("inf")})
+    assert text == 'a = 0.1\nb = [-2.5]\nc = "inf"\n'
 
 
 def test_comments_stand_behind_keys_and_tables() -> None:
