@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 
 import pytest
+from designs import bench_text
 
 import jointid as jid
 from jointid.cli.command_line import main
@@ -15,7 +16,6 @@ from jointid.cli.progress import MotionProgress
 from jointid.hardware.bench.bench import Bench
 
 Printed = pytest.CaptureFixture[str]
-EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
 QUICK = ["--duration", "4", "--evaluations", "100", "--draws", "2", "--rehearsals", "10"]
 WITHIN = ["--position", "-60deg,60deg", "--velocity", "3.4"]
 TRUTH = {"coulomb": 25.0, "static": 20.0, "stribeck": 100.0, "viscous": 20.0}
@@ -26,10 +26,8 @@ TRUTH |= {"sensor_gain": 2.4, "sensor_offset": 15.0}
 def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A bench file in a folder of its own, whose session takes the motion that is to be designed."""
     monkeypatch.chdir(tmp_path)
-    text = EXAMPLE.read_text(encoding="utf-8")
-    begin, end = text.index('form = "thesis"'), text.index("[session.controller]")
     path = tmp_path / "joint.toml"
-    path.write_text(f'{text[:begin]}file = "motion.toml"\n\n{text[end:]}', encoding="utf-8")
+    path.write_text(bench_text(), encoding="utf-8")
     return path
 
 
