@@ -52,12 +52,7 @@ def limits_of(arguments: argparse.Namespace, joint: Joint, bench: Bench | None) 
                 torque=own.torque if math.isfinite(own.torque) else None,
             )
         )
-    try:
-        limits = MotionLimits.of(given, joint)
-    except InputError as error:  # its place is the option
-        raise InputError(
-            error.reason, argument=error.argument, value=error.value, remedy=error.remedy
-        ) from None
+    limits = MotionLimits.of(given, joint)
     if bench is not None:
         _check_session(limits, bench.limits)
     return limits
@@ -78,6 +73,13 @@ def _check_session(limits: MotionLimits, session: SessionLimits) -> None:
             raise InputError(
                 f"the joint file's session stops at {allowed:g}", argument=name, value=stated
             )
+
+
+def as_option(error: InputError) -> InputError:
+    """An error about a limit: its place is the option, which says it already."""
+    if error.place != "limits":
+        return error
+    return InputError(error.reason, argument=error.argument, value=error.value, remedy=error.remedy)
 
 
 def controller_for(

@@ -136,12 +136,23 @@ def _sought(design: argparse.ArgumentParser) -> None:
 
 def design(arguments: argparse.Namespace) -> int:
     """Design a motion, and write it."""
+    from jointid.cli.design_settings import as_option
+
+    _check_outputs(arguments)
+    try:
+        found = _designed(arguments)
+    except InputError as error:
+        raise as_option(error) from None
+    return _say(found, arguments)
+
+
+def _designed(arguments: argparse.Namespace) -> Design:
+    """The design of a command line."""
     from jointid.cli.design_settings import controller_for, joint_and_bench, limits_of, prior_of
     from jointid.cli.progress import MotionProgress
     from jointid.design.design_search import DesignSearch
     from jointid.design.designing import design_excitation
 
-    _check_outputs(arguments)
     joint, bench = joint_and_bench(arguments.joint)
     limits = limits_of(arguments, joint, bench)
     budget = {
@@ -158,7 +169,7 @@ def design(arguments: argparse.Namespace) -> int:
     if period is None:
         period = 1e-3 if bench is None else bench.options.period
     with MotionProgress(enabled=not arguments.quiet) as progress:
-        found = design_excitation(
+        return design_excitation(
             joint,
             limits,
             arguments.duration,
@@ -171,7 +182,6 @@ def design(arguments: argparse.Namespace) -> int:
             control_period=period,
             callback=progress,
         )
-    return _say(found, arguments)
 
 
 def _say(found: Design, arguments: argparse.Namespace) -> int:
