@@ -31,6 +31,7 @@ ROOMS: dict[str, set[str]] = {
         *("base", "model", "search"),
         *("identify/recording", "identify/balance", "identify/penalty"),
     },
+    "design": {"base", "model", "simulate", "search", "identify/balance"},
     "signals": {"base"},
     "diagnose": {
         *("base", "signals"),
@@ -106,7 +107,11 @@ FOLDERS: dict[str, Folder] = {
     "simulation": Folder(may_use=_DATA, packages={"numpy"}),
     "study": Folder(may_use={*_SOUGHT, "simulation"}, packages={"numpy", "pandas", "pyarrow"}),
     "design": Folder(
-        may_use={"base", "joint", "simulation", "plot"}, packages={"numpy", "matplotlib"}
+        may_use={
+            *("base", "recording", "joint", "problem", "simulation", "plot"),
+            *("identification", "identification/search"),
+        },
+        packages={"numpy", "matplotlib"},
     ),
     "plot": Folder(
         may_use={*_DATA, "simulation", "estimate", "study"},
