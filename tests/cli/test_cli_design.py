@@ -55,18 +55,36 @@ def test_the_bench_says_law_period_and_limits(bench: Path) -> None:
     assert design.limits.position == pytest.approx((-1.26, 1.26))  # nine tenths: it stops at ±1.4
     assert design.limits.velocity == pytest.approx(3.6)
     assert design.limits.torque == own.limits.torque
+    assert design.sensors == jid.Sensors(
+        torque_noise=0.003 * own.limits.torque,  # of which nothing is said
+        encoder_counts=8000.0,
+        velocity="counts",
+        velocity_counts=own.options.velocity_counts,
+        velocity_time=own.options.velocity_time,
+    )
 
 
 def test_the_options_say_law_period_and_sensors(bench: Path, tmp_path: Path) -> None:
     jid.thesis_joint().with_parameters(TRUTH).save(tmp_path / "true.toml")
     words = ["design", "joint.toml", *QUICK, "--output", "motion.toml", "--believe", "true.toml"]
-    words += ["--sensor", "torque_noise=0.5", "--control-period", "0.001", "--gain", "bandwidth=60"]
+    words += [
+        "--sensor",
+        "torque_noise=0.5",
+        "--sensor",
+        "velocity=exact",
+        "--control-period",
+        "0.001",
+        "--gain",
+        "bandwidth=60",
+    ]
     words += ["--parameter", "viscous", "--parameter", "sensor_gain", "--prior", "viscous=16,24"]
     assert main([*words, "--criterion", "determinant", "--seed", "7"]) == 0
     design = jid.load_design("motion.toml")
     assert isinstance(design.controller, jid.AdaptiveRobust)
     assert (design.controller.coulomb, design.controller.bandwidth) == (25.0, 60.0)
-    assert design.sensors == jid.Sensors(torque_noise=0.5)
+    assert design.controller.friction_velocity == "reference"  # as the session has it
+    sensors = design.sensors
+    assert (sensors.torque_noise, sensors.velocity, sensors.encoder_counts) == (0.5, "exact", 8000)
     assert design.control_period == 1e-3
     assert [*design.parameters] == ["viscous", "sensor_gain"]
     assert (design.criterion, design.seed) == ("determinant", 7)

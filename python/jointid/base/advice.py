@@ -32,7 +32,8 @@ class Action:
     function : str
         Of a call: which one: "identify" (default), "load", "compare_models", "sweep", "simulate",
         "design_excitation" or "Joint" (arguments are then fields of the joint). Of "record":
-        "next_motion", the method of the estimate that designs the motion, with these arguments; or "identify", which designs none.
+        "next_motion", the method of the estimate that designs the motion, with these arguments; or
+        "identify", which designs none.
 
     Examples
     --------

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 from jointid.base.errors import InputError
 from jointid.cli.arguments import TEXT, decimal, pair, whole, whole_seed
 from jointid.cli.outputs import check_folder
-from jointid.cli.scenario import sensors_of
 
 if TYPE_CHECKING:
     from jointid.design.design import Design
@@ -31,7 +30,7 @@ def add_design(commands: Any) -> None:
             "  jointid design joint.toml --position -60deg,60deg --velocity 3.4 --torque 160 --output motion.toml\n"
             "  jointid design joint.toml --parameter sensor_gain --sensor torque_noise=0.5 --plot motion.png\n"
             "the joint file needs a value or bounds for each parameter; its table [session], if there is one,\n"
-            'says the controller, the period and the limits, and takes the motion as file = "motion.toml"'
+            'says the controller, the period, the encoder and the limits, and takes the motion as file = "motion.toml"'
         ),
         formatter_class=TEXT,
     )
@@ -148,7 +147,13 @@ def design(arguments: argparse.Namespace) -> int:
 
 def _designed(arguments: argparse.Namespace) -> Design:
     """The design of a command line."""
-    from jointid.cli.design_settings import controller_for, joint_and_bench, limits_of, prior_of
+    from jointid.cli.design_settings import (
+        controller_for,
+        joint_and_bench,
+        limits_of,
+        prior_of,
+        sensors_for,
+    )
     from jointid.cli.progress import MotionProgress
     from jointid.design.design_search import DesignSearch
     from jointid.design.designing import design_excitation
@@ -174,7 +179,7 @@ def _designed(arguments: argparse.Namespace) -> Design:
             limits,
             arguments.duration,
             controller=controller_for(arguments, joint, bench),
-            sensors=sensors_of(arguments.sensor) if arguments.sensor else None,
+            sensors=sensors_for(arguments.sensor, limits, joint, bench),
             parameters=arguments.parameter,
             criterion=arguments.criterion,
             prior=prior_of(arguments.prior),
