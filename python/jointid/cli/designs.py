@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 from jointid.base.errors import InputError
 from jointid.cli.arguments import TEXT, decimal, pair, whole, whole_seed
 from jointid.cli.outputs import check_folder
-from jointid.cli.scenario import sensors_of
 
 if TYPE_CHECKING:
     from jointid.design.design import Design
@@ -31,7 +30,7 @@ def add_design(commands: Any) -> None:
             "  jointid design joint.toml --position -60deg,60deg --velocity 3.4 --torque 160 --output motion.toml\n"
             "  jointid design joint.toml --parameter sensor_gain --sensor torque_noise=0.5 --plot motion.png\n"
             "the joint file needs a value or bounds for each parameter; its table [session], if there is one,\n"
-            'says the controller, the period and the limits, and takes the motion as file = "motion.toml"'
+            'says the controller, the period, the encoder and the limits, and takes the motion as file = "motion.toml"'
         ),
         formatter_class=TEXT,
     )
@@ -119,9 +118,14 @@ def _sought(design: argparse.ArgumentParser) -> None:
         default="worst",
         help="worst (default): the largest relative error; determinant: all errors together",
     )
-    design.add_argument("--evaluations", type=whole, help="motions to try (default 4000)")
+    design.add_argument("--evaluations", type=whole, help="motions to try (default 2000)")
     design.add_argument(
-        "--draws", type=whole, help="joints drawn from what is believed (default 8)"
+        "--draws", type=whole, help="joints drawn from what is believed (default 4)"
+    )
+    design.add_argument(
+        "--rehearsals",
+        type=whole,
+        help="simulated recordings from which the errors are counted (default 160)",
     )
     design.add_argument("--seed", type=whole_seed, default=0, help="seed of the search (default 0)")
     design.add_argument(
@@ -131,14 +135,36 @@ def _sought(design: argparse.ArgumentParser) -> None:
 
 def design(arguments: argparse.Namespace) -> int:
     """Design a motion, and write it."""
-    from jointid.cli.design_settings import controller_for, joint_and_bench, limits_of, prior_of
-    from jointid.cli.progress import DesignProgress
-    from jointid.design.designing import DesignSearch, design_excitation
+    from jointid.cli.design_settings import as_option
 
     _check_outputs(arguments)
+    try:
+        found = _designed(arguments)
+    except InputError as error:
+        raise as_option(error) from None
+    return _say(found, arguments)
+
+
+def _designed(arguments: argparse.Namespace) -> Design:
+    """The design of a command line."""
+    from jointid.cli.design_settings import (
+        controller_for,
+        joint_and_bench,
+        limits_of,
+        prior_of,
+        sensors_for,
+    )
+    from jointid.cli.progress import MotionProgress
+    from jointid.design.design_search import DesignSearch
+    from jointid.design.designing import design_excitation
+
     joint, bench = joint_and_bench(arguments.joint)
     limits = limits_of(arguments, joint, bench)
-    budget = {"evaluations": arguments.evaluations, "joints": arguments.draws}
+    budget = {
+        "evaluations": arguments.evaluations,
+        "joints": arguments.draws,
+        "rehearsals": arguments.rehearsals,
+    }
     search = DesignSearch(
         seed=arguments.seed,
         threads=arguments.threads,
@@ -147,13 +173,13 @@ def design(arguments: argparse.Namespace) -> int:
     period = arguments.control_period
     if period is None:
         period = 1e-3 if bench is None else bench.options.period
-    with DesignProgress(enabled=not arguments.quiet) as progress:
-        found = design_excitation(
+    with MotionProgress(enabled=not arguments.quiet) as progress:
+        return design_excitation(
             joint,
             limits,
             arguments.duration,
             controller=controller_for(arguments, joint, bench),
-            sensors=sensors_of(arguments.sensor),
+            sensors=sensors_for(arguments.sensor, limits, joint, bench),
             parameters=arguments.parameter,
             criterion=arguments.criterion,
             prior=prior_of(arguments.prior),
@@ -161,7 +187,6 @@ def design(arguments: argparse.Namespace) -> int:
             control_period=period,
             callback=progress,
         )
-    return _say(found, arguments)
 
 
 def _say(found: Design, arguments: argparse.Namespace) -> int:
