@@ -59,7 +59,7 @@ SMALL = 0.05  # error of a parameter that counts in the comparison of random joi
 PATH = Path(__file__).resolve().parent / "results" / "design_study.jsonl"
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "design_accuracy.md"
 
-Values = Mapping[str, float]
+Values = Mapping[str, Any]
 
 
 @dataclasses.dataclass(frozen=True)
