@@ -22,8 +22,8 @@ def test_the_way_through_the_bench_runs_and_prints_what_is_shown(
     joint = tmp_path / "joint.toml"
     shutil.copy(ROOT / "examples" / "hardware" / "joint.toml", joint)
     enter(tmp_path, monkeypatch)
-    commands = run_console_blocks(BENCH, joint, capsys, whole=True)
-    assert commands == ["design", "edit", "run", "identify"]
+    commands = run_console_blocks(BENCH, joint, capsys, whole=True, within=0.5)
+    assert commands == ["edit", "design", "edit", "run", "identify"]
     # The session moved what was designed.
     design = jid.load_design("motion.toml")
     recording = jid.load("runs/initial.csv")
