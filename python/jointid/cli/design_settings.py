@@ -108,6 +108,18 @@ def controller_for(
     return controller
 
 
+def controller_after(
+    arguments: argparse.Namespace, estimated: Joint, bench: Bench | None
+) -> Controller | None:
+    """The same, which believes an estimate: the session's own assumes what was believed before."""
+    from jointid.simulation.scenario import believing
+
+    found = controller_for(arguments, estimated, bench)
+    if found is None or found is not (None if bench is None else bench.controller):
+        return found
+    return believing(found, estimated) if "coulomb" in found.asdict() else found
+
+
 def prior_of(pairs: Sequence[tuple[str, str]]) -> dict[str, tuple[float, float]] | None:
     """Where parameters may lie, by name."""
     found = {}

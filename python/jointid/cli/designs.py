@@ -29,6 +29,7 @@ def add_design(commands: Any) -> None:
             "examples:\n"
             "  jointid design joint.toml --duration 12 --output motion.toml\n"
             "  jointid design joint.toml --position -60deg,60deg --velocity 3.4 --torque 160 --output motion.toml\n"
+            "  jointid design joint.toml --after estimate.json --duration 6 --output motion.toml\n"
             "  jointid design joint.toml --parameter sensor_gain --sensor torque_noise=0.5 --plot motion.png\n"
             "the joint file needs a value or bounds for each parameter; its table [session], if there is one,\n"
             'says the controller, the period and the limits, and takes the motion as file = "motion.toml"'
@@ -38,6 +39,12 @@ def add_design(commands: Any) -> None:
     # -60deg,60deg is a value, and no option: none of ours begins with a digit.
     design._negative_number_matcher = re.compile(r"-\.?\d")
     design.add_argument("joint", type=Path, help="joint file (.toml)")
+    design.add_argument(
+        "--after",
+        type=Path,
+        metavar="ESTIMATE",
+        help="the .json file of an estimate: what to record next, given what its recordings tell",
+    )
     design.add_argument(
         "--duration", type=decimal, default=12.0, help="of the motion [s] (default 12)"
     )
@@ -131,7 +138,13 @@ def _sought(design: argparse.ArgumentParser) -> None:
 
 def design(arguments: argparse.Namespace) -> int:
     """Design a motion, and write it."""
-    from jointid.cli.design_settings import controller_for, joint_and_bench, limits_of, prior_of
+    from jointid.cli.design_settings import (
+        controller_after,
+        controller_for,
+        joint_and_bench,
+        limits_of,
+        prior_of,
+    )
     from jointid.cli.progress import DesignProgress
     from jointid.design.designing import DesignSearch, design_excitation
 
@@ -147,20 +160,38 @@ def design(arguments: argparse.Namespace) -> int:
     period = arguments.control_period
     if period is None:
         period = 1e-3 if bench is None else bench.options.period
+    estimate = None
+    if arguments.after is not None:
+        from jointid.estimate.estimate import Estimate
+
+        estimate = Estimate.load(arguments.after)
     with DesignProgress(enabled=not arguments.quiet) as progress:
-        found = design_excitation(
-            joint,
-            limits,
-            arguments.duration,
-            controller=controller_for(arguments, joint, bench),
-            sensors=sensors_of(arguments.sensor),
-            parameters=arguments.parameter,
-            criterion=arguments.criterion,
-            prior=prior_of(arguments.prior),
-            search=search,
-            control_period=period,
-            callback=progress,
-        )
+        settings: dict[str, Any] = {
+            "parameters": arguments.parameter,
+            "criterion": arguments.criterion,
+            "prior": prior_of(arguments.prior),
+            "search": search,
+            "control_period": period,
+            "callback": progress,
+        }
+        if estimate is None:
+            found = design_excitation(
+                joint,
+                limits,
+                arguments.duration,
+                controller=controller_for(arguments, joint, bench),
+                sensors=sensors_of(arguments.sensor),
+                **settings,
+            )
+        else:
+            found = estimate.next_motion(
+                limits,
+                arguments.duration,
+                joint=joint,
+                controller=controller_after(arguments, estimate.joint, bench),
+                sensors=sensors_of(arguments.sensor) if arguments.sensor else None,
+                **settings,
+            )
     return _say(found, arguments)
 
 
@@ -207,6 +238,8 @@ def _draw(found: Design, path: Path) -> None:
     mpl.use("Agg")
     from matplotlib import pyplot
 
-    figure = found.plot()[0].figure
+    from jointid.plot.design import designed_motion
+
+    figure = designed_motion(found)[0].figure
     figure.savefig(path, dpi=150)  # type: ignore[union-attr]
     pyplot.close("all")
