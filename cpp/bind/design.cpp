@@ -102,6 +102,9 @@ void bind_excitation(py::module_& m) {
            py::kw_only(), py::arg("family"), py::arg("scenario"), py::arg("joints"),
            py::arg("held"), py::arg("criterion"), py::arg("window"))
       .def_property_readonly("joints", &Excitation::joints)
+      .def_property_readonly(
+          "genes", [](const Excitation& self) { return self.family().genes(); },
+          "How many numbers make a motion.")
       .def(
           "judge",
           [](const Excitation& self, const simulate::Trajectory& trajectory) {

@@ -42,6 +42,9 @@ from jointid.comparison.comparison import compare_models
 from jointid.comparison.result import Comparison
 from jointid.design.design import Design
 from jointid.design.design_file import load_design
+from jointid.design.design_search import DesignProgress, DesignSearch
+from jointid.design.designing import design_excitation
+from jointid.design.known import Known
 from jointid.design.motion_limits import MotionLimits
 from jointid.estimate.bootstrap import Bootstrap
 from jointid.estimate.estimate import Estimate
@@ -86,12 +89,15 @@ __all__ = [
     "Comparison",
     "CompensatedPid",
     "Design",
+    "DesignProgress",
+    "DesignSearch",
     "Estimate",
     "GaOptions",
     "Generation",
     "InputError",
     "Joint",
     "JointEstimates",
+    "Known",
     "Limits",
     "Link",
     "LugreObserver",
@@ -123,6 +129,7 @@ __all__ = [
     "commissioning",
     "compare_models",
     "control_estimates",
+    "design_excitation",
     "export",
     "hardware",
     "identify",

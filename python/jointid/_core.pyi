@@ -3260,6 +3260,11 @@ class Excitation:
         Genetic search for the motion of the smallest cost.
         """
     @property
+    def genes(self) -> int:
+        """
+        How many numbers make a motion.
+        """
+    @property
     def joints(self) -> list[DrawnJoint]: ...
 
 def friction_basis(

@@ -1,0 +1,70 @@
+"""The noise that sensors bring into the torque balance."""
+
+from __future__ import annotations
+
+import math
+
+from jointid import _core
+from jointid.joint.joint import Joint
+
+_OWN = 3e-3  # of the torque limit: a sensor's noise where none is stated
+_COUNTS = 8000.0  # of a motor turn: an encoder where none is stated
+_SMOOTHED = 9  # samples from which a velocity is derived
+_LEAST = 1e-6  # of the torque limit: what no balance is better than
+_SLOW = 0.15  # of the speed at which static friction fades: slower, noise decides when the joint breaks away
+_STANDING = 1e-4  # of the largest speed
+
+
+def assumed_sensors(joint: Joint, torque: float) -> _core.Sensors:
+    """Return the sensors of a joint of which nothing is said: a torque sensor with noise, or a coarse encoder."""
+    if joint.sensor:
+        return _core.Sensors(torque_noise=_OWN * torque)
+    return _core.Sensors(encoder_counts=_COUNTS, velocity="difference")
+
+
+def balance_noise(
+    joint: Joint,
+    values: dict[str, float],
+    sensors: _core.Sensors,
+    *,
+    period: float,
+    torque: float,
+    velocity: float,
+) -> _core.BalanceNoise:
+    """Return the noise of the balance of one joint.
+
+    Parameters
+    ----------
+    joint : Joint
+    values : dict of str to float
+        Of its parameters.
+    sensors : Sensors
+    period : float
+        Between samples [s].
+    torque, velocity : float
+        The limits [N·m], [rad/s].
+    """
+    variance = (_LEAST * torque) ** 2
+    if joint.sensor:
+        variance += sensors.torque_noise**2
+        if sensors.converter_bits > 0:
+            gain = abs(values.get("sensor_gain", 1.0))
+            count = 2.0 * sensors.converter_range / 2.0**sensors.converter_bits
+            spread = sensors.converter_noise**2 / sensors.converter_samples + 1.0 / 12.0
+            variance += (gain * count) ** 2 * spread
+    position = 0.0
+    if sensors.encoder_counts > 0.0:
+        turn = sensors.encoder_counts * abs(joint.gear_ratio)
+        position = 2.0 * math.pi / turn / math.sqrt(12.0)
+    # Of a straight line through so many positions.
+    derived = position * math.sqrt(12.0 / _SMOOTHED**3) / period
+    slowest = max(_STANDING * velocity, 3.0 * derived)
+    if values.get("stribeck", 0.0) > 0.0:
+        slowest = max(slowest, _SLOW / math.sqrt(values["stribeck"]))
+    slowest = max(slowest, _SLOW * values.get("stribeck_velocity", 0.0))
+    return _core.BalanceNoise(
+        torque=math.sqrt(variance),
+        position=position,
+        velocity=derived,
+        slowest=min(slowest, 0.05 * velocity),
+    )
