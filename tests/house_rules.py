@@ -71,7 +71,7 @@ FOLDERS: dict[str, Folder] = {
     ),
     "joint": Folder(may_use={"base", "recording"}, packages={"numpy", "tomlkit"}),
     "problem": Folder(may_use=_DATA, packages={"numpy"}),
-    "estimate": Folder(may_use={*_DATA, "problem", "design"}, packages={"numpy", "scipy"}),
+    "estimate": Folder(may_use={*_DATA, "problem"}, packages={"numpy", "scipy"}),
     "identification": Folder(
         may_use={
             *_SOUGHT,
@@ -105,7 +105,7 @@ FOLDERS: dict[str, Folder] = {
     "online": Folder(may_use={*_SOUGHT, "identification/inference"}, packages={"numpy"}),
     "simulation": Folder(may_use=_DATA, packages={"numpy"}),
     "study": Folder(may_use={*_SOUGHT, "simulation"}, packages={"numpy", "pandas", "pyarrow"}),
-    "design": Folder(may_use={"base", "joint", "simulation"}, packages={"numpy"}),
+    "design": Folder(may_use={*_SOUGHT, "simulation", "plot"}, packages={"numpy", "matplotlib"}),
     "plot": Folder(
         may_use={*_DATA, "simulation", "estimate", "study"},
         packages={"numpy", "matplotlib"},

@@ -65,10 +65,7 @@ def test_a_prismatic_joint_has_its_units() -> None:
     )
     design = designed(joint=joint)
     assert "of 3.4 m/s (99 %" in str(design)
-    assert [axes.get_ylabel() for axes in jid.plot.designed_motion(design)[:2]] == [
-        "position [m]",
-        "velocity [m/s]",
-    ]
+    assert [axes.get_ylabel() for axes in design.plot()[:2]] == ["position [m]", "velocity [m/s]"]
 
 
 def test_shares_are_of_the_farther_side() -> None:
@@ -87,7 +84,7 @@ def test_a_notebook_shows_the_same() -> None:
 
 
 def test_the_picture_shows_motion_limits_and_speeds() -> None:
-    position, velocity, sampled = jid.plot.designed_motion(DESIGN)
+    position, velocity, sampled = DESIGN.plot()
     time, drawn = (np.asarray(each, dtype=float) for each in position.lines[0].get_data())
     np.testing.assert_allclose(drawn, DESIGN.trajectory.sample(time)[0])
     for axes, limit in ((position, 1.0), (velocity, 3.4)):
@@ -107,7 +104,7 @@ def test_the_picture_shows_motion_limits_and_speeds() -> None:
 
 def test_it_is_drawn_into_given_axes() -> None:
     _, axes = pyplot.subplots(1, 3)
-    assert list(jid.plot.designed_motion(DESIGN)) != list(axes)
+    assert list(DESIGN.plot()) != list(axes)
     assert list(jid.plot.designed_motion(DESIGN, list(axes))) == list(axes)
     with pytest.raises(jid.InputError, match="axes is 2: three axes are expected"):
         jid.plot.designed_motion(DESIGN, list(axes[:2]))

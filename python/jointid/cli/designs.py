@@ -238,8 +238,6 @@ def _draw(found: Design, path: Path) -> None:
     mpl.use("Agg")
     from matplotlib import pyplot
 
-    from jointid.plot.design import designed_motion
-
-    figure = designed_motion(found)[0].figure
+    figure = found.plot()[0].figure
     figure.savefig(path, dpi=150)  # type: ignore[union-attr]
     pyplot.close("all")

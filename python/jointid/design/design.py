@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from jointid import _core
 from jointid.design.expected_error import ExpectedError
@@ -15,12 +15,15 @@ from jointid.simulation.arguments import Controller
 from jointid.simulation.peaks import Peaks
 from jointid.simulation.trajectory import Trajectory
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 COMPLETE = "complete"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Design:
-    """What `design_excitation` found; `load_design` reads it from a file, `jid.plot.designed_motion` draws it.
+    """What `design_excitation` found; `load_design` reads it from a file.
 
     Attributes
     ----------
@@ -106,6 +109,18 @@ class Design:
         from jointid.design.tables import summary
 
         return summary(self)
+
+    def plot(self) -> tuple[Axes, Axes, Axes]:
+        """Draw position and velocity over time with their limits, and where friction is sampled.
+
+        Returns
+        -------
+        tuple of Axes
+            As `jointid.plot.designed_motion`.
+        """
+        from jointid.plot.design import designed_motion
+
+        return designed_motion(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Return what `save` writes, in JSON's types; a number that is not finite is a text."""

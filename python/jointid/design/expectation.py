@@ -44,14 +44,14 @@ def expected_errors(
             stderr = factor * judgements[0].errors[place] * scale
         else:
             stderr = counted[name]
-        worst = max(float(each.errors[place]) for each in judgements[1:] or judgements) * factor
+        worst = factor * max(float(each.errors[place]) for each in judgements[1:] or judgements)
         found[name] = ExpectedError(
             name=name,
             unit=units.get(name, ""),
             value=values[0][name],
             stderr=float(stderr),
             relative=float(stderr) / scale,
-            worst=max(worst, float(stderr) / scale),
+            worst=float(max(worst, stderr / scale)),
         )
     return found
 

@@ -107,9 +107,26 @@ def _remarks(design: Design) -> list[str]:
     )
     return [
         *([f"{weakest}{limited}"] if weakest else []),
+        *_improved(design),
         *(f"reaches {line}" for line in limits_held(design)),
         judged,
     ]
+
+
+def _improved(design: Design) -> list[str]:
+    """What was weakest before, and by how much this motion makes it better."""
+    shares = {
+        name: each.before * each.relative / each.stderr
+        for name, each in design.parameters.items()
+        if each.before is not None and 0.0 < each.stderr < math.inf
+    }
+    if not shares:
+        return []
+    name = max(shares, key=lambda each: shares[each])
+    if math.isinf(shares[name]):
+        return [f"weakest before: {name}, not determined"]
+    smaller = shares[name] / design.parameters[name].relative
+    return [f"weakest before: {name}, {_share(shares[name])}; {smaller:.2g} times smaller now"]
 
 
 def _share(share: float) -> str:

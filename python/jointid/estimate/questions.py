@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, cast
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 from numpy.typing import ArrayLike
 
@@ -11,8 +11,6 @@ from jointid.base.argument_checks import whole_number
 from jointid.base.errors import InputError
 
 if TYPE_CHECKING:
-    from jointid.design.design import Design
-    from jointid.design.motion_limits import MotionLimits
     from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.causes import Causes
     from jointid.estimate.estimate import Estimate
@@ -24,6 +22,8 @@ class Questions:
     """The questions of an `Estimate`."""
 
     __slots__ = ()
+    # The room that designs identifies what it rehearses, and so stands above this one: the package's face joins them.
+    _design: ClassVar[Callable[..., Any]]
     if TYPE_CHECKING:
         follow_up: FollowUp | None
 
@@ -132,10 +132,10 @@ class Questions:
 
     def next_motion(
         self,
-        limits: MotionLimits | Mapping[str, Any] | None = None,
+        limits: Mapping[str, Any] | Any = None,
         duration: float = 12.0,
         **options: Any,
-    ) -> Design:
+    ) -> Any:
         """Design what to record next: the motion that adds most to what this estimate tells.
 
         The information of its recordings counts, joints are drawn from its intervals, and the controller
@@ -167,9 +167,7 @@ class Questions:
         --------
         >>> design = estimate.next_motion({"position": (-1.0, 1.0), "velocity": 3.4})  # doctest: +SKIP
         """
-        from jointid.estimate.next_motion import next_motion_of
-
-        return next_motion_of(cast("Estimate", self), limits, duration, **options)
+        return self._design(limits, duration, **options)
 
     def _with_recordings(self, question: str) -> FollowUp:
         """Return what answers questions that need the recordings."""

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import jointid as jid
-from jointid.design.known import Known, Told
-from jointid.estimate.next_motion import joint_of, sensors_of, told_by
+from jointid.design.known import Known
+from jointid.design.told import Told, joint_of, sensors_of, told_by
 
 THESIS = jid.thesis_joint()
 TRUE = {"coulomb": 25.0, "static": 20.0, "stribeck": 100.0, "viscous": 20.0}

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from jointid.estimate.estimate import Estimate
 from jointid.estimate.intervals import NORMAL
 from jointid.estimate.statistics import ParameterEstimate
-
-if TYPE_CHECKING:
-    from jointid.estimate.estimate import Estimate
 
 _SHAPES = ("stribeck", "stribeck_velocity", "stribeck_exponent")
 _STATIC = ("static", "static_positive", "static_negative")
