@@ -31,6 +31,7 @@ ROOMS: dict[str, set[str]] = {
         *("base", "model", "search"),
         *("identify/recording", "identify/balance", "identify/penalty"),
     },
+    "design": {"base", "model", "simulate", "search", "identify/balance"},
     "signals": {"base"},
     "diagnose": {
         *("base", "signals"),

@@ -20,33 +20,30 @@ class Windows {
         ends_(2.0 * (inertia * inertia * noise.velocity * noise.velocity +
                      viscous * viscous * noise.position * noise.position)),
         row_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(columns.size()))),
-        rates_(row_),
-        sum_(Eigen::MatrixXd::Zero(row_.size(), row_.size())) {}
+        sum_(Eigen::MatrixXd::Zero(row_.size(), row_.size())) {
+    rates(signals, columns, rates_);
+  }
 
-  void begin(std::size_t k) {
-    first_ = k;
-    rates(signals_, columns_, k, rates_.data());
-    row_ = 0.5 * rates_;
-  }
-  void go_on(std::size_t k) {
-    rates(signals_, columns_, k, rates_.data());
-    row_ += rates_;
-  }
-  /// `last` is the sample that went on last.
-  void end(std::size_t last) {
-    if (last <= first_) return;
-    // The trapezoidal rule over the samples.
-    row_ -= 0.5 * rates_;
-    row_ *= period_;
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      if (by_ends(columns_[c])) {
-        row_[static_cast<Eigen::Index>(c)] = step(columns_[c], signals_, first_, last);
+  /// The window from sample `first` to sample `last`.
+  void add(std::size_t first, std::size_t last) {
+    if (last <= first) return;
+    const auto begin = static_cast<Eigen::Index>(first);
+    const auto end = static_cast<Eigen::Index>(last);
+    for (Eigen::Index c = 0; c < row_.size(); ++c) {
+      const Column& column = columns_[static_cast<std::size_t>(c)];
+      if (by_ends(column)) {
+        row_[c] = step(column, signals_, first, last);
+        continue;
       }
+      // The trapezoidal rule over the samples.
+      const double* rate = rates_.col(c).data();
+      double sum = 0.5 * (rate[begin] + rate[end]);
+      for (Eigen::Index k = begin + 1; k < end; ++k) sum += rate[k];
+      row_[c] = sum * period_;
     }
-    const auto count = static_cast<double>(last - first_);
+    const auto count = static_cast<double>(last - first);
     sum_.selfadjointView<Eigen::Lower>().rankUpdate(row_, 1.0 / (torque_ * count + ends_));
   }
-  [[nodiscard]] std::size_t first() const { return first_; }
   [[nodiscard]] Eigen::MatrixXd total() const { return sum_.selfadjointView<Eigen::Lower>(); }
 
  private:
@@ -55,9 +52,8 @@ class Windows {
   double period_;
   double torque_;
   double ends_;
-  std::size_t first_ = 0;
   Eigen::VectorXd row_;
-  Eigen::VectorXd rates_;
+  Eigen::MatrixXd rates_;
   Eigen::MatrixXd sum_;
 };
 
@@ -77,23 +73,21 @@ Eigen::MatrixXd information(const simulate::Signals& signals, const std::vector<
   Windows windows(signals, columns, noise, inertia, viscous, period);
   const std::size_t count = signals.true_velocity.size();
   const auto length = static_cast<std::size_t>(samples);
+  std::size_t first = 0;
   bool open = false;
   for (std::size_t k = 0; k < count; ++k) {
     if (std::fabs(signals.true_velocity[k]) < noise.slowest) {
-      if (open) windows.end(k - 1);
+      if (open) windows.add(first, k - 1);
       open = false;
     } else if (!open) {
-      windows.begin(k);
+      first = k;
       open = true;
-    } else {
-      windows.go_on(k);
-      if (k - windows.first() == length) {
-        windows.end(k);
-        windows.begin(k);
-      }
+    } else if (k - first == length) {
+      windows.add(first, k);
+      first = k;
     }
   }
-  if (open) windows.end(count - 1);
+  if (open) windows.add(first, count - 1);
   return windows.total();
 }
 

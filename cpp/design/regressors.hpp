@@ -20,9 +20,10 @@ struct Column {
   std::vector<double> shapes{};
 };
 
-/// Torque per unit of each parameter at sample `k`; 0 for those that a window's ends give.
-void rates(const simulate::Signals& signals, const std::vector<Column>& columns, std::size_t k,
-           double* result);
+/// Torque per unit of each parameter (columns) at each sample (rows); 0 for those that a window's
+/// ends give.
+void rates(const simulate::Signals& signals, const std::vector<Column>& columns,
+           Eigen::MatrixXd& result);
 
 /// Impulse per unit of the parameter that the ends of a window give, between samples a and b.
 double step(const Column& column, const simulate::Signals& signals, std::size_t a, std::size_t b);

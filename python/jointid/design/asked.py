@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.identification.prepared import prepare
 from jointid.joint.checks import suggestion
 from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
-
-_LOAD = ("load_friction", "link_share")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,12 +40,14 @@ class Asked:
         found: dict[str, _core.BalanceColumn] = {}
         for key in self.terms:
             term = _core.term(key)
-            shapes = [float(values[name]) for name in term.shapes if name not in _LOAD]
+            # A load friction's shape is its coefficient.
+            own = () if term.needs_load else term.shapes
+            shapes = [float(values[name]) for name in own]
             frequency = _order(key) * (abs(self.gear_ratio) if key.startswith("ripple") else 1.0)
             if term.name in self.names:
                 found[term.name] = _core.BalanceColumn(key=key, frequency=frequency, shapes=shapes)
-            for number, name in enumerate(term.shapes):
-                if name in self.names and name not in _LOAD:
+            for number, name in enumerate(own):
+                if name in self.names:
                     found[name] = _core.BalanceColumn(
                         key=key, shape=number, coefficient=float(values[term.name]), shapes=shapes
                     )
@@ -98,8 +100,6 @@ def _order(key: str) -> float:
 
 def _template(joint: Joint) -> Recording:
     """A motion of which only the terms of its balance matter."""
-    import numpy as np
-
     time = np.arange(4000) * 1e-3
     position = np.sin(2.0 * np.pi * 0.5 * time) + 0.2 * np.sin(2.0 * np.pi * 1.3 * time)
     velocity = np.gradient(position, time)

@@ -22,9 +22,9 @@ def assumed_sensors(joint: Joint, torque: float) -> _core.Sensors:
     return _core.Sensors(encoder_counts=_COUNTS, velocity="difference")
 
 
-def balance_noise(
+def noise_of_balance(
     joint: Joint,
-    values: dict[str, float],
+    setup: _core.Setup,
     sensors: _core.Sensors,
     *,
     period: float,
@@ -36,8 +36,8 @@ def balance_noise(
     Parameters
     ----------
     joint : Joint
-    values : dict of str to float
-        Of its parameters.
+    setup : Setup
+        Of the joint with values.
     sensors : Sensors
     period : float
         Between samples [s].
@@ -48,23 +48,26 @@ def balance_noise(
     if joint.sensor:
         variance += sensors.torque_noise**2
         if sensors.converter_bits > 0:
-            gain = abs(values.get("sensor_gain", 1.0))
             count = 2.0 * sensors.converter_range / 2.0**sensors.converter_bits
             spread = sensors.converter_noise**2 / sensors.converter_samples + 1.0 / 12.0
-            variance += (gain * count) ** 2 * spread
+            variance += (setup.sensor_gain * count) ** 2 * spread
     position = 0.0
     if sensors.encoder_counts > 0.0:
         turn = sensors.encoder_counts * abs(joint.gear_ratio)
         position = 2.0 * math.pi / turn / math.sqrt(12.0)
     # Of a straight line through so many positions.
     derived = position * math.sqrt(12.0 / _SMOOTHED**3) / period
-    slowest = max(_STANDING * velocity, 3.0 * derived)
-    if values.get("stribeck", 0.0) > 0.0:
-        slowest = max(slowest, _SLOW / math.sqrt(values["stribeck"]))
-    slowest = max(slowest, _SLOW * values.get("stribeck_velocity", 0.0))
+    slowest = max(_STANDING * velocity, 3.0 * derived, _SLOW * _fading_speed(setup.joint))
     return _core.BalanceNoise(
         torque=math.sqrt(variance),
         position=position,
         velocity=derived,
         slowest=min(slowest, 0.05 * velocity),
     )
+
+
+def _fading_speed(joint: _core.SimulatedJoint) -> float:
+    """Return the speed at which static friction has faded; 0 without static friction."""
+    if joint.decay == "gaussian" and joint.stribeck > 0.0:
+        return 1.0 / math.sqrt(joint.stribeck)
+    return joint.stribeck_velocity if joint.decay == "general" else 0.0

@@ -21,7 +21,7 @@ class DesignSearch:
     joints : int
         How many joints of the prior each motion is judged with. Default 4.
     rehearsals : int
-        Simulated recordings with noise from which the errors of the motion found are counted. Default 160.
+        Simulated recordings with noise from which the errors of the motion found are counted. Default 320.
     seed : int
         Default 0. The same seed gives the same motion, whatever the number of threads.
     threads : int
@@ -39,7 +39,7 @@ class DesignSearch:
 
     evaluations: int = 2000
     joints: int = 4
-    rehearsals: int = 160
+    rehearsals: int = 320
     seed: int = 0
     threads: int = 0
 

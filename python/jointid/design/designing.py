@@ -37,7 +37,7 @@ _COARSE = 2  # times the control period, in the search
 _ALIKE = 0.05  # how much errors may differ by that
 _FIRST = 48  # motions drawn at random, from which follows what can be asked of which joint
 _DETERMINED = 0.15  # relative error that one of them must reach
-_TRIED = 0.25  # of the rehearsals, to tell the motions found apart
+_TRIED = 0.2  # of the rehearsals, to tell the motions found apart
 _STIFF = 80.0  # 1/s: of a controller that is chosen here
 
 

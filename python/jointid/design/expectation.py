@@ -40,18 +40,16 @@ def expected_errors(
             continue
         scale = ranges.scale(name, values[0][name])
         factor = max(1.0, counted[name] / alone[place]) if alone[place] > 0.0 else 1.0
-        if np.any(situation.known):
-            stderr = factor * judgements[0].errors[place] * scale
-        else:
-            stderr = counted[name]
-        worst = factor * max(float(each.errors[place]) for each in judgements[1:] or judgements)
+        together = factor * float(judgements[0].errors[place]) * scale
+        stderr = together if np.any(situation.known) else counted[name]
+        worst = max(float(each.errors[place]) for each in judgements[1:] or judgements) * factor
         found[name] = ExpectedError(
             name=name,
             unit=units.get(name, ""),
             value=values[0][name],
-            stderr=float(stderr),
-            relative=float(stderr) / scale,
-            worst=float(max(worst, stderr / scale)),
+            stderr=stderr,
+            relative=stderr / scale,
+            worst=max(worst, stderr / scale),
         )
     return found
 
@@ -63,7 +61,7 @@ def what_limits(design: Design, situation: Situation, judgement: _core.MotionJud
     if reached:
         reasons.append(f"the limit of {' and '.join(reached)}")
     reasons.append(f"the duration of {design.duration:g} s and the noise of the sensors")
-    text = " and ".join(reasons) if len(reasons) == 1 else ", ".join(reasons)
+    text = ", ".join(reasons)
     partner = _partner(situation, judgement, design.weakest)
     return text + (f"; its error goes with that of {partner}" if partner else "")
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from jointid.base.errors import InputError
 from jointid.design.judging import Situation
@@ -80,7 +81,7 @@ class _Reached:
             self.lowest = min(self.lowest, float(true["position"].min()) - beyond)
             self.highest = max(self.highest, float(true["position"].max()) + beyond)
             self.velocity = max(self.velocity, float(speed.max()))
-            self.torque = max(self.torque, float(np.abs(recording.torque).max()))
+            self.torque = max(self.torque, _largest(recording.torque))
             if self.situation.joint.sensor:
                 self.sensor = max(self.sensor, float(np.abs(true["link_torque"]).max()))
 
@@ -117,3 +118,7 @@ def _smaller(trajectory: Trajectory, share: float) -> Trajectory:
     arguments = dict(trajectory.arguments)
     arguments["amplitude"] = tuple(share * each for each in arguments["amplitude"])
     return Trajectory.sines(**arguments)
+
+
+def _largest(values: NDArray[np.float64] | None) -> float:
+    return 0.0 if values is None else float(np.abs(values).max())

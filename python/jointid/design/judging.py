@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.design.asked import Asked
-from jointid.design.balance_noise import balance_noise
+from jointid.design.balance_noise import noise_of_balance
 from jointid.design.motion_limits import MotionLimits
 from jointid.design.prior import Ranges
 from jointid.joint.joint import Joint
@@ -104,9 +104,9 @@ class Situation:
         return _core.DrawnJoint(
             setup=setup,
             columns=self.asked.columns(values),
-            noise=balance_noise(
+            noise=noise_of_balance(
                 self.joint,
-                values,
+                setup,
                 self.sensors,
                 period=scenario.control_period,
                 torque=self.torque,

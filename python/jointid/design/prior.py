@@ -84,15 +84,17 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
         value = None if parameter is None else parameter.value
         bounds = (None, None) if parameter is None else (parameter.min, parameter.max)
         if name in stated:
-            low, high = _range(name, stated[name])
-            _inside(name, (low, high), bounds)
+            ranges[name] = _range(name, stated[name])
+            _inside(name, ranges[name], bounds)
             value = None
         elif bounds[0] is not None and bounds[1] is not None:
-            low, high = bounds
+            ranges[name] = (bounds[0], bounds[1])
         elif value is not None:
-            low, high = sorted((value * (1.0 - _AROUND), value * (1.0 + _AROUND)))
-            low = low if bounds[0] is None else max(low, bounds[0])
-            high = high if bounds[1] is None else min(high, bounds[1])
+            around = sorted((value * (1.0 - _AROUND), value * (1.0 + _AROUND)))
+            ranges[name] = (
+                around[0] if bounds[0] is None else max(around[0], bounds[0]),
+                around[1] if bounds[1] is None else min(around[1], bounds[1]),
+            )
         else:
             raise InputError(
                 "nothing says how large it may be",
@@ -100,8 +102,7 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
                 place="joint",
                 remedy=f"give its min and max in the joint, or prior={{'{name}': (low, high)}}",
             )
-        ranges[name] = (low, high)
-        nominal[name] = 0.5 * (low + high) if value is None else value
+        nominal[name] = 0.5 * sum(ranges[name]) if value is None else value
     return Ranges(nominal=nominal, ranges=ranges)
 
 
