@@ -1,6 +1,6 @@
 """What the next motion does to the errors of an estimate: sequential design, over many seeds.
 
-    python benchmarks/next_motion_study.py [--seeds 100] [--evaluations 4000] [--workers 2] [--output FILE]
+    python benchmarks/next_motion_study.py [--seeds 100] [--evaluations 2000] [--workers 2] [--output FILE]
 
 A joint is recorded for 6 s by ±20°, which tells little of the sensor's gain. Its estimate designs 6 s more, or the
 same motion is recorded again. Errors in % of the true values; the designed motion is driven by a controller that
@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import multiprocessing
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
@@ -20,7 +21,6 @@ from pathlib import Path
 import numpy as np
 
 import jointid as jid
-from jointid.design.designing import DesignSearch
 
 LIMITS = {"position": (-math.pi / 3.0, math.pi / 3.0), "velocity": 3.4, "torque": 160.0}
 TRUE = {"coulomb": 25.0, "static": 20.0, "stribeck": 100.0, "viscous": 20.0}
@@ -93,7 +93,7 @@ def trial(situation: Situation, evaluations: int, seed: int) -> dict[str, dict[s
     joint, law = situation.joint(), situation.law(situation.believes)
     first = situation.run(TRUE, law, situation.first, 2 * seed)
     estimate = jid.identify(first, joint, model="stribeck")
-    search = DesignSearch(evaluations=evaluations, seed=seed, threads=1)
+    search = jid.DesignSearch(evaluations=evaluations, seed=seed, threads=1)
     design = estimate.next_motion(LIMITS, 6.0, search=search)
     second = situation.run(TRUE, design.controller, design.trajectory, 2 * seed + 1)
     again = situation.run(TRUE, law, situation.first, 2 * seed + 1)
@@ -131,13 +131,13 @@ def main() -> None:
     """Print the tables, and write them where asked."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=100)
-    parser.add_argument("--evaluations", type=int, default=4000)
+    parser.add_argument("--evaluations", type=int, default=2000)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--only", default="", help="a word in the situation's name")
     parser.add_argument("--output", type=Path)
     arguments = parser.parse_args()
     lines: list[str] = []
-    with ProcessPoolExecutor(arguments.workers) as pool:
+    with ProcessPoolExecutor(arguments.workers, multiprocessing.get_context("spawn")) as pool:
         for name, situation in SITUATIONS.items():
             if arguments.only in name:
                 run = partial(trial, situation, arguments.evaluations)

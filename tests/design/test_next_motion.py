@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import shlex
 from pathlib import Path
@@ -65,6 +66,7 @@ def test_errors_before_are_the_intervals(poor: jid.Estimate, design: jid.Design)
         assert interval is not None
         assert row.before == pytest.approx((interval[1] - interval[0]) / 2.0 / 1.96, rel=1e-3)
         assert row.stderr < row.before
+        assert row.worst >= row.relative
     assert "weakest before: sensor_gain, 0.82 %;" in str(design)
     assert "error before" in str(design)
 
@@ -148,9 +150,10 @@ def test_what_cannot_be_asked_for(poor: jid.Estimate, first: jid.Recording) -> N
         poor.next_motion(LIMITS, parameters=("inertia",))
     with pytest.raises(jid.InputError, match="velocity: it is needed"):
         poor.next_motion({"position": (-1.0, 1.0)})
-    fixed = jid.identify(first, THESIS, parameters=TRUE)
-    with pytest.raises(jid.InputError, match="nothing is free"):
-        fixed.next_motion(LIMITS)
+    nothing = np.zeros((0, 0))
+    held = dataclasses.replace(poor, free=(), covariance=nothing, information=nothing)
+    with pytest.raises(jid.InputError, match="nothing is free that a motion could tell more of"):
+        held.next_motion(LIMITS)
     bare = jid.identify(first)
     with pytest.raises(jid.InputError, match="the joint has no link; give a joint with its link"):
         bare.next_motion(LIMITS | {"torque": 160.0})
