@@ -1,6 +1,7 @@
 """What the next motion does to the errors of an estimate: sequential design, over many seeds.
 
     python benchmarks/next_motion_study.py [--seeds 100] [--evaluations 2000] [--workers 2] [--output FILE]
+        [--file poorly_excited.csv.gz] [--only WORD]
 
 A joint is recorded for 6 s by ±20°, which tells little of the sensor's gain. Its estimate designs 6 s more, or the
 same motion is recorded again. Errors in % of the true values; the designed motion is driven by a controller that
@@ -110,6 +111,29 @@ def trial(situation: Situation, evaluations: int, seed: int) -> dict[str, dict[s
     }
 
 
+def after_a_file(path: Path, seeds: int, evaluations: int) -> Iterator[str]:
+    """One design after a recording of the thesis's joint, and the errors of both over many second recordings."""
+    joint, situation = jid.thesis_joint(), Situation()
+    first = jid.load(path)
+    estimate = jid.identify(first, joint)
+    design = estimate.next_motion(LIMITS, 6.0, search=jid.DesignSearch(evaluations=evaluations))
+    found = []
+    for seed in range(seeds):
+        second = situation.run(TRUE, design.controller, design.trajectory, seed)
+        found.append(list(errors(jid.identify([first, second], joint)).values()))
+    of_both = np.array(found)
+    yield f"\n### {path.name.partition('.')[0]}, and {seeds} second recordings of one design\n"
+    yield "| parameter | first | error before | expected | both: mean | both: rms | largest |\n|---|---|---|---|---|---|---|"
+    for column, (name, error) in enumerate(errors(estimate).items()):
+        row, own = design.parameters[name], of_both[:, column]
+        before = math.nan if row.before is None else 100.0 * row.before / abs(TRUE[name])
+        numbers = (error, before, 100.0 * row.relative, own.mean(), np.sqrt(np.mean(own**2)))
+        cells = [f"{number:.3f}" for number in (*numbers, np.abs(own).max())]
+        yield f"| `{name}` | {' | '.join(cells)} |"
+    worst = np.abs(of_both).max(axis=1)
+    yield f"\nEvery error at most 1 % in {np.count_nonzero(worst <= 1.0)} of {seeds}; largest {worst.max():.2f} %."
+
+
 def table(name: str, trials: list[dict[str, dict[str, float]]]) -> Iterator[str]:
     """One row a parameter: root mean square of the errors, the expected error; and how often all are below 1 %."""
     yield f"\n### {name}\n\n| parameter | first | same again | designed | expected |\n|---|---|---|---|---|"
@@ -133,10 +157,14 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=100)
     parser.add_argument("--evaluations", type=int, default=2000)
     parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--file", type=Path, help="a recording of the thesis's joint to go on from")
     parser.add_argument("--only", default="", help="a word in the situation's name")
     parser.add_argument("--output", type=Path)
     arguments = parser.parse_args()
     lines: list[str] = []
+    if arguments.file is not None:
+        lines += after_a_file(arguments.file, arguments.seeds, arguments.evaluations)
+        print("\n".join(lines), flush=True)
     with ProcessPoolExecutor(arguments.workers, multiprocessing.get_context("spawn")) as pool:
         for name, situation in SITUATIONS.items():
             if arguments.only in name:

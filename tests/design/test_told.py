@@ -150,7 +150,20 @@ def test_the_sensors_noise_is_that_of_the_residuals(residual: str) -> None:
     estimate = jid.identify(run(jid.Trajectory.thesis(1.0)), THESIS, residual=residual)
     sensors = sensors_of(estimate)
     assert sensors is not None
-    assert sensors.torque_noise == pytest.approx(0.5, rel=0.15)
+    assert sensors.torque_noise == pytest.approx(0.5, rel=0.1)
+
+
+def test_one_rough_window_is_not_the_sensors_noise() -> None:
+    estimate = jid.identify(run(jid.Trajectory.thesis(1.0)), THESIS)
+    rough = estimate.windows.measured.copy()
+    rough[::40] += 0.3
+    again = dataclasses.replace(
+        estimate, windows=dataclasses.replace(estimate.windows, measured=rough)
+    )
+    noise = [sensors_of(each) for each in (estimate, again)]
+    assert noise[0] is not None
+    assert noise[1] is not None
+    assert noise[1].torque_noise == pytest.approx(noise[0].torque_noise, rel=0.05)
 
 
 def test_the_joint_of_a_design_has_the_estimates_values(poor: jid.Estimate) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -24,6 +23,7 @@ Array = NDArray[np.float64]
 
 _FACTOR = 3.0  # between a value and the farthest joint that is drawn, where nothing else bounds it
 _WIDEST = 0.5  # of the value: a standard deviation beyond it is drawn as this
+_MEDIAN = 0.6745  # of the magnitude of normal noise, in its standard deviations
 _SIGNED = ("offset", "gravity", "ripple", "position")
 
 
@@ -156,17 +156,17 @@ def _of_chance(estimate: Estimate) -> Array:
 
 def sensors_of(estimate: Estimate) -> _core.Sensors | None:
     """Return the sensors as the residuals show them: a torque sensor's noise [N·m]; None without a sensor."""
-    gain = estimate.parameters.get("sensor_gain")
-    found = estimate.residuals
-    if gain is None or not found.rms > 0.0:
+    gain, windows = estimate.parameters.get("sensor_gain"), estimate.windows
+    usable = estimate.residuals.samples * (1.0 - estimate.residuals.left_out)
+    if gain is None or usable < 1.0:
         return None
-    # Of white noise, the mean over a window is less by the root of its samples.
-    usable = found.samples * (1.0 - found.left_out)
-    period = float(np.sum(estimate.windows.duration)) / max(usable, 1.0)
-    noise = found.rms * math.sqrt(max(found.window_duration / period, 1.0))
+    # White noise grows with the root of time; the median leaves out what happens at a reversal.
+    period = float(np.sum(windows.duration)) / usable
+    shares = np.abs(windows.residual) / np.sqrt(windows.duration * period)
+    noise = float(np.median(shares)) / _MEDIAN
     if estimate.settings.get("residual") != "torque":
         noise *= abs(gain.value)
-    return _core.Sensors(torque_noise=noise)
+    return _core.Sensors(torque_noise=noise) if noise > 0.0 else None
 
 
 def joint_of(estimate: Estimate, told: Told, given: Joint | None) -> Joint:
