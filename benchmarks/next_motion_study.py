@@ -123,7 +123,8 @@ def after_a_file(path: Path, seeds: int, evaluations: int) -> Iterator[str]:
         found.append(list(errors(jid.identify([first, second], joint)).values()))
     of_both = np.array(found)
     yield f"\n### {path.name.partition('.')[0]}, and {seeds} second recordings of one design\n"
-    yield "| parameter | first | error before | expected | both: mean | both: rms | largest |\n|---|---|---|---|---|---|---|"
+    yield "| parameter | first | error before | expected | both: mean | both: rms | largest |"
+    yield "|---|---|---|---|---|---|---|"
     for column, (name, error) in enumerate(errors(estimate).items()):
         row, own = design.parameters[name], of_both[:, column]
         before = math.nan if row.before is None else 100.0 * row.before / abs(TRUE[name])

@@ -1,5 +1,6 @@
 """A design made by hand: what `design_excitation` returns, without its search."""
 
+from pathlib import Path
 from typing import Any
 
 from closed_loop import TRUTH, thesis_joint
@@ -15,6 +16,26 @@ RELATIVE = {"coulomb": 0.0007, "static": 0.0021, "stribeck": 0.0018, "viscous": 
 RELATIVE |= {"sensor_gain": 0.0024, "sensor_offset": 0.0011}
 UNITS = {"coulomb": "N·m", "static": "N·m", "stribeck": "s²/rad²", "viscous": "N·m·s/rad"}
 UNITS |= {"sensor_gain": "N·m/unit", "sensor_offset": "N·m"}
+
+BELIEVED = """coulomb = { value = 20.0, min = 10.0, max = 40.0 }
+static = { value = 15.0, min = 10.0, max = 40.0 }
+stribeck = { value = 150.0, min = 50.0, max = 200.0 }
+viscous = { value = 15.0, min = 10.0, max = 30.0 }
+sensor_gain = { value = 2.0, min = 1.5, max = 3.0 }
+sensor_offset = { value = 0.0, min = -20.0, max = 20.0 }
+"""
+_EXAMPLE = Path(__file__).resolve().parents[1] / "examples" / "hardware" / "joint.toml"
+
+
+def bench_text() -> str:
+    """The example's bench file, with a narrower belief, and with a motion that is to be designed."""
+    text = _EXAMPLE.read_text(encoding="utf-8").replace("ripple = [2] ", "ripple = []", 1)
+    for begin, end, new in (
+        ("coulomb = {", "[limits]", f"{BELIEVED}\n"),
+        ('form = "thesis"', "[session.controller]", 'file = "motion.toml"\n\n'),
+    ):
+        text = text[: text.index(begin)] + new + text[text.index(end) :]
+    return text
 
 
 def motion(duration: float = 6.0) -> jid.Trajectory:

@@ -54,6 +54,7 @@ def run_console_blocks(
     *,
     codes: Mapping[str, int] | None = None,
     whole: bool = False,
+    within: float = 0.0,
 ) -> list[str]:
     """Run a page's console blocks in the working folder, and compare what they print with what the page shows.
 
@@ -65,6 +66,8 @@ def run_console_blocks(
         Exit code of a command line that has this word. Default: 0 for all.
     whole : bool
         Whether a toml block replaces tables, not only keys. Default False.
+    within : float
+        By which share a printed number may differ from the page's. Default: digit by digit the same.
 
     Returns
     -------
@@ -85,14 +88,32 @@ def run_console_blocks(
         wanted = [code for word, code in (codes or {}).items() if word in arguments]
         assert main(arguments) == (wanted or [0])[0]
         printed = capsys.readouterr().out
-        # What a page leaves out at the end of a text is left out here.
-        same = doctest.OutputChecker().check_output(
+        same = _same(expected, printed, within)
+        assert same, f"{line}\n{printed}"
+    return commands
+
+
+_NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?![\w]|\.\d)")
+
+
+def _same(expected: str, printed: str, within: float) -> bool:
+    """Whether a text is what a page shows; what the page leaves out at the end is left out."""
+    if not within:
+        return doctest.OutputChecker().check_output(
             f"{expected.rstrip()} ...\n",
             f"{printed} .\n",
             doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE,
         )
-        assert same, f"{line}\n{printed}"
-    return commands
+    # Widths of columns, and so the lengths of their rules, are those of the numbers.
+    expected, printed = (re.sub(r"-{3,}", "---", text) for text in (expected, printed))
+    wanted = [float(text) for text in _NUMBER.findall(expected)]
+    pattern = re.escape(_NUMBER.sub("§", " ".join(expected.split())))
+    pattern = pattern.replace(r"\.\.\.", ".*?").replace("§", f"({_NUMBER.pattern})")
+    found = re.match(pattern, " ".join(printed.split()))
+    return found is not None and all(
+        abs(float(text) - number) <= within * abs(number) + 1e-9
+        for text, number in zip(found.groups(), wanted, strict=True)
+    )
 
 
 def _edit(path: Path, block: str, *, whole: bool) -> None:

@@ -55,7 +55,8 @@ void bind_values(py::module_& m) {
         Field{"torque", &Noise::torque, "Of a sample, white [N·m]."},
         Field{"position", &Noise::position, "At a window's end [rad]."},
         Field{"velocity", &Noise::velocity, "At a window's end [rad/s]."},
-        Field{"slowest", &Noise::slowest, "Slower samples tell nothing [rad/s]."});
+        Field{"slowest", &Noise::slowest, "Slower samples tell nothing [rad/s]."},
+        Field{"reversal", &Noise::reversal, "Of a window with a change of sign [N·m·s]."});
 }
 
 void bind_results(py::module_& m) {

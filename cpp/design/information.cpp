@@ -19,6 +19,7 @@ class Windows {
         torque_(noise.torque * noise.torque * period * period),
         ends_(2.0 * (inertia * inertia * noise.velocity * noise.velocity +
                      viscous * viscous * noise.position * noise.position)),
+        reversal_(noise.reversal * noise.reversal),
         row_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(columns.size()))),
         sum_(Eigen::MatrixXd::Zero(row_.size(), row_.size())) {
     rates(signals, columns, rates_);
@@ -42,16 +43,26 @@ class Windows {
       row_[c] = sum * period_;
     }
     const auto count = static_cast<double>(last - first);
-    sum_.selfadjointView<Eigen::Lower>().rankUpdate(row_, 1.0 / (torque_ * count + ends_));
+    const double variance = torque_ * count + ends_ + (reverses(first, last) ? reversal_ : 0.0);
+    sum_.selfadjointView<Eigen::Lower>().rankUpdate(row_, 1.0 / variance);
   }
   [[nodiscard]] Eigen::MatrixXd total() const { return sum_.selfadjointView<Eigen::Lower>(); }
 
  private:
+  [[nodiscard]] bool reverses(std::size_t first, std::size_t last) const {
+    const auto& velocity = signals_.true_velocity;
+    for (std::size_t k = first; k < last; ++k) {
+      if (velocity[k] * velocity[k + 1] <= 0.0) return true;
+    }
+    return false;
+  }
+
   const simulate::Signals& signals_;
   const std::vector<Column>& columns_;
   double period_;
   double torque_;
   double ends_;
+  double reversal_;
   Eigen::VectorXd row_;
   Eigen::MatrixXd rates_;
   Eigen::MatrixXd sum_;
@@ -65,6 +76,7 @@ void Noise::validate() const {
   require.at_least_zero("position", position);
   require.at_least_zero("velocity", velocity);
   require.at_least_zero("slowest", slowest);
+  require.at_least_zero("reversal", reversal);
 }
 
 Eigen::MatrixXd information(const simulate::Signals& signals, const std::vector<Column>& columns,

@@ -15,6 +15,8 @@ struct Noise {
   double position = 0.0;  ///< of the position at a window's end [rad]
   double velocity = 0.0;  ///< of the velocity there [rad/s]
   double slowest = 0.0;   ///< slower samples tell nothing [rad/s]
+  /// Of a window in which the velocity changes its sign: when exactly, samples do not tell [N·m·s].
+  double reversal = 0.0;
 
   void validate() const;
 };

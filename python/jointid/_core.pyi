@@ -3073,6 +3073,8 @@ class BalanceNoise:
         At a window's end [rad/s].
     slowest : default 0.0
         Slower samples tell nothing [rad/s].
+    reversal : default 0.0
+        Of a window with a change of sign [N·m·s].
     """
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> dict[str, typing.Any]: ...
@@ -3084,6 +3086,7 @@ class BalanceNoise:
         position: float = 0.0,
         velocity: float = 0.0,
         slowest: float = 0.0,
+        reversal: float = 0.0,
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
@@ -3098,6 +3101,7 @@ class BalanceNoise:
         position: float = ...,
         velocity: float = ...,
         slowest: float = ...,
+        reversal: float = ...,
     ) -> BalanceNoise:
         """
         A copy with the given fields changed.
@@ -3106,6 +3110,11 @@ class BalanceNoise:
     def position(self) -> float:
         """
         At a window's end [rad].
+        """
+    @property
+    def reversal(self) -> float:
+        """
+        Of a window with a change of sign [N·m·s].
         """
     @property
     def slowest(self) -> float:

@@ -127,6 +127,7 @@ def test_a_motion_alone_is_no_design(tmp_path: Path) -> None:
         ("velocity = 3.4", "velocity = 0.0", "limits: velocity is 0.0: more than 0"),
         ('form = "sines"', 'form = "sins"', r"trajectory\.form: .*known are"),
         ("[peaks]", "[peeks]", "peaks: this is missing|peeks: unknown"),
+        ("[sensors]", '[sensors]\nlaw = "pd"', r"sensors\.law: unknown"),
         ("[sensors]", "[sensors.x]", r"sensors\.x: unknown"),
     ],
 )

@@ -65,6 +65,7 @@ def test_errors_before_are_the_intervals(poor: jid.Estimate, design: jid.Design)
         interval = poor.parameters[name].interval
         assert interval is not None
         assert row.before == pytest.approx((interval[1] - interval[0]) / 2.0 / 1.96, rel=1e-3)
+        assert row.before is not None
         assert row.stderr < row.before
         assert row.worst >= row.relative
     assert "weakest before: sensor_gain, 0.82 %;" in str(design)
@@ -226,4 +227,3 @@ def test_the_session_s_controller_believes_the_estimate(
     assert law == jid.AdaptiveRobust(bandwidth=33.0, **jid.control_estimates(poor.joint))
     Bench.controller = pd = jid.Pd(stiffness=100.0, damping=10.0)  # type: ignore[assignment]
     assert controller_after(none, poor.joint, bench) is pd
-    assert np.isfinite(law.coulomb)

@@ -30,9 +30,10 @@ class Action:
         Of "record" and "inspect": what, in a phrase without the syntax of any face. Of a call: what for,
         if that needs to be said. Default: nothing.
     function : str
-        Of a call: which one: "identify" (default), "load", "compare_models", "sweep", "simulate" or
-        "Joint" (arguments are then fields of the joint). Of "record": "next_motion", the method of the estimate
-        that designs the motion, with these arguments; or "identify", which designs none.
+        Of a call: which one: "identify" (default), "load", "compare_models", "sweep", "simulate",
+        "design_excitation" or "Joint" (arguments are then fields of the joint). Of "record":
+        "next_motion", the method of the estimate that designs the motion, with these arguments; or
+        "identify", which designs none.
 
     Examples
     --------

@@ -61,7 +61,8 @@ def _value(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, float):
-        return repr(value) if math.isfinite(value) else f'"{value}"'
+        # A number of numpy's is one, too, and writes itself otherwise.
+        return repr(float(value)) if math.isfinite(value) else f'"{float(value)}"'
     if isinstance(value, int):
         return str(value)
     if isinstance(value, list | tuple):

@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
 from jointid.cli.arguments import by_name
-from jointid.cli.scenario import controller_of, number_or_angle
+from jointid.cli.scenario import checked_values, controller_of, number_or_angle, sensors_of
 from jointid.design.motion_limits import MotionLimits
 from jointid.joint.joint import Joint
 from jointid.joint.link import Limits
 
 if TYPE_CHECKING:
+    from jointid._core import Sensors
+    from jointid.estimate.estimate import Estimate
     from jointid.hardware.bench.bench import Bench
     from jointid.hardware.session.limits import SessionLimits
     from jointid.simulation.arguments import Controller
@@ -52,12 +54,7 @@ def limits_of(arguments: argparse.Namespace, joint: Joint, bench: Bench | None) 
                 torque=own.torque if math.isfinite(own.torque) else None,
             )
         )
-    try:
-        limits = MotionLimits.of(given, joint)
-    except InputError as error:  # its place is the option
-        raise InputError(
-            error.reason, argument=error.argument, value=error.value, remedy=error.remedy
-        ) from None
+    limits = MotionLimits.of(given, joint)
     if bench is not None:
         _check_session(limits, bench.limits)
     return limits
@@ -80,6 +77,13 @@ def _check_session(limits: MotionLimits, session: SessionLimits) -> None:
             )
 
 
+def as_option(error: InputError) -> InputError:
+    """An error about a limit: its place is the option, which says it already."""
+    if error.place != "limits":
+        return error
+    return InputError(error.reason, argument=error.argument, value=error.value, remedy=error.remedy)
+
+
 def controller_for(
     arguments: argparse.Namespace, joint: Joint, bench: Bench | None
 ) -> Controller | None:
@@ -89,13 +93,14 @@ def controller_for(
 
     gains, name, believe = arguments.gain, arguments.controller, arguments.believe
     own = None if bench is None else bench.controller
-    if name is None and not gains and believe is None:
-        return own
-    if name is None and not gains and own is not None:
-        found = own
+    if name is None and own is not None:
+        found = own.replace(**checked_values("gain", gains, own.asdict()))
+        if believe is None:
+            return found
+    elif name is None and not gains and believe is None:
+        return None
     else:
-        usual = "adaptive_robust" if own is None else law_name(own)
-        found = controller_of(usual if name is None else name, gains)
+        found = controller_of("adaptive_robust" if name is None else name, gains)
     if "coulomb" not in found.asdict():
         if believe is not None:
             raise InputError(
@@ -108,6 +113,26 @@ def controller_for(
     return controller
 
 
+def sensors_for(
+    pairs: Sequence[tuple[str, str]], limits: MotionLimits, joint: Joint, bench: Bench | None
+) -> Sensors | None:
+    """The sensors of the options, and beside them the session's encoder and velocity; None: the default ones."""
+    from jointid.design.balance_noise import assumed_sensors
+
+    # What a drive's type calls otherwise is not known here, and stays the default.
+    counts = getattr(None if bench is None else bench.drive, "counts_per_turn", None)
+    if bench is None or counts is None or limits.torque is None:
+        return sensors_of(pairs) if pairs else None
+    own = assumed_sensors(joint, limits.torque).replace(
+        encoder_counts=float(counts),
+        velocity="counts",
+        velocity_counts=bench.options.velocity_counts,
+        velocity_time=bench.options.velocity_time,
+    )
+    stated = sensors_of(pairs).asdict()
+    return own.replace(**{name: stated[name] for name, _ in pairs})
+
+
 def controller_after(
     arguments: argparse.Namespace, estimated: Joint, bench: Bench | None
 ) -> Controller | None:
@@ -118,6 +143,18 @@ def controller_after(
     if found is None or found is not (None if bench is None else bench.controller):
         return found
     return believing(found, estimated) if "coulomb" in found.asdict() else found
+
+
+def sensors_after(
+    pairs: Sequence[tuple[str, str]], sensors: Sensors | None, estimate: Estimate
+) -> Sensors | None:
+    """The same sensors, with the noise that an estimate's residuals show where no option says it."""
+    from jointid.design.told import sensors_of
+
+    seen = sensors_of(estimate)
+    if sensors is None or seen is None or "torque_noise" in dict(pairs):
+        return sensors
+    return sensors.replace(torque_noise=seen.torque_noise)
 
 
 def prior_of(pairs: Sequence[tuple[str, str]]) -> dict[str, tuple[float, float]] | None:

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 from jointid.base.errors import InputError
 from jointid.cli.arguments import TEXT, decimal, pair, whole, whole_seed
 from jointid.cli.outputs import check_folder
-from jointid.cli.scenario import sensors_of
 
 if TYPE_CHECKING:
     from jointid.design.design import Design
@@ -32,7 +31,7 @@ def add_design(commands: Any) -> None:
             "  jointid design joint.toml --after estimate.json --duration 6 --output motion.toml\n"
             "  jointid design joint.toml --parameter sensor_gain --sensor torque_noise=0.5 --plot motion.png\n"
             "the joint file needs a value or bounds for each parameter; its table [session], if there is one,\n"
-            'says the controller, the period and the limits, and takes the motion as file = "motion.toml"'
+            'says the controller, the period, the encoder and the limits, and takes the motion as file = "motion.toml"'
         ),
         formatter_class=TEXT,
     )
@@ -126,9 +125,14 @@ def _sought(design: argparse.ArgumentParser) -> None:
         default="worst",
         help="worst (default): the largest relative error; determinant: all errors together",
     )
-    design.add_argument("--evaluations", type=whole, help="motions to try (default 4000)")
+    design.add_argument("--evaluations", type=whole, help="motions to try (default 2000)")
     design.add_argument(
-        "--draws", type=whole, help="joints drawn from what is believed (default 8)"
+        "--draws", type=whole, help="joints drawn from what is believed (default 4)"
+    )
+    design.add_argument(
+        "--rehearsals",
+        type=whole,
+        help="simulated recordings from which the errors are counted (default 160)",
     )
     design.add_argument("--seed", type=whole_seed, default=0, help="seed of the search (default 0)")
     design.add_argument(
@@ -138,20 +142,39 @@ def _sought(design: argparse.ArgumentParser) -> None:
 
 def design(arguments: argparse.Namespace) -> int:
     """Design a motion, and write it."""
+    from jointid.cli.design_settings import as_option
+
+    _check_outputs(arguments)
+    try:
+        found = _designed(arguments)
+    except InputError as error:
+        raise as_option(error) from None
+    return _say(found, arguments)
+
+
+def _designed(arguments: argparse.Namespace) -> Design:
+    """The design of a command line."""
     from jointid.cli.design_settings import (
         controller_after,
         controller_for,
         joint_and_bench,
         limits_of,
         prior_of,
+        sensors_after,
+        sensors_for,
     )
-    from jointid.cli.progress import DesignProgress
-    from jointid.design.designing import DesignSearch, design_excitation
+    from jointid.cli.progress import MotionProgress
+    from jointid.design.design_search import DesignSearch
+    from jointid.design.designing import design_excitation
+    from jointid.estimate.estimate import Estimate
 
-    _check_outputs(arguments)
     joint, bench = joint_and_bench(arguments.joint)
     limits = limits_of(arguments, joint, bench)
-    budget = {"evaluations": arguments.evaluations, "joints": arguments.draws}
+    budget = {
+        "evaluations": arguments.evaluations,
+        "joints": arguments.draws,
+        "rehearsals": arguments.rehearsals,
+    }
     search = DesignSearch(
         seed=arguments.seed,
         threads=arguments.threads,
@@ -160,12 +183,9 @@ def design(arguments: argparse.Namespace) -> int:
     period = arguments.control_period
     if period is None:
         period = 1e-3 if bench is None else bench.options.period
-    estimate = None
-    if arguments.after is not None:
-        from jointid.estimate.estimate import Estimate
-
-        estimate = Estimate.load(arguments.after)
-    with DesignProgress(enabled=not arguments.quiet) as progress:
+    estimate = None if arguments.after is None else Estimate.load(arguments.after)
+    sensors = sensors_for(arguments.sensor, limits, joint, bench)
+    with MotionProgress(enabled=not arguments.quiet) as progress:
         settings: dict[str, Any] = {
             "parameters": arguments.parameter,
             "criterion": arguments.criterion,
@@ -175,24 +195,13 @@ def design(arguments: argparse.Namespace) -> int:
             "callback": progress,
         }
         if estimate is None:
-            found = design_excitation(
-                joint,
-                limits,
-                arguments.duration,
-                controller=controller_for(arguments, joint, bench),
-                sensors=sensors_of(arguments.sensor),
-                **settings,
-            )
-        else:
-            found = estimate.next_motion(
-                limits,
-                arguments.duration,
-                joint=joint,
-                controller=controller_after(arguments, estimate.joint, bench),
-                sensors=sensors_of(arguments.sensor) if arguments.sensor else None,
-                **settings,
-            )
-    return _say(found, arguments)
+            controller = controller_for(arguments, joint, bench)
+            settings |= {"controller": controller, "sensors": sensors}
+            return design_excitation(joint, limits, arguments.duration, **settings)
+        settings["controller"] = controller_after(arguments, estimate.joint, bench)
+        settings["sensors"] = sensors_after(arguments.sensor, sensors, estimate)
+        found: Design = estimate.next_motion(limits, arguments.duration, joint=joint, **settings)
+        return found
 
 
 def _say(found: Design, arguments: argparse.Namespace) -> int:

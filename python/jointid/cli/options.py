@@ -92,6 +92,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "criterion": "--criterion",
         "evaluations": "--evaluations",
         "joints": "--draws",
+        "rehearsals": "--rehearsals",
         "seed": "--seed",
         "threads": "--threads",
         "output": "--output",
@@ -222,7 +223,7 @@ def option_of(command: str, argument: str) -> tuple[str, str]:
     if argument in table:
         return table[argument], ""
     root, _, key = argument.replace("['", ".").replace("']", "").partition(".")
-    if root in ("search", "Search") and key:
+    if root in ("search", "Search", "Scenario") and key:
         return option_of(command, key)
     root = _CLASSES.get(root, root)
     for name in (f"{root}.{key}" if key else root, f"ga.{root}"):

@@ -11,7 +11,7 @@ from jointid._core import GaOptions, Generation
 
 if TYPE_CHECKING:
     from jointid.comparison.comparison import ComparisonStep
-    from jointid.design.designing import DesignStep
+    from jointid.design.design_search import DesignProgress
     from jointid.study.sweeping import StudyStep
 
 _WIDTH = 24
@@ -108,7 +108,7 @@ class ComparisonProgress(_Bar):
         self._draw(step.number / step.total, f"fit {step.number}/{step.total}, {step.model}")
 
 
-class DesignProgress(_Bar):
+class MotionProgress(_Bar):
     """A callback for `design_excitation` that draws a bar on a terminal, and nothing elsewhere.
 
     Parameters
@@ -118,7 +118,7 @@ class DesignProgress(_Bar):
         Default: standard error.
     """
 
-    def __call__(self, step: DesignStep) -> None:
+    def __call__(self, step: DesignProgress) -> None:
         """Show how many motions were tried."""
         self._draw(
             step.number / step.total,

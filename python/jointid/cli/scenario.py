@@ -114,7 +114,7 @@ def controller_of(name: str, gains: Sequence[tuple[str, str]]) -> Controller:
         raise InputError(suggestion(name, [*LAWS]), argument="controller", value=name)
     kind = LAWS[name]
     usual = kind().asdict()
-    chosen = _checked("gain", gains, usual)
+    chosen = checked_values("gain", gains, usual)
     if "stiffness" in usual and not chosen.get("stiffness"):
         raise InputError(
             "it needs a stiffness [N·m/rad], and usually damping",
@@ -136,7 +136,7 @@ def sensors_of(pairs: Sequence[tuple[str, str]]) -> Sensors:
     """
     from jointid._core import Sensors
 
-    return Sensors(**_checked("sensors", pairs, Sensors().asdict()))
+    return Sensors(**checked_values("sensors", pairs, Sensors().asdict()))
 
 
 def trajectory_of(text: str) -> Trajectory:
@@ -203,7 +203,7 @@ def _check_names(argument: str, chosen: Mapping[str, Any], known: Collection[str
             )
 
 
-def _checked(
+def checked_values(
     argument: str, pairs: Sequence[tuple[str, str]], usual: Mapping[str, Any]
 ) -> dict[str, Any]:
     """Values of the same kinds as the default ones."""

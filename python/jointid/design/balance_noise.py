@@ -12,6 +12,7 @@ _COUNTS = 8000.0  # of a motor turn: an encoder where none is stated
 _SMOOTHED = 9  # samples from which a velocity is derived
 _LEAST = 1e-6  # of the torque limit: what no balance is better than
 _SLOW = 0.15  # of the speed at which static friction fades: slower, noise decides when the joint breaks away
+_REVERSAL = 0.1  # of a period: how well samples tell when the joint reverses
 _STANDING = 1e-4  # of the largest speed
 
 
@@ -28,6 +29,7 @@ def noise_of_balance(
     sensors: _core.Sensors,
     *,
     period: float,
+    sampled: float,
     torque: float,
     velocity: float,
 ) -> _core.BalanceNoise:
@@ -40,7 +42,9 @@ def noise_of_balance(
         Of the joint with values.
     sensors : Sensors
     period : float
-        Between samples [s].
+        Between samples of the simulation [s].
+    sampled : float
+        Between samples of the recording [s].
     torque, velocity : float
         The limits [N·m], [rad/s].
     """
@@ -63,6 +67,7 @@ def noise_of_balance(
         position=position,
         velocity=derived,
         slowest=min(slowest, 0.05 * velocity),
+        reversal=_REVERSAL * sampled * _dry_step(setup.joint),
     )
 
 
@@ -71,3 +76,13 @@ def _fading_speed(joint: _core.SimulatedJoint) -> float:
     if joint.decay == "gaussian" and joint.stribeck > 0.0:
         return 1.0 / math.sqrt(joint.stribeck)
     return joint.stribeck_velocity if joint.decay == "general" else 0.0
+
+
+def _dry_step(joint: _core.SimulatedJoint) -> float:
+    """Return by how much dry friction changes at a reversal [N·m]."""
+    return float(
+        joint.coulomb_positive
+        + joint.coulomb_negative
+        + joint.static_positive
+        + joint.static_negative
+    )

@@ -194,11 +194,9 @@ def _settings(value: Any) -> dict[str, Any]:
 
 def _made(kinds: Mapping[str, Callable[..., Any]], table: Any, place: str) -> Any:
     """The controller or the sensors that a table describes."""
-    own: dict[str, Kind] = {}
-    if "" not in kinds:
-        own["law"] = Text(known=tuple(kinds))
-    read = Record(own, other=Plain()).read(table, place)
-    make = kinds[read.pop("law", "")]
+    named: dict[str, Kind] = {} if "" in kinds else {"law": Text(known=tuple(kinds))}
+    read = Record(named, other=Plain()).read(table, place)
+    make = kinds[read.pop("law") if named else ""]
     usual: Mapping[str, Any] = make().asdict()
     settings = Record({}, {name: _kind(value) for name, value in usual.items()})
     try:

@@ -156,6 +156,7 @@ class _Designing:
         """Search, choose, and hold the limits for many joints."""
         situation, settings = self._situation, self._settings
         motions = self._searched(self._judge_of_the_search())
+        motions += self._usual()
         tried = max(8, round(_TRIED * settings.rehearsals))
         rehearsals = [
             rehearse(situation, each, self._values[0], tried, threads=settings.threads)
@@ -252,14 +253,25 @@ class _Designing:
                 break
         return motions
 
+    def _usual(self) -> list[Trajectory]:
+        """Return the thesis's motion where every joint keeps the limits: a design must not be worse."""
+        motion = self._thesis()
+        judged = None if motion is None else _judged(self._fine, motion)
+        if motion is None or judged is None or any(each.excess > 0.0 for each in judged):
+            return []
+        return [motion]
+
+    def _thesis(self) -> Trajectory | None:
+        low, high = self._situation.limits.position
+        if not low <= -math.radians(20.0) <= math.radians(20.0) <= high:
+            return None
+        return Trajectory.thesis(duration=self._situation.duration)
+
     def _reference(self) -> dict[str, float]:
         """Return the relative errors of the thesis's motion; empty where it leaves the window."""
         situation = self._situation
-        motion = Trajectory.thesis(duration=situation.duration)
-        low, high = situation.limits.position
-        if not low <= -math.radians(20.0) <= math.radians(20.0) <= high:
-            return {}
-        judged = _judged(self._fine, motion)
+        motion = self._thesis()
+        judged = None if motion is None else _judged(self._fine, motion)
         if judged is None:
             return {}
         names = situation.asked.names

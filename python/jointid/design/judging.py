@@ -109,6 +109,7 @@ class Situation:
                 setup,
                 self.sensors,
                 period=scenario.control_period,
+                sampled=self.control_period,
                 torque=self.torque,
                 velocity=self.limits.velocity,
             ),

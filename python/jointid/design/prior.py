@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.joint.checks import finite_number, suggestion
 from jointid.joint.joint import Joint
@@ -100,7 +101,10 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
                 "nothing says how large it may be",
                 argument=name,
                 place="joint",
-                remedy=f"give its min and max in the joint, or prior={{'{name}': (low, high)}}",
+                remedy=(
+                    "give its min and max in the joint",
+                    Action("call", {"prior": {name: ...}}, function="design_excitation"),
+                ),
             )
         nominal[name] = 0.5 * sum(ranges[name]) if value is None else value
     return Ranges(nominal=nominal, ranges=ranges)
