@@ -224,6 +224,9 @@ def test_the_session_s_controller_believes_the_estimate(
     none = Namespace(gain=[], controller=None, believe=None)
     bench: Any = Bench()
     law = controller_after(none, poor.joint, bench)
+    assert isinstance(law, jid.AdaptiveRobust)
     assert law == jid.AdaptiveRobust(bandwidth=33.0, **jid.control_estimates(poor.joint))
+    gained = Namespace(gain=[("viscous", "7")], controller=None, believe=None)
+    assert controller_after(gained, poor.joint, bench) == law.replace(viscous=7.0)
     Bench.controller = pd = jid.Pd(stiffness=100.0, damping=10.0)  # type: ignore[assignment]
-    assert controller_after(none, poor.joint, bench) is pd
+    assert controller_after(none, poor.joint, bench) == pd

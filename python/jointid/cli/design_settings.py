@@ -136,13 +136,16 @@ def sensors_for(
 def controller_after(
     arguments: argparse.Namespace, estimated: Joint, bench: Bench | None
 ) -> Controller | None:
-    """The same, which believes an estimate: the session's own assumes what was believed before."""
+    """The same, which believes an estimate: what the session's own assumes was believed before."""
     from jointid.simulation.scenario import believing
 
     found = controller_for(arguments, estimated, bench)
-    if found is None or found is not (None if bench is None else bench.controller):
+    stated = arguments.controller is not None or arguments.believe is not None
+    if found is None or stated or "coulomb" not in found.asdict():
         return found
-    return believing(found, estimated) if "coulomb" in found.asdict() else found
+    chosen = {key: found.asdict()[key] for key, _ in arguments.gain}
+    assumed: Controller = believing(found, estimated).replace(**chosen)
+    return assumed
 
 
 def sensors_after(
