@@ -19,6 +19,7 @@ from jointid.design.rehearsal import rehearse
 
 LIMITS = {"position": (-1.0, 1.0), "velocity": 3.4, "torque": 160.0}
 SENSORS = jid.Sensors(torque_noise=0.5)
+SETTINGS: dict[str, int] = {"evaluations": 1024, "rehearsals": 60, "joints": 3}
 QUICK = jid.DesignSearch(evaluations=256, rehearsals=60, joints=3)
 
 
@@ -38,7 +39,7 @@ def design(**changes: Any) -> jid.Design:
 
 @pytest.fixture(scope="module")
 def found() -> jid.Design:
-    return design(search=jid.DesignSearch(evaluations=640, rehearsals=60, joints=3))
+    return design(search=jid.DesignSearch(**SETTINGS))
 
 
 def errors_of(trajectory: jid.Trajectory, runs: int, first: int = 90_000) -> dict[str, float]:
@@ -64,7 +65,7 @@ def test_the_errors_are_those_that_were_expected_and_smaller_than_of_the_usual_m
     found: jid.Design,
 ) -> None:
     counted = errors_of(found.trajectory, 60)
-    usual = errors_of(jid.Trajectory.thesis(duration=6.0), 20)
+    usual = errors_of(jid.Trajectory.thesis(duration=6.0), 60)
     for name, expected in found.parameters.items():
         assert expected.relative == pytest.approx(counted[name], rel=0.45), name
         assert expected.stderr == pytest.approx(expected.relative * abs(TRUTH[name]))
@@ -103,11 +104,10 @@ def test_the_motion_starts_and_ends_at_rest(found: jid.Design) -> None:
 
 
 def test_a_seed_gives_the_same_motion_on_any_number_of_threads(found: jid.Design) -> None:
-    settings: dict[str, int] = {"evaluations": 640, "rehearsals": 60, "joints": 3}
-    again = design(search=jid.DesignSearch(**settings, threads=1))
+    again = design(search=jid.DesignSearch(**SETTINGS, threads=1))
     assert again.trajectory == found.trajectory
     assert again.to_dict() == found.to_dict()
-    other = design(search=jid.DesignSearch(**settings, seed=1))
+    other = design(search=jid.DesignSearch(**SETTINGS, seed=1))
     assert other.trajectory != found.trajectory
 
 
@@ -266,9 +266,25 @@ def test_limits_that_leave_no_motion_are_refused() -> None:
         )
 
 
+def test_a_loop_that_rattles_at_its_limits_is_told() -> None:
+    found = design(controller=jid.Pd(stiffness=1e12))
+    assert found.status == "limits exceeded"
+    assert "exceeds a limit" in found.reason
+    assert found.reason in found.summary()
+
+
 def test_a_loop_that_is_not_stable_is_refused() -> None:
+    loose = thesis_joint(limits=jid.Limits())
     with pytest.raises(jid.InputError, match="stable"):
-        design(controller=jid.Pd(stiffness=1e12))
+        jid.design_excitation(
+            loose,
+            {"position": (-1.0, 1.0), "velocity": 3.4, "torque": 1e100},
+            4.0,
+            controller=jid.Pd(stiffness=1e12),
+            sensors=SENSORS,
+            prior=around(),
+            search=QUICK,
+        )
 
 
 def test_own_terms_are_refused() -> None:
