@@ -1,10 +1,8 @@
 """Reading the project's documents, and running what stands in them."""
 
 import doctest
-import json
 import re
 import shlex
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -117,15 +115,16 @@ def _same(expected: str, printed: str, within: float) -> bool:
 
 
 def _edit(path: Path, block: str, *, whole: bool) -> None:
-    """Give keys in a joint file the values that they have in a block of the page, as its reader does."""
+    """Change a joint file as a page's reader does: tables as in the block, or only the keys that it has."""
     text = path.read_text(encoding="utf-8")
-    for table, keys in tomllib.loads(block)["session"].items():
-        begin, head, rest = text.partition(f"[session.{table}]")
+    for table, keys in re.findall(r"^\[(.+)\]\n((?:[^\[\n].*\n)*)", block, re.MULTILINE):
+        begin, head, rest = text.partition(f"[{table}]")
         assert head, table
         inside, bracket, behind = rest.partition("\n[")
-        inside = "\n" if whole else inside
-        for key, value in keys.items():
-            line = f"{key} = {json.dumps(value)}"
+        if whole:
+            inside = f"\n{keys}"
+        for line in [] if whole else keys.splitlines():
+            key = line.partition(" = ")[0]
             inside, found = re.subn(rf"^{key} = .*$", line, inside, flags=re.MULTILINE)
             if not found:
                 inside += f"{line}\n"

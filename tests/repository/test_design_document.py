@@ -22,8 +22,8 @@ def test_the_way_through_the_bench_runs_and_prints_what_is_shown(
     joint = tmp_path / "joint.toml"
     shutil.copy(ROOT / "examples" / "hardware" / "joint.toml", joint)
     enter(tmp_path, monkeypatch)
-    commands = run_console_blocks(BENCH, joint, capsys, whole=True)
-    assert commands == ["design", "edit", "run", "identify"]
+    commands = run_console_blocks(BENCH, joint, capsys, whole=True, within=0.5)
+    assert commands == ["edit", "design", "edit", "run", "identify"]
     # The session moved what was designed.
     design = jid.load_design("motion.toml")
     recording = jid.load("runs/initial.csv")
@@ -31,6 +31,13 @@ def test_the_way_through_the_bench_runs_and_prints_what_is_shown(
     assert recording.reference is not None
     wanted = design.trajectory.sample(recording.time - recording.time[0])[0]
     assert abs(recording.reference - wanted).max() < 0.02
+    # And the errors are of the size that was expected.
+    estimate = jid.identify(recording, jid.Joint.load(joint))
+    truth = Bench.load(joint).emulation
+    assert truth is not None
+    for name, true in truth.truth.items():
+        expected = design.parameters[name].worst * abs(true)
+        assert abs(estimate.parameters[name].value - true) < 3.0 * expected, name
     assert recording.duration == pytest.approx(design.duration, abs=0.01)
 
 
