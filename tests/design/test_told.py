@@ -179,5 +179,5 @@ def test_facts_may_come_from_another_joint(shared_data: Path) -> None:
     joint = joint_of(bare, told_by(bare), THESIS)
     assert joint.link == THESIS.link
     assert joint.parameters["coulomb"].value == bare.parameters["coulomb"].value
-    with pytest.raises(jid.InputError, match="another joint"):
+    with pytest.raises(jid.InputError, match="must be those of the estimate's joint"):
         joint_of(bare, told_by(bare), jid.Joint(inertia=1.0))

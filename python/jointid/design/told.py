@@ -183,9 +183,8 @@ def joint_of(estimate: Estimate, told: Told, given: Joint | None) -> Joint:
     own = estimate.joint
     if given is not None and (given.kind, given.sensor) != (own.kind, own.sensor):
         raise InputError(
-            "it is another joint than the estimate's: kind and sensor must be the same",
+            "its kind and its sensor must be those of the estimate's joint",
             argument="joint",
-            value=given,
         )
     table = dict(base.parameters)
     values = dict(zip(told.names, told.values.tolist(), strict=True))
