@@ -90,6 +90,16 @@ def test_the_options_say_law_period_and_sensors(bench: Path, tmp_path: Path) -> 
     assert (design.criterion, design.seed) == ("determinant", 7)
 
 
+def test_a_motion_that_keeps_no_limit_is_not_written(bench: Path, capsys: Printed) -> None:
+    words = ["design", "joint.toml", *QUICK, *WITHIN, "--torque", "75", "--output", "motion.toml"]
+    assert main(words) == 2
+    printed = capsys.readouterr()
+    assert printed.err.endswith("motion.toml was not written\n")
+    assert printed.err.count("\n") == 1
+    assert "limits exceeded" in printed.out.splitlines()[0]
+    assert not Path("motion.toml").exists()
+
+
 def test_json_is_what_the_file_holds(bench: Path, capsys: Printed) -> None:
     words = ["design", "joint.toml", *QUICK, *WITHIN, "--output", "motion.toml", "--json"]
     assert main(words) == 0
