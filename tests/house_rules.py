@@ -106,13 +106,7 @@ FOLDERS: dict[str, Folder] = {
     "online": Folder(may_use={*_SOUGHT, "identification/inference"}, packages={"numpy"}),
     "simulation": Folder(may_use=_DATA, packages={"numpy"}),
     "study": Folder(may_use={*_SOUGHT, "simulation"}, packages={"numpy", "pandas", "pyarrow"}),
-    "design": Folder(
-        may_use={
-            *("base", "recording", "joint", "problem", "simulation", "plot"),
-            *("identification", "identification/search"),
-        },
-        packages={"numpy", "matplotlib"},
-    ),
+    "design": Folder(may_use={*_SOUGHT, "simulation", "plot"}, packages={"numpy", "matplotlib"}),
     "plot": Folder(
         may_use={*_DATA, "simulation", "estimate", "study"},
         packages={"numpy", "matplotlib"},

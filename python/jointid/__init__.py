@@ -46,6 +46,7 @@ from jointid.design.design_search import DesignProgress, DesignSearch
 from jointid.design.designing import design_excitation
 from jointid.design.known import Known
 from jointid.design.motion_limits import MotionLimits
+from jointid.design.next_motion import motion_after
 from jointid.estimate.bootstrap import Bootstrap
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.selection import Selection
@@ -80,6 +81,10 @@ if TYPE_CHECKING:
     from jointid.commissioning import ring as commissioning
 
 __version__ = _core.__version__
+
+Estimate._design = (
+    motion_after  # a method: the rooms stand one above the other, and here all is seen
+)
 
 __all__ = [
     "Action",

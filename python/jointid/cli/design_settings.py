@@ -17,6 +17,7 @@ from jointid.joint.link import Limits
 
 if TYPE_CHECKING:
     from jointid._core import Sensors
+    from jointid.estimate.estimate import Estimate
     from jointid.hardware.bench.bench import Bench
     from jointid.hardware.session.limits import SessionLimits
     from jointid.simulation.arguments import Controller
@@ -130,6 +131,33 @@ def sensors_for(
     )
     stated = sensors_of(pairs).asdict()
     return own.replace(**{name: stated[name] for name, _ in pairs})
+
+
+def controller_after(
+    arguments: argparse.Namespace, estimated: Joint, bench: Bench | None
+) -> Controller | None:
+    """The same, which believes an estimate: what the session's own assumes was believed before."""
+    from jointid.simulation.scenario import believing
+
+    found = controller_for(arguments, estimated, bench)
+    stated = arguments.controller is not None or arguments.believe is not None
+    if found is None or stated or "coulomb" not in found.asdict():
+        return found
+    chosen = {key: found.asdict()[key] for key, _ in arguments.gain}
+    assumed: Controller = believing(found, estimated).replace(**chosen)
+    return assumed
+
+
+def sensors_after(
+    pairs: Sequence[tuple[str, str]], sensors: Sensors | None, estimate: Estimate
+) -> Sensors | None:
+    """The same sensors, with the noise that an estimate's residuals show where no option says it."""
+    from jointid.design.told import sensors_of
+
+    seen = sensors_of(estimate)
+    if sensors is None or seen is None or "torque_noise" in dict(pairs):
+        return sensors
+    return sensors.replace(torque_noise=seen.torque_noise)
 
 
 def prior_of(pairs: Sequence[tuple[str, str]]) -> dict[str, tuple[float, float]] | None:

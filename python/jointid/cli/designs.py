@@ -28,6 +28,7 @@ def add_design(commands: Any) -> None:
             "examples:\n"
             "  jointid design joint.toml --duration 12 --output motion.toml\n"
             "  jointid design joint.toml --position -60deg,60deg --velocity 3.4 --torque 160 --output motion.toml\n"
+            "  jointid design joint.toml --after estimate.json --duration 6 --output motion.toml\n"
             "  jointid design joint.toml --parameter sensor_gain --sensor torque_noise=0.5 --plot motion.png\n"
             "the joint file needs a value or bounds for each parameter; its table [session], if there is one,\n"
             'says the controller, the period, the encoder and the limits, and takes the motion as file = "motion.toml"'
@@ -37,6 +38,12 @@ def add_design(commands: Any) -> None:
     # -60deg,60deg is a value, and no option: none of ours begins with a digit.
     design._negative_number_matcher = re.compile(r"-\.?\d")
     design.add_argument("joint", type=Path, help="joint file (.toml)")
+    design.add_argument(
+        "--after",
+        type=Path,
+        metavar="ESTIMATE",
+        help="the .json file of an estimate: what to record next, given what its recordings tell",
+    )
     design.add_argument(
         "--duration", type=decimal, default=12.0, help="of the motion [s] (default 12)"
     )
@@ -148,15 +155,18 @@ def design(arguments: argparse.Namespace) -> int:
 def _designed(arguments: argparse.Namespace) -> Design:
     """The design of a command line."""
     from jointid.cli.design_settings import (
+        controller_after,
         controller_for,
         joint_and_bench,
         limits_of,
         prior_of,
+        sensors_after,
         sensors_for,
     )
     from jointid.cli.progress import MotionProgress
     from jointid.design.design_search import DesignSearch
     from jointid.design.designing import design_excitation
+    from jointid.estimate.estimate import Estimate
 
     joint, bench = joint_and_bench(arguments.joint)
     limits = limits_of(arguments, joint, bench)
@@ -173,20 +183,25 @@ def _designed(arguments: argparse.Namespace) -> Design:
     period = arguments.control_period
     if period is None:
         period = 1e-3 if bench is None else bench.options.period
+    estimate = None if arguments.after is None else Estimate.load(arguments.after)
+    sensors = sensors_for(arguments.sensor, limits, joint, bench)
     with MotionProgress(enabled=not arguments.quiet) as progress:
-        return design_excitation(
-            joint,
-            limits,
-            arguments.duration,
-            controller=controller_for(arguments, joint, bench),
-            sensors=sensors_for(arguments.sensor, limits, joint, bench),
-            parameters=arguments.parameter,
-            criterion=arguments.criterion,
-            prior=prior_of(arguments.prior),
-            search=search,
-            control_period=period,
-            callback=progress,
-        )
+        settings: dict[str, Any] = {
+            "parameters": arguments.parameter,
+            "criterion": arguments.criterion,
+            "prior": prior_of(arguments.prior),
+            "search": search,
+            "control_period": period,
+            "callback": progress,
+        }
+        if estimate is None:
+            controller = controller_for(arguments, joint, bench)
+            settings |= {"controller": controller, "sensors": sensors}
+            return design_excitation(joint, limits, arguments.duration, **settings)
+        settings["controller"] = controller_after(arguments, estimate.joint, bench)
+        settings["sensors"] = sensors_after(arguments.sensor, sensors, estimate)
+        found: Design = estimate.next_motion(limits, arguments.duration, joint=joint, **settings)
+        return found
 
 
 def _say(found: Design, arguments: argparse.Namespace) -> int:

@@ -81,6 +81,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
     },
     "design": {
         **{name: option for name, option in _SCENARIO.items() if name != "trajectory"},
+        "after": "--after",
         "position": "--position",
         "velocity": "--velocity",
         "acceleration": "--acceleration",
@@ -154,6 +155,7 @@ PLACEHOLDERS: Mapping[str, str] = {
 
 FILES: Mapping[str, str] = {
     **dict.fromkeys(("--joint", "--believe", "--simulate"), "JOINT"),
+    "--after": "ESTIMATE",
     **dict.fromkeys(
         (
             *("--output", "--save", "--report", "--table", "--plot", "--checkpoint", "--resume"),

@@ -47,7 +47,8 @@ _EXPECTED = Record(
         "unit": Text(longest=100),
         "value": Number(),
         **dict.fromkeys(("stderr", "relative", "worst"), _ERROR),
-    }
+    },
+    {"before": _ERROR},
 )
 _FILE = Record(
     {
@@ -81,7 +82,11 @@ def document_of(design: Design) -> dict[str, Any]:
         "schema": SCHEMA,
         "trajectory": motion_table(design.trajectory),
         "expected": {
-            name: {key: _plain(value) for key, value in asdict(each).items() if key in own}
+            name: {
+                key: _plain(value)
+                for key, value in asdict(each).items()
+                if key in own and value is not None
+            }
             for name, each in design.parameters.items()
         },
         **(

@@ -23,7 +23,7 @@ from jointid.design.judging import Situation
 from jointid.design.known import Known
 from jointid.design.motion_limits import MotionLimits
 from jointid.design.prior import Prior, ranges_of
-from jointid.design.rehearsal import rehearse
+from jointid.design.rehearsal import Rehearsal, rehearse
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller, positive
 from jointid.simulation.plant import control_estimates
@@ -162,11 +162,8 @@ class _Designing:
             rehearse(situation, each, self._values[0], tried, threads=settings.threads)
             for each in motions
         ]
-        scales = {n: situation.ranges.scale(n, self._values[0][n]) for n in situation.asked.wanted}
-        worst = [
-            max(each.rms()[name] / scale for name, scale in scales.items()) for each in rehearsals
-        ]
-        chosen = motions[int(np.argmin(worst))]
+        worth = [self._worth(each) for each in rehearsals]
+        chosen = motions[int(np.argmin(worth))]
         trajectory, peaks, problem = held_by_all(situation, chosen, settings.seed, settings.threads)
         rehearsal = rehearse(
             situation,
@@ -200,6 +197,15 @@ class _Designing:
             limited_by="",
         )
         return replace(made, limited_by=what_limits(made, situation, judgements[0]))
+
+    def _worth(self, rehearsal: Rehearsal) -> float:
+        """Return what the search minimises, by the errors counted in a rehearsal."""
+        situation, counted = self._situation, rehearsal.rms()
+        values = self._values[0]
+        shares = [counted[n] / situation.ranges.scale(n, values[n]) for n in situation.asked.wanted]
+        if situation.criterion == "worst":
+            return max(shares)
+        return float(np.mean(np.log(np.maximum(shares, 1e-12))))
 
     def _judge_of_the_search(self) -> _core.Excitation:
         """Return a judge with a longer control period where that says the same of some motions."""

@@ -28,28 +28,42 @@ def expected_errors(
     """Return the expected error of each wanted parameter.
 
     The errors counted in the rehearsal hold for the nominal joint. They are as much larger than those of
-    the information alone for the other joints, and beside information from other recordings.
+    the information alone for the other joints. Beside information from other recordings, this motion's counts
+    as much less as that: what is known can only make an error smaller.
     """
     asked, ranges = situation.asked, situation.ranges
     units = _units(situation)
     counted = rehearsal.rms()
     alone = _alone(judgements[0].information)
+    factors = [
+        max(1.0, counted[name] / float(alone[place])) if alone[place] > 0.0 else 1.0
+        for place, name in enumerate(asked.names)
+    ]
+    known = bool(np.any(situation.known))
+    if known:
+        stretch = np.outer(factors, factors)
+        errors = [_alone(each.information / stretch + situation.known) for each in judgements]
     found = {}
     for place, name in enumerate(asked.names):
         if name not in asked.wanted:
             continue
         scale = ranges.scale(name, values[0][name])
-        factor = max(1.0, counted[name] / alone[place]) if alone[place] > 0.0 else 1.0
-        together = factor * float(judgements[0].errors[place]) * scale
-        stderr = together if np.any(situation.known) else counted[name]
-        worst = max(float(each.errors[place]) for each in judgements[1:] or judgements) * factor
+        if known:
+            stderr = float(errors[0][place])
+            shares = [
+                float(error[place]) / ranges.scale(name, joint[name])
+                for error, joint in zip(errors, values, strict=True)
+            ]
+        else:
+            stderr = counted[name]
+            shares = [factors[place] * float(each.errors[place]) for each in judgements]
         found[name] = ExpectedError(
             name=name,
             unit=units.get(name, ""),
             value=values[0][name],
             stderr=stderr,
             relative=stderr / scale,
-            worst=max(worst, stderr / scale),
+            worst=max(stderr / scale, *(shares[1:] or shares)),
         )
     return found
 

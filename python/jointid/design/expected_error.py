@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExpectedError:
-    """How well one parameter will be identified from one recording of a motion.
+    """How well one parameter will be identified from one recording of a motion, and of what is known already.
 
     Attributes
     ----------
@@ -20,6 +20,9 @@ class ExpectedError:
         `stderr` over the parameter's size.
     worst : float
         Largest relative one over the joints that the motion was judged with.
+    before : float, optional
+        Standard error of what is known without this motion [unit]; infinite where nothing determines the
+        parameter. Default None: nothing was said to be known.
     """
 
     name: str
@@ -28,3 +31,4 @@ class ExpectedError:
     stderr: float
     relative: float
     worst: float
+    before: float | None = None

@@ -18,7 +18,6 @@ from jointid.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
-_NOT_LATE = {"torque": 0.0}
 _TOGETHER = 16  # recordings that are simulated at once
 
 
@@ -87,8 +86,7 @@ def rehearse(
             threads=threads,
         )
         for place, recording in enumerate(batch.recordings, start=begin):
-            # No signal of a simulation is late.
-            ready = prepare(recording, situation.joint, shift=_NOT_LATE, threads=1)
+            ready = prepare(recording, situation.joint, threads=1, on_time=True)
             domain = ready.domain
             best = run_search(search, ready.penalty, domain).best
             best = balanced(domain.names, domain.lower, domain.upper, best)

@@ -21,16 +21,20 @@ _REACHED = 0.98  # a limit of which so much is used is reached
 
 def head(design: Design) -> list[str]:
     """The titles of the columns."""
-    named = ["parameter", "value", "expected error", "share", "at worst"]
+    known = any(each.before is not None for each in design.parameters.values())
+    named = ["parameter", "value", *(["error before"] if known else [])]
+    named += ["expected error", "share", "at worst"]
     return [*named, *(["thesis's motion"] if design.reference else []), "unit"]
 
 
 def rows(design: Design) -> list[list[str]]:
-    """One row a parameter: value, expected error in its unit and as a share, the worst, the thesis's, unit."""
-    found = []
+    """One row a parameter: value, errors before and expected, as a share, the worst, the thesis's, unit."""
+    found, titles = [], head(design)
     for each in design.parameters.values():
-        row = [each.name, f"{each.value:.6g}", _short(each.stderr), _share(each.relative)]
-        row.append(_share(each.worst))
+        row = [each.name, f"{each.value:.6g}"]
+        if "error before" in titles:
+            row.append("–" if each.before is None else _short(each.before))
+        row += [_short(each.stderr), _share(each.relative), _share(each.worst)]
         if design.reference:
             known = design.reference.get(each.name)
             row.append("–" if known is None else _share(known))
@@ -103,9 +107,26 @@ def _remarks(design: Design) -> list[str]:
     )
     return [
         *([f"{weakest}{limited}"] if weakest else []),
+        *_improved(design),
         *(f"reaches {line}" for line in limits_held(design)),
         judged,
     ]
+
+
+def _improved(design: Design) -> list[str]:
+    """What was weakest before, and by how much this motion makes it better."""
+    shares = {
+        name: each.before * each.relative / each.stderr
+        for name, each in design.parameters.items()
+        if each.before is not None and 0.0 < each.stderr < math.inf
+    }
+    if not shares:
+        return []
+    name = max(shares, key=lambda each: shares[each])
+    if math.isinf(shares[name]):
+        return [f"weakest before: {name}, not determined"]
+    smaller = shares[name] / design.parameters[name].relative
+    return [f"weakest before: {name}, {_share(shares[name])}; {smaller:.2g} times smaller now"]
 
 
 def _share(share: float) -> str:

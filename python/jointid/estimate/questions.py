@@ -1,9 +1,9 @@
-"""Questions that an estimate answers later, with other rooms: is it true, why does it not fit."""
+"""Questions that an estimate answers later, with other rooms: is it true, why does it not fit, what to record next."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, cast
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 from numpy.typing import ArrayLike
 
@@ -22,6 +22,8 @@ class Questions:
     """The questions of an `Estimate`."""
 
     __slots__ = ()
+    # The room that designs identifies what it rehearses, and so stands above this one: the package's face joins them.
+    _design: ClassVar[Callable[..., Any]]
     if TYPE_CHECKING:
         follow_up: FollowUp | None
 
@@ -127,6 +129,45 @@ class Questions:
         ['drift']
         """
         return self._with_recordings("causes").causes(cast("Estimate", self), signals or {})
+
+    def next_motion(
+        self,
+        limits: Mapping[str, Any] | Any = None,
+        duration: float = 12.0,
+        **options: Any,
+    ) -> Any:
+        """Design what to record next: the motion that adds most to what this estimate tells.
+
+        The information of its recordings counts, joints are drawn from its intervals, and the controller
+        believes its values, unless another is given. Identify both recordings together then:
+        ``identify([first, second], joint)``.
+
+        Parameters
+        ----------
+        limits : MotionLimits or mapping, optional
+            As in `design_excitation`. Default: the joint's.
+        duration : float
+            [s]. Default 12.
+        **options
+            `joint` gives facts that the joint of the identification lacked, e.g. a link; others as in
+            `design_excitation`. By default `parameters` are the free ones, `sensors` have the noise
+            that the residuals show.
+
+        Returns
+        -------
+        Design
+            Errors are those expected of both recordings together; `before` is that of this estimate.
+
+        Raises
+        ------
+        InputError
+            As `design_excitation`; or nothing is free, or another joint.
+
+        Examples
+        --------
+        >>> design = estimate.next_motion({"position": (-1.0, 1.0), "velocity": 3.4})  # doctest: +SKIP
+        """
+        return self._design(limits, duration, **options)
 
     def _with_recordings(self, question: str) -> FollowUp:
         """Return what answers questions that need the recordings."""
