@@ -90,6 +90,16 @@ def test_the_options_say_law_period_and_sensors(bench: Path, tmp_path: Path) -> 
     assert (design.criterion, design.seed) == ("determinant", 7)
 
 
+def test_a_motion_that_keeps_no_limit_is_not_written(bench: Path, capsys: Printed) -> None:
+    words = ["design", "joint.toml", *QUICK, *WITHIN, "--torque", "75", "--output", "motion.toml"]
+    assert main(words) == 2
+    printed = capsys.readouterr()
+    assert printed.err.endswith("motion.toml was not written\n")
+    assert printed.err.count("\n") == 1
+    assert "limits exceeded" in printed.out.splitlines()[0]
+    assert not Path("motion.toml").exists()
+
+
 def test_json_is_what_the_file_holds(bench: Path, capsys: Printed) -> None:
     words = ["design", "joint.toml", *QUICK, *WITHIN, "--output", "motion.toml", "--json"]
     assert main(words) == 0
@@ -124,7 +134,22 @@ def test_a_session_with_narrower_limits_refuses_the_motion(bench: Path, capsys: 
     assert not Path("runs").exists()
 
 
-def test_ctrl_c_ends_it_at_once_and_writes_nothing(bench: Path, capsys: Printed) -> None:
+def test_a_copy_of_the_bench_is_not_parted_from_its_motion(bench: Path, capsys: Printed) -> None:
+    assert main(["design", "joint.toml", *QUICK, *WITHIN, "--output", "motion.toml"]) == 0
+    Path("elsewhere").mkdir()
+    words = ["run", "joint.toml", "--emulate", "--cycles", "1", "--quiet", "--save"]
+    capsys.readouterr()
+    assert main([*words, "elsewhere/joint.toml"]) == 2
+    said = capsys.readouterr().err
+    assert "--save elsewhere/joint.toml: its session would look for motion.toml" in said
+    assert main([*words, "known.toml"]) == 0
+    assert Bench.load("known.toml").trajectory == Bench.load(bench).trajectory
+
+
+@pytest.mark.parametrize("long", [["--evaluations", "1000000"], [*QUICK, "--rehearsals", "50000"]])
+def test_ctrl_c_ends_it_at_once_and_writes_nothing(
+    long: list[str], bench: Path, capsys: Printed
+) -> None:
     asked: list[float] = []
 
     def ask() -> None:
@@ -134,7 +159,7 @@ def test_ctrl_c_ends_it_at_once_and_writes_nothing(bench: Path, capsys: Printed)
     timer = threading.Timer(1.0, ask)
     timer.start()
     try:
-        words = ["design", "joint.toml", "--evaluations", "1000000", "--output", "motion.toml"]
+        words = ["design", "joint.toml", *WITHIN, "--output", "motion.toml", *long]
         assert main(words) == 130
     finally:
         timer.cancel()

@@ -122,7 +122,7 @@ class MotionProgress(_Bar):
         """Show how many motions were tried."""
         self._draw(
             step.number / step.total,
-            f"motion {step.number}/{step.total}, largest error {100.0 * step.best:.2g} %",
+            f"motion {step.number}/{step.total}, error {100.0 * step.best:.2g} %",
         )
 
 

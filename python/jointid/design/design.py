@@ -42,7 +42,7 @@ class Design:
     limits : MotionLimits
         What the motion keeps.
     peaks : Peaks
-        What the joints that it was judged with reach.
+        What joints drawn from what is believed reach, with noise.
     parameters : mapping of str to ExpectedError
         Of those that the motion was designed for.
     reference : mapping of str to float

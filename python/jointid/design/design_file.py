@@ -67,7 +67,7 @@ _FILE = Record(
 _SAYS = COMMENTS | {
     "trajectory": "a sum of sines: amplitude · sin(frequency · t + phase)",
     "limits": "what the motion keeps",
-    "peaks": "what the joints that it was judged with reach",
+    "peaks": "what joints drawn from what is believed reach",
     "reference": "largest relative errors in the thesis's motion, for comparison",
     "design.control_period": "s",
     "controller": "that drives the joint",
