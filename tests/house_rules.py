@@ -105,6 +105,13 @@ FOLDERS: dict[str, Folder] = {
     "online": Folder(may_use={*_SOUGHT, "identification/inference"}, packages={"numpy"}),
     "simulation": Folder(may_use=_DATA, packages={"numpy"}),
     "study": Folder(may_use={*_SOUGHT, "simulation"}, packages={"numpy", "pandas", "pyarrow"}),
+    "robot": Folder(
+        may_use={
+            *("base", "recording", "recording/wide", "joint", "problem", "estimate", "joints"),
+            "identification/inference",
+        },
+        packages={"numpy", "scipy", "pinocchio"},
+    ),
     "plot": Folder(
         may_use={*_DATA, "simulation", "estimate", "study"},
         packages={"numpy", "matplotlib"},
@@ -171,7 +178,7 @@ FOLDERS: dict[str, Folder] = {
     "": Folder(
         may_use={
             *(_SOUGHT - {"problem"}),
-            *("recording/readers", "recording/wide", "comparison", "joints", "online"),
+            *("recording/readers", "recording/wide", "comparison", "joints", "online", "robot"),
             *("simulation", "study"),
             *("plot", "exports", "hardware", "commissioning", "cli"),
         },
@@ -184,7 +191,7 @@ ASKED_FOR = {"hardware", "commissioning"}
 NAMED_ON_PURPOSE = {"hardware.bench.drive_types"}
 MEDIAN = 130  # lines of a Python file, at most
 # Slow to load, or of use to few: imported inside the function that needs it (hardware aside).
-HEAVY = {"scipy", "pandas", "pyarrow", "matplotlib", "can", "canopen", "tomlkit"}
+HEAVY = {"scipy", "pandas", "pyarrow", "matplotlib", "can", "canopen", "tomlkit", "pinocchio"}
 
 FORBIDDEN_WORDS = {
     *("data", "manager", "managers", "helper", "helpers", "util", "utils"),

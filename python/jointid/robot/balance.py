@@ -1,0 +1,171 @@
+"""The balances of all joints over their windows, as one linear system."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.robot.columns import Column, Summing, linear_columns, rotor_values
+from jointid.robot.integrals import Windows, held_between, inertia_integrals
+from jointid.robot.motion import Motion
+from jointid.robot.robot import Robot
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+_LEAST = 0.2  # of a window that has to be usable
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Rows:
+    """Windows of all joints and recordings, in the order of time; one row a joint and window.
+
+    Attributes
+    ----------
+    joint, recording : ndarray of int, shape (rows,)
+    start, stop : ndarray, shape (rows,)
+        [s]
+    duration : ndarray, shape (rows,)
+        Integrated time [s].
+    velocity : ndarray, shape (rows,)
+        The joint's mean velocity.
+    torque : ndarray, shape (rows,)
+        Integral of the measured torque [N·m·s].
+    """
+
+    joint: Whole
+    recording: Whole
+    start: Array
+    stop: Array
+    duration: Array
+    velocity: Array
+    torque: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Balance:
+    """The linear system: torque = matrix x parameters + inertia x inertial parameters + known.
+
+    Attributes
+    ----------
+    rows : Rows
+    labels : tuple of (int, str)
+        Joint and name of each parameter of `matrix`.
+    least : ndarray
+        Their lower bounds.
+    matrix : ndarray, shape (rows, parameters)
+    inertia : ndarray, shape (rows, 10 n)
+        By the inertial parameters of all links.
+    known : ndarray, shape (rows,)
+        Integral of the torque of given rotor inertias.
+    standing : ndarray, shape (n,)
+        Share of the time that each joint's balance leaves out.
+    samples : int
+    velocity_noise : ndarray, shape (n,)
+    """
+
+    rows: Rows
+    labels: tuple[tuple[int, str], ...]
+    least: Array
+    matrix: Array
+    inertia: Array
+    known: Array
+    standing: Array
+    samples: int
+    velocity_noise: Array
+
+
+def balance_of(robot: Robot, motions: Sequence[Motion], duration: float) -> Balance:
+    """Return the balances of a robot's joints over windows of some duration [s]."""
+    parts = [_part(robot, motion, number, duration) for number, motion in enumerate(motions)]
+    first = parts[0]
+    time = np.array([motion.time[-1] - motion.time[0] for motion in motions])
+    rows = Rows(
+        **{
+            name: np.concatenate([getattr(part.rows, name) for part in parts])
+            for name in Rows.__dataclass_fields__
+        }
+    )
+    return Balance(
+        rows=rows,
+        labels=first.labels,
+        least=first.least,
+        matrix=np.concatenate([part.matrix for part in parts]),
+        inertia=np.concatenate([part.inertia for part in parts]),
+        known=np.concatenate([part.known for part in parts]),
+        standing=np.average([part.standing for part in parts], axis=0, weights=time),
+        samples=sum(part.samples for part in parts),
+        velocity_noise=np.mean([part.velocity_noise for part in parts], axis=0),
+    )
+
+
+def _part(robot: Robot, motion: Motion, number: int, duration: float) -> Balance:
+    """The balances of one recording."""
+    windows = Windows.of(motion.time, duration)
+    summing = Summing.of(robot, motion, windows)
+    columns = linear_columns(robot, summing)
+    inertia = inertia_integrals(robot.tree, motion, summing.usable, windows)
+    given = {
+        motor: (float(value), rotor_values(motor, robot, summing))
+        for motor, value in enumerate(robot.rotor_inertias)
+        if value is not None
+    }
+    starts, stops = motion.time[windows.edges[:-1]], motion.time[windows.edges[1:]]
+    rows, matrices, inertias, known = [], [], [], []
+    for joint in range(robot.n):
+        used = summing(joint, summing.step)
+        kept = np.flatnonzero(used >= _LEAST * duration)
+        matrix = np.zeros((kept.size, len(columns)))
+        for place, column in enumerate(columns):
+            if joint in column.values:
+                matrix[:, place] = column.values[joint][kept]
+        spread = np.zeros((kept.size, 10 * robot.n))
+        for place, link in enumerate(inertia[joint].links):
+            own = inertia[joint].columns[kept, 10 * place : 10 * place + 10]
+            spread[:, 10 * link : 10 * link + 10] = own
+        sure = np.zeros(kept.size)
+        for value, values in given.values():
+            if joint in values:
+                sure += value * values[joint][kept]
+        travel = summing(joint, np.diff(motion.position[joint]))[kept]
+        torque = summing(joint, held_between(motion.torque[joint], summing.step))[kept]
+        rows.append(
+            Rows(
+                joint=np.full(kept.size, joint),
+                recording=np.full(kept.size, number),
+                start=starts[kept],
+                stop=stops[kept],
+                duration=used[kept],
+                velocity=travel / used[kept],
+                torque=torque,
+            )
+        )
+        matrices.append(matrix)
+        inertias.append(spread)
+        known.append(sure)
+    order = np.lexsort(
+        (np.concatenate([row.joint for row in rows]), np.concatenate([row.start for row in rows]))
+    )
+    total = float(summing.step.sum())
+    return Balance(
+        rows=Rows(
+            **{
+                name: np.concatenate([getattr(row, name) for row in rows])[order]
+                for name in Rows.__dataclass_fields__
+            }
+        ),
+        labels=tuple((column.joint, column.name) for column in columns),
+        least=np.array([column.least for column in columns]),
+        matrix=np.concatenate(matrices)[order],
+        inertia=np.concatenate(inertias)[order],
+        known=np.concatenate(known)[order],
+        standing=1.0 - summing.usable @ summing.step / total,
+        samples=motion.time.size,
+        velocity_noise=motion.velocity_noise,
+    )
+
+
+__all__ = ["Balance", "Column", "Rows", "balance_of"]

@@ -1,0 +1,109 @@
+"""What a robot's recording and fit show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.wording import number, percent, two_digits
+from jointid.robot.inertia import FREE, InertiaColumns
+from jointid.robot.result import RobotEstimate, RobotJoint
+
+_STANDING = 0.1  # of the time: worth saying
+_MOSTLY = 0.35
+_VAGUE = 0.25  # a standard error, of the value
+_POOR = 0.15  # of the torque
+_FRICTION = ("coulomb", "viscous", "motor_coulomb", "motor_viscous")
+_RANK = {"blocking": 0, "warning": 1, "info": 2}
+
+
+def findings_of(estimate: RobotEstimate, columns: InertiaColumns) -> RobotEstimate:
+    """Return the estimate with its findings, the most severe first."""
+    found = [
+        *(each for joint in estimate.joints.values() for each in _of_joint(joint, estimate)),
+        *_of_inertia(estimate, columns),
+    ]
+    return replace(estimate, findings=tuple(sorted(found, key=lambda each: _RANK[each.severity])))
+
+
+def _of_joint(joint: RobotJoint, estimate: RobotEstimate) -> Iterator[Finding]:
+    share = joint.residuals.standing
+    if share > _STANDING:
+        yield Finding(
+            code="standing",
+            severity="warning" if share > _MOSTLY else "info",
+            evidence={"left_out": Measured(share)},
+            cause=f"{joint.name} stands still, sticks or is too slow in {percent(share)} of the time, which carries no "
+            "information about friction and is left out",
+            advice=(Action("record", text="more motion"),) if share > _MOSTLY else (),
+        )
+    for name in _FRICTION:
+        p = joint.parameters.get(name)
+        if p is None or p.stderr is None or p.stderr <= _VAGUE * abs(p.value):
+            continue
+        error = "by any amount" if np.isinf(p.stderr) else f"by {two_digits(p.stderr)} {p.unit}"
+        yield Finding(
+            code="undetermined",
+            parameters=(f"{joint.name}.{name}",),
+            evidence={"stderr": Measured(p.stderr, p.unit)} if np.isfinite(p.stderr) else {},
+            cause=f"{name.replace('_', ' ')} of {joint.name} may be off {error} (standard error); its value is "
+            f"{number(p.value)} {p.unit}",
+            advice=(Action("record", text="more and faster motion of this joint"),),
+        )
+    held = [name for name in _FRICTION if name in joint.parameters]
+    held = [name for name in held if joint.parameters[name].at_bound is not None]
+    if held:
+        yield Finding(
+            code="at_bound",
+            parameters=tuple(f"{joint.name}.{name}" for name in held),
+            cause=f"{' and '.join(held)} of {joint.name} would be negative, and is held at 0: the model or a given "
+            "fact is wrong",
+        )
+    residual = joint.relative_residual
+    if residual > _POOR:
+        freed = Action("call", {"inertia": FREE}, function="identify_robot")
+        yield Finding(
+            code="poor_fit",
+            evidence={"relative_residual": Measured(residual)},
+            cause=f"the balance of {joint.name} leaves {percent(residual)} of its torque unexplained",
+            advice=() if estimate.inertia == FREE else (freed,),
+        )
+
+
+def _of_inertia(estimate: RobotEstimate, columns: InertiaColumns) -> Iterator[Finding]:
+    names = estimate.robot.names
+    if columns.dropped:
+        shown = ", ".join(names[each] for each in columns.dropped)
+        yield Finding(
+            code="merged_inertia",
+            severity="info",
+            cause=f"no motion separates the rotor inertia of {shown} from the links' inertias; the base parameters "
+            "contain it",
+        )
+    if columns.fixed:
+        shown = ", ".join(names[each] for each in columns.fixed)
+        yield Finding(
+            code="merged_inertia",
+            severity="info",
+            cause=f"no motion separates the scale of the link that {shown} moves from rotor inertias and other scales; "
+            "it stays at 1",
+            advice=(Action("call", {"rotor_inertias": ...}, function="Robot.from_urdf"),),
+        )
+    if estimate.consistent is False:
+        yield Finding(
+            code="impossible_inertia",
+            cause="a link's inertia is scaled by a negative number, which no body has: friction may be right, the "
+            "inertia is not",
+            advice=(Action("call", {"inertia": FREE}, function="identify_robot"),),
+        )
+    if estimate.inertia == FREE:
+        yield Finding(
+            code="unchecked_inertia",
+            severity="info",
+            cause="the base parameters are not checked for physical consistency: use them as a whole, for the torque "
+            "that motion needs",
+        )
