@@ -46,6 +46,16 @@ def _assert_near(found: object, published: float, share: float) -> None:
     assert abs(value - published) <= max(share * published, 2.0 * error), (found, published)
 
 
+def test_another_zero_is_found_and_named(estimate: jid.RobotEstimate) -> None:
+    """The controller's zero is the upright arm, the URDF's another pose; the URDF's inertias then fit badly."""
+    turned = next(each for each in estimate.findings if each.code == "turned_zero")
+    assert turned.evidence["before"].value > 0.2 > 0.08 > turned.evidence["after"].value
+    offsets = np.rad2deg(estimate.settings["zero_offsets"])
+    np.testing.assert_allclose(offsets, [0, -90, 90, 0, 0, 0], atol=1e-9)
+    (advice,) = turned.advice
+    assert list(advice.arguments) == ["zero_offsets"]
+
+
 def test_standing_still_is_reported_and_left_out(estimate: jid.RobotEstimate) -> None:
     standing = [each for each in estimate.findings if each.code == "standing"]
     assert len(standing) == 6

@@ -12,6 +12,8 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import number, percent, two_digits
 from jointid.robot.inertia import FREE, InertiaColumns
 from jointid.robot.result import RobotEstimate, RobotJoint
+from jointid.robot.robot import Robot
+from jointid.robot.zeros import Zeros
 
 _STANDING = 0.1  # of the time: worth saying
 _MOSTLY = 0.35
@@ -28,6 +30,31 @@ def findings_of(estimate: RobotEstimate, columns: InertiaColumns) -> RobotEstima
         *_of_inertia(estimate, columns),
     ]
     return replace(estimate, findings=tuple(sorted(found, key=lambda each: _RANK[each.severity])))
+
+
+def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
+    """The finding that the recording counts from another pose than the URDF."""
+    turned = [
+        f"{name} by {np.rad2deg(angle):+.0f} degrees"
+        for name, angle in zip(robot.names, zeros.offsets, strict=True)
+        if angle
+    ]
+    return Finding(
+        code="turned_zero",
+        severity="warning",
+        evidence={"before": Measured(zeros.before), "after": Measured(zeros.after)},
+        cause=f"the recording counts {' and '.join(turned)} from another zero than the URDF: with the URDF's inertias "
+        f"{percent(zeros.before)} of the torque stays unexplained without these offsets, and {percent(zeros.after)} with "
+        "them; they are taken into account",
+        advice=(
+            Action(
+                "call",
+                {"zero_offsets": [round(each, 6) for each in zeros.offsets]},
+                text="if that is so",
+                function="Robot.from_urdf",
+            ),
+        ),
+    )
 
 
 def _of_joint(joint: RobotJoint, estimate: RobotEstimate) -> Iterator[Finding]:

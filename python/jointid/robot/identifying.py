@@ -17,11 +17,13 @@ from jointid.joint.model import Model
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.balance import Balance, balance_of
 from jointid.robot.conclusion import concluded
+from jointid.robot.findings import turned_zeros
 from jointid.robot.inertia import MODES, inertia_columns
 from jointid.robot.motion import Motion
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
 from jointid.robot.solving import covariance_of, solved, time_segments
+from jointid.robot.zeros import zeros_of
 
 Array = NDArray[np.float64]
 
@@ -96,6 +98,11 @@ def identify_robot(
     slowest = _least_speeds(min_speed, robot)
     motions = [Motion.of(run, robot, slowest, mask_standstill) for run in runs]
     duration = _duration(windows, motions)
+    zeros = None if robot.zero_offsets is not None else zeros_of(robot, motions, duration)
+    if zeros is not None and zeros.found:
+        robot = replace(robot, zero_offsets=zeros.offsets)
+        shift = np.array(zeros.offsets)[:, None]
+        motions = [replace(each, position=each.position + shift) for each in motions]
     balance = balance_of(robot, motions, duration)
     if not balance.rows.torque.size:
         raise InputError("no joint moves", argument="recordings", value=runs[0].name)
@@ -104,12 +111,21 @@ def identify_robot(
         "model": str(chosen.name),
         "inertia": inertia,
         "window_duration": duration,
+        "zero_offsets": list(robot.zero_offsets or (0.0,) * robot.n),
         "min_speed": [float(each) for each in slowest],
         "mask_standstill": mask_standstill,
         "version": _core.__version__,
         "recordings": [run.name for run in runs],
     }
-    return replace(estimate, settings=settings, seconds=time.perf_counter() - started)
+    findings = estimate.findings
+    if zeros is not None and zeros.found:
+        findings = (turned_zeros(zeros, robot), *findings)
+    return replace(
+        estimate,
+        findings=findings,
+        settings=settings,
+        seconds=time.perf_counter() - started,
+    )
 
 
 def _solved(robot: Robot, balance: Balance, mode: str, duration: float) -> RobotEstimate:

@@ -32,7 +32,7 @@ class Motion:
     velocity_noise : ndarray, shape (n,)
         Usual standard deviation of each velocity.
     motor_position, motor_velocity : ndarray, shape (n, samples)
-        Of the motors, divided by their gear ratios; without couplings those of the joints.
+        Of the motors, divided by their gear ratios, counted from their own zero.
     moving : ndarray of bool, shape (n, samples - 1)
         Intervals between samples in which a joint moves, and the recording has no gap.
     motor_moving : ndarray of bool, shape (n, samples - 1)
@@ -78,6 +78,8 @@ class Motion:
             noise = np.sqrt((back * back) @ (noise * noise))
         else:
             own = (coupling @ position, coupling @ velocity)
+        if robot.zero_offsets is not None:
+            position = position + np.array(robot.zero_offsets)[:, None]
         masked = _Mask(
             time=recording.time,
             gaps=[gap.index for gap in found[0].gaps],

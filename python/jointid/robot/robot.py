@@ -39,6 +39,9 @@ class Robot:
         motor turns with its own joint alone.
     rotor_inertias : tuple of (float or None)
         Of each motor with its gear, at the joint [kg·m² or kg]; None: identified.
+    zero_offsets : tuple of float or None
+        Positions of the joints in the URDF's terms where the recording says 0 [rad or m]; None: looked for among
+        multiples of 90 degrees where the URDF's inertias do not fit.
     name : str
         The URDF's.
     """
@@ -48,6 +51,7 @@ class Robot:
     gear_ratios: tuple[float, ...] | None
     couplings: Array
     rotor_inertias: tuple[float | None, ...]
+    zero_offsets: tuple[float, ...] | None = None
     name: str = ""
 
     @classmethod
@@ -59,6 +63,7 @@ class Robot:
         gear_ratios: Sequence[float] | None = None,
         couplings: npt.ArrayLike | None = None,
         rotor_inertias: Sequence[float | None] | None = None,
+        zero_offsets: Sequence[float] | None = None,
         gravity: Sequence[float] = _GRAVITY,
     ) -> Self:
         """Return the robot that a URDF describes.
@@ -79,6 +84,10 @@ class Robot:
         rotor_inertias : sequence of float or None, optional
             Of each motor with its gear, at the joint: times the square of the gear ratio [kg·m² or kg]; None is
             identified. Default: all are identified.
+        zero_offsets : sequence of float, optional
+            Positions of the joints in the URDF's terms where the recording says 0 [rad or m]; a controller often counts
+            from another pose. Default: 0, or multiples of 90 degrees where `identify_robot` finds that they make the
+            URDF's inertias fit.
         gravity : sequence of float
             In the base's frame [m/s²]. Default (0, 0, -9.81): the base stands upright.
 
@@ -108,6 +117,9 @@ class Robot:
             gear_ratios=ratios,
             couplings=_couplings(couplings, n),
             rotor_inertias=_rotors(rotor_inertias, n),
+            zero_offsets=None
+            if zero_offsets is None
+            else tuple(_numbers("zero_offsets", zero_offsets, n)),
             name=file.stem,
         )
 
