@@ -117,7 +117,7 @@ FOLDERS: dict[str, Folder] = {
         packages={"numpy", "matplotlib"},
     ),
     "report": Folder(
-        may_use={"base", "estimate", "joints", "plot", "identification/warnings"},
+        may_use={"base", "estimate", "joints", "robot", "plot", "identification/warnings"},
         packages={"numpy", "matplotlib"},
     ),
     "exports": Folder(
@@ -163,6 +163,7 @@ FOLDERS: dict[str, Folder] = {
                 "recording/readers",
                 "comparison",
                 "joints",
+                "robot",
                 "simulation",
                 "study",
                 "plot",

@@ -26,6 +26,7 @@ _RANK = {"blocking": 0, "warning": 1, "info": 2}
 def findings_of(estimate: RobotEstimate, columns: InertiaColumns) -> RobotEstimate:
     """Return the estimate with its findings, the most severe first."""
     found = [
+        *_standing(estimate),
         *(each for joint in estimate.joints.values() for each in _of_joint(joint, estimate)),
         *_of_inertia(estimate, columns),
     ]
@@ -44,8 +45,8 @@ def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
         severity="warning",
         evidence={"before": Measured(zeros.before), "after": Measured(zeros.after)},
         cause=f"the recording counts {' and '.join(turned)} from another zero than the URDF: with the URDF's inertias "
-        f"{percent(zeros.before)} of the torque stays unexplained without these offsets, and {percent(zeros.after)} with "
-        "them; they are taken into account",
+        f"{percent(zeros.before)} of the torque stays unexplained without these offsets, and {percent(zeros.after)} "
+        "with them; they are taken into account",
         advice=(
             Action(
                 "call",
@@ -57,17 +58,31 @@ def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
     )
 
 
-def _of_joint(joint: RobotJoint, estimate: RobotEstimate) -> Iterator[Finding]:
-    share = joint.residuals.standing
-    if share > _STANDING:
+def _standing(estimate: RobotEstimate) -> Iterator[Finding]:
+    """Joints that hardly move one by one, and in one sentence those that stand still now and then."""
+    shares = {name: joint.residuals.standing for name, joint in estimate.joints.items()}
+    for name, share in shares.items():
+        if share > _MOSTLY:
+            yield Finding(
+                code="standing",
+                evidence={"left_out": Measured(share)},
+                cause=f"{name} stands still, sticks or is too slow in {percent(share)} of the time, which carries no "
+                "information about friction and is left out",
+                advice=(Action("record", text="more motion"),),
+            )
+    some = {name: share for name, share in shares.items() if _STANDING < share <= _MOSTLY}
+    if some:
+        shown = ", ".join(f"{name} {percent(share)}" for name, share in some.items())
         yield Finding(
             code="standing",
-            severity="warning" if share > _MOSTLY else "info",
-            evidence={"left_out": Measured(share)},
-            cause=f"{joint.name} stands still, sticks or is too slow in {percent(share)} of the time, which carries no "
-            "information about friction and is left out",
-            advice=(Action("record", text="more motion"),) if share > _MOSTLY else (),
+            severity="info",
+            evidence={name: Measured(share) for name, share in some.items()},
+            cause=f"joints stand still, stick or are too slow, which carries no information about friction and is left "
+            f"out: {shown} of the time",
         )
+
+
+def _of_joint(joint: RobotJoint, estimate: RobotEstimate) -> Iterator[Finding]:
     for name in _FRICTION:
         p = joint.parameters.get(name)
         if p is None or p.stderr is None or p.stderr <= _VAGUE * abs(p.value):

@@ -115,7 +115,7 @@ def _signals(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, boo
     columns = robot.columns_of(recording)
     position = np.ascontiguousarray(recording.position[:, columns].T)
     torque, motor_torque = recording.torque, recording.motor_torque
-    at_motor = recording.side == MOTOR
+    at_motor = (robot.side or recording.side) == MOTOR
     if at_motor and torque is not None:
         torque, motor_torque = None, torque
     ratios = _ratios(recording, robot, columns) if at_motor or torque is None else np.ones(robot.n)
