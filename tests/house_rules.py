@@ -108,7 +108,7 @@ FOLDERS: dict[str, Folder] = {
     "robot": Folder(
         may_use={
             *("base", "recording", "recording/wide", "joint", "problem", "estimate", "joints"),
-            "identification/inference",
+            *("identification/inference", "identification/search"),
         },
         packages={"numpy", "scipy", "pinocchio"},
     ),

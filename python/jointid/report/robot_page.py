@@ -111,6 +111,9 @@ def _friction(estimate: RobotEstimate, joint: RobotJoint, number: int, axes: Axe
         speeds = sign * np.linspace(1e-3, 1.0, 100) * peak
         p = joint.parameters
         values = sign * p["coulomb"].value + p["viscous"].value * speeds
+        if "static" in p:
+            decay = np.exp(-p["stribeck"].value * speeds**2)
+            values = values + sign * p["static"].value * decay
         axes.plot(speeds, values, color="C0", label="identified" if sign > 0.0 else None)
     slides = estimate.robot.tree.prismatic[number]
     axes.set_xlabel(f"velocity [{'m/s' if slides else 'rad/s'}]")

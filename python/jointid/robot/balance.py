@@ -25,7 +25,8 @@ class Rows:
 
     Attributes
     ----------
-    joint, recording : ndarray of int, shape (rows,)
+    joint, recording, window : ndarray of int, shape (rows,)
+        Windows are counted in each recording.
     start, stop : ndarray, shape (rows,)
         [s]
     duration : ndarray, shape (rows,)
@@ -38,6 +39,7 @@ class Rows:
 
     joint: Whole
     recording: Whole
+    window: Whole
     start: Array
     stop: Array
     duration: Array
@@ -65,6 +67,8 @@ class Balance:
         Share of the time that each joint's balance leaves out.
     samples : int
     velocity_noise : ndarray, shape (n,)
+    summings : tuple of Summing
+        One a recording: for columns that are not linear.
     """
 
     rows: Rows
@@ -76,6 +80,7 @@ class Balance:
     standing: Array
     samples: int
     velocity_noise: Array
+    summings: tuple[Summing, ...]
 
 
 def balance_of(robot: Robot, motions: Sequence[Motion], duration: float) -> Balance:
@@ -99,6 +104,7 @@ def balance_of(robot: Robot, motions: Sequence[Motion], duration: float) -> Bala
         standing=np.average([part.standing for part in parts], axis=0, weights=time),
         samples=sum(part.samples for part in parts),
         velocity_noise=np.mean([part.velocity_noise for part in parts], axis=0),
+        summings=tuple(summing for part in parts for summing in part.summings),
     )
 
 
@@ -136,6 +142,7 @@ def _part(robot: Robot, motion: Motion, number: int, duration: float) -> Balance
             Rows(
                 joint=np.full(kept.size, joint),
                 recording=np.full(kept.size, number),
+                window=kept,
                 start=starts[kept],
                 stop=stops[kept],
                 duration=used[kept],
@@ -165,6 +172,7 @@ def _part(robot: Robot, motion: Motion, number: int, duration: float) -> Balance
         standing=1.0 - summing.usable @ summing.step / total,
         samples=motion.time.size,
         velocity_noise=motion.velocity_noise,
+        summings=(summing,),
     )
 
 

@@ -17,15 +17,29 @@ Flags = NDArray[np.bool_]
 
 MEANINGS = {
     "coulomb": "Coulomb friction",
-    "viscous": "viscous friction: torque at the joint per speed of the joint, the other joints at rest",
     "static": "static friction above Coulomb friction",
     "stribeck": "decay of the static friction with the squared speed",
-    "torque_offset": "constant torque",
-    "rotor_inertia": "inertia of the motor and its gear, at the joint",
+    "viscous": "viscous friction: torque at the joint per speed of the joint, the other joints at rest",
     "motor_coulomb": "Coulomb friction of the motor, on its own speed",
     "motor_viscous": "viscous friction of the motor, on its own speed",
+    "torque_offset": "constant torque",
+    "rotor_inertia": "inertia of the motor and its gear, at the joint",
     "inertia_scale": "factor on all inertial parameters of the link that the joint moves",
 }
+"""Parameters of a joint, in the order of tables."""
+_TORQUE, _DAMPING = ("N·m", "N"), ("N·m·s/rad", "N·s/m")
+UNITS = {
+    "coulomb": _TORQUE,
+    "static": _TORQUE,
+    "stribeck": ("s²/rad²", "s²/m²"),
+    "viscous": _DAMPING,
+    "motor_coulomb": _TORQUE,
+    "motor_viscous": _DAMPING,
+    "torque_offset": _TORQUE,
+    "rotor_inertia": ("kg·m²", "kg"),
+    "inertia_scale": ("", ""),
+}
+"""Of a hinge, and of a slide."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

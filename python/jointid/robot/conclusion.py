@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,126 +10,100 @@ from jointid.estimate.student import quantile
 from jointid.identification.inference.covariance import Covariance
 from jointid.problem.window_table import WindowTable
 from jointid.robot.balance import Balance
-from jointid.robot.columns import MEANINGS
+from jointid.robot.columns import MEANINGS, UNITS
 from jointid.robot.findings import findings_of
-from jointid.robot.inertia import FREE, SCALED, InertiaColumns
+from jointid.robot.fit import Fit
+from jointid.robot.inertia import FREE
 from jointid.robot.result import RobotEstimate, RobotJoint
 from jointid.robot.robot import Robot
-from jointid.robot.solving import Solution
 
 Array = NDArray[np.float64]
 
-_UNITS = {
-    "coulomb": ("N·m", "N"),
-    "viscous": ("N·m·s/rad", "N·s/m"),
-    "torque_offset": ("N·m", "N"),
-    "rotor_inertia": ("kg·m²", "kg"),
-    "motor_coulomb": ("N·m", "N"),
-    "motor_viscous": ("N·m·s/rad", "N·s/m"),
-}
-
 
 def concluded(
-    robot: Robot,
-    balance: Balance,
-    columns: InertiaColumns,
-    mode: str,
-    labels: Sequence[tuple[int, str]],
-    matrix: Array,
-    solution: Solution,
-    covariance: Covariance,
-    duration: float,
+    robot: Robot, balance: Balance, mode: str, fit: Fit, covariance: Covariance, duration: float
 ) -> RobotEstimate:
     """Return the estimate; `settings` and `seconds` are still to be set."""
-    parameters = _Parameters(solution, covariance, matrix)
+    places = np.cumsum(~fit.at_bound) - 1
     of_joints: list[dict[str, ParameterEstimate]] = [{} for _ in robot.names]
-    free = []
-    for place, (joint, name) in enumerate(labels):
-        unit = _UNITS[name][robot.tree.prismatic[joint]]
-        least = 0.0 if name != "torque_offset" else -np.inf
-        of_joints[joint][name] = parameters.estimate(place, name, MEANINGS[name], unit, least)
-        free.append(f"{robot.names[joint]}.{name}")
     base: dict[str, ParameterEstimate] = {}
-    for number, (name, unit) in enumerate(zip(columns.names, columns.units, strict=True)):
-        place, joint = len(labels) + number, columns.joints[number]
-        if mode == SCALED:
-            shown = "inertia_scale"
-            of_joints[joint][shown] = parameters.estimate(
-                place, shown, MEANINGS[shown], unit, -np.inf
+    free: list[str] = []
+    for number, (joint, name) in enumerate(fit.labels):
+        place = None if fit.at_bound[number] else int(places[number])
+        if joint is None:
+            p = _parameter(
+                name, "base parameter", fit.units[number], fit, number, place, covariance
             )
-            free.append(f"{robot.names[joint]}.{shown}")
+            base[name] = p
         else:
-            base[name] = parameters.estimate(place, name, "base parameter", unit, -np.inf)
-            free.append(name)
+            unit = UNITS[name][robot.tree.prismatic[joint]]
+            p = _parameter(name, MEANINGS[name], unit, fit, number, place, covariance)
+            of_joints[joint][name] = p
+        if place is not None:
+            free.append(name if joint is None else f"{robot.names[joint]}.{name}")
     joints = {
         name: RobotJoint(
             name=name,
-            parameters=of_joints[k],
-            residuals=_residuals(k, balance, solution, duration),
-            windows=_table(k, balance, labels, matrix, solution),
+            parameters={key: of_joints[k][key] for key in MEANINGS if key in of_joints[k]},
+            residuals=_residuals(k, balance, fit, duration),
+            windows=_table(k, balance, fit),
         )
         for k, name in enumerate(robot.names)
     }
-    found = columns.given + columns.directions @ solution.values[len(labels) :]
     measured = float(np.linalg.norm(balance.rows.torque))
     estimate = RobotEstimate(
         joints=joints,
         inertia=mode,
         base_parameters=base,
-        inertial=found.reshape(robot.n, 10),
+        inertial=fit.inertial.reshape(robot.n, 10),
         consistent=_consistent(mode, joints),
-        relative_residual=float(np.linalg.norm(solution.residual)) / (measured or 1.0),
-        free=tuple(each for each, held in zip(free, solution.at_bound, strict=True) if not held),
+        relative_residual=float(np.linalg.norm(fit.residual)) / (measured or 1.0),
+        free=tuple(free),
         covariance=covariance.matrix,
         condition=covariance.condition,
         findings=(),
         robot=robot,
         settings={},
     )
-    return findings_of(estimate, columns)
+    return findings_of(estimate, fit.columns)
 
 
-class _Parameters:
-    """Values and their errors, by the place of their columns."""
-
-    def __init__(self, solution: Solution, covariance: Covariance, matrix: Array) -> None:
-        self._solution, self._covariance = solution, covariance
-        self._places = np.cumsum(~solution.at_bound) - 1
-        self._present = np.linalg.norm(matrix, axis=0) > 0.0
-
-    def estimate(
-        self, place: int, name: str, meaning: str, unit: str, least: float
-    ) -> ParameterEstimate:
-        held = bool(self._solution.at_bound[place])
-        stderr, interval = None, None
-        value = float(self._solution.values[place])
-        if not held:
-            number = int(self._places[place])
-            stderr = float(self._covariance.stderr[number])
-            stderr = stderr if self._present[place] else float("inf")
-            half = quantile(0.975, float(self._covariance.freedom[number])) * stderr
-            interval = (value - half, value + half)
-        return ParameterEstimate(
-            name=name,
-            meaning=meaning,
-            unit=unit,
-            value=value,
-            stderr=stderr,
-            interval=interval,
-            min=least,
-            max=float("inf"),
-            vary=True,
-            at_bound="min" if held else None,
-            shift_halved=None,
-            shift_doubled=None,
-        )
+def _parameter(
+    name: str,
+    meaning: str,
+    unit: str,
+    fit: Fit,
+    number: int,
+    place: int | None,
+    covariance: Covariance,
+) -> ParameterEstimate:
+    value = float(fit.values[number])
+    stderr, interval = None, None
+    if place is not None:
+        present = bool(np.any(fit.jacobian[:, number]))
+        stderr = float(covariance.stderr[place]) if present else float("inf")
+        half = quantile(0.975, float(covariance.freedom[place])) * stderr
+        interval = (value - half, value + half)
+    low, high = fit.bounds[number]
+    return ParameterEstimate(
+        name=name,
+        meaning=meaning,
+        unit=unit,
+        value=value,
+        stderr=stderr,
+        interval=interval,
+        min=low,
+        max=high,
+        vary=True,
+        at_bound=None if place is not None else "max" if value >= high else "min",
+        shift_halved=None,
+        shift_doubled=None,
+    )
 
 
-def _residuals(
-    joint: int, balance: Balance, solution: Solution, duration: float
-) -> ResidualStatistics:
+def _residuals(joint: int, balance: Balance, fit: Fit, duration: float) -> ResidualStatistics:
     mine = balance.rows.joint == joint
-    residual, measured = solution.residual[mine], balance.rows.torque[mine]
+    residual, measured = fit.residual[mine], balance.rows.torque[mine]
     used, velocity = balance.rows.duration[mine], balance.rows.velocity[mine]
     power = float(residual @ residual)
     centred = measured - measured.mean() if measured.size else measured
@@ -150,21 +122,15 @@ def _residuals(
     )
 
 
-def _table(
-    joint: int,
-    balance: Balance,
-    labels: Sequence[tuple[int, str]],
-    matrix: Array,
-    solution: Solution,
-) -> WindowTable:
+def _table(joint: int, balance: Balance, fit: Fit) -> WindowTable:
     mine = balance.rows.joint == joint
     friction = [
         place
-        for place, (owner, name) in enumerate(labels)
-        if owner == joint and name in ("coulomb", "viscous")
+        for place, label in enumerate(fit.labels)
+        if label in ((joint, "coulomb"), (joint, "viscous"), (joint, "static"))
     ]
-    own = matrix[np.ix_(mine, friction)] @ solution.values[friction]
-    residual = solution.residual[mine]
+    own = fit.jacobian[np.ix_(mine, friction)] @ fit.values[friction]
+    residual = fit.residual[mine]
     rows = balance.rows
     return WindowTable(
         recording=rows.recording[mine],

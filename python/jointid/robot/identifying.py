@@ -17,16 +17,19 @@ from jointid.joint.model import Model
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.balance import Balance, balance_of
 from jointid.robot.conclusion import concluded
+from jointid.robot.decays import Decays, solved_with_decays
 from jointid.robot.findings import turned_zeros
+from jointid.robot.fit import Fit
 from jointid.robot.inertia import MODES, inertia_columns
 from jointid.robot.motion import Motion
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
-from jointid.robot.solving import covariance_of, solved, time_segments
+from jointid.robot.solving import covariance_of, time_segments
 from jointid.robot.zeros import zeros_of
 
 Array = NDArray[np.float64]
 
+_MODELS = ("coulomb_viscous", "stribeck")
 _LONGEST = 0.1  # [s]: longer windows blur reversals and leave few
 
 
@@ -56,7 +59,7 @@ def identify_robot(
         Whether the links' inertias are those of the URDF, scaled link by link, or identified: as base parameters,
         the combinations that motion shows. Default ``"urdf"``.
     model : Model, str or mapping, optional
-        Friction of every joint. Default, and for now the only one: "coulomb_viscous".
+        Friction of every joint: "coulomb_viscous" (default) or "stribeck".
     windows : float, optional
         Duration of the windows [s]. Default: what the velocities' noise asks for, at most 0.1 s.
     min_speed : float, sequence or mapping of float, optional
@@ -106,7 +109,8 @@ def identify_robot(
     balance = balance_of(robot, motions, duration)
     if not balance.rows.torque.size:
         raise InputError("no joint moves", argument="recordings", value=runs[0].name)
-    estimate = _solved(robot, balance, inertia, duration)
+    stribeck = tuple(range(robot.n)) if chosen.name == "stribeck" else ()
+    estimate = _solved(robot, balance, inertia, duration, stribeck)
     settings = {
         "model": str(chosen.name),
         "inertia": inertia,
@@ -128,7 +132,9 @@ def identify_robot(
     )
 
 
-def _solved(robot: Robot, balance: Balance, mode: str, duration: float) -> RobotEstimate:
+def _solved(
+    robot: Robot, balance: Balance, mode: str, duration: float, stribeck: tuple[int, ...]
+) -> RobotEstimate:
     columns = inertia_columns(robot, mode)
     kept = [
         place
@@ -137,13 +143,17 @@ def _solved(robot: Robot, balance: Balance, mode: str, duration: float) -> Robot
     ]
     matrix = np.hstack([balance.matrix[:, kept], columns.columns(balance)])
     least = np.append(balance.least[kept], np.full(len(columns.names), -np.inf))
-    wanted = balance.rows.torque - columns.known(balance)
-    joint = balance.rows.joint
-    solution = solved(matrix, wanted, joint, robot.n, least)
-    segments = time_segments(balance.rows.start, balance.rows.stop, balance.rows.recording)
-    covariance = covariance_of(matrix, solution, joint, segments)
+    rows = balance.rows
+    wanted = rows.torque - columns.known(balance)
+    decays = Decays(balance=balance, joints=stribeck)
+    found = solved_with_decays(decays, matrix, wanted, least)
     labels = [balance.labels[place] for place in kept]
-    return concluded(robot, balance, columns, mode, labels, matrix, solution, covariance, duration)
+    ranges = [decays.bounds(joint) for joint in stribeck]
+    fit = Fit.of(found, labels, columns, matrix, stribeck, ranges)
+    segments = time_segments(rows.start, rows.stop, rows.recording)
+    jacobian = fit.jacobian[:, ~fit.at_bound]
+    covariance = covariance_of(jacobian, found.solution, rows.joint, segments)
+    return concluded(robot, balance, mode, fit, covariance, duration)
 
 
 def _runs(recordings: object) -> list[RobotRecording]:
@@ -163,13 +173,13 @@ def _runs(recordings: object) -> list[RobotRecording]:
 def _model(model: object) -> Model:
     chosen = Model.of(model)
     stated = {name for name in chosen.stated() if name != "name"}
-    if chosen.name not in (None, "auto", "coulomb_viscous") or stated:
+    if chosen.name not in (None, *_MODELS) or stated:
         raise InputError(
-            "of a whole robot's friction, coulomb_viscous is identified",
+            f"of a whole robot's friction, {' or '.join(_MODELS)} is identified",
             argument="model",
             value=str(chosen),
         )
-    return chosen.replace(name="coulomb_viscous")
+    return chosen if chosen.name else chosen.replace(name=_MODELS[0])
 
 
 def _least_speeds(

@@ -43,6 +43,8 @@ class InertiaColumns:
         Motors whose inertia no motion separates from the links'.
     fixed : tuple of int
         Links whose scale no motion separates from the rotors' inertias or other scales; they stay at 1.
+    scales : bool
+        Whether the columns are scales.
     """
 
     names: tuple[str, ...]
@@ -53,6 +55,7 @@ class InertiaColumns:
     start: Array
     dropped: tuple[int, ...] = ()
     fixed: tuple[int, ...] = ()
+    scales: bool = False
 
     def columns(self, balance: Balance) -> Array:
         """Return the columns' integrals."""
@@ -88,6 +91,7 @@ def inertia_columns(robot: Robot, mode: str) -> InertiaColumns:
             given=directions[:, others].sum(axis=1),
             start=np.ones(len(scaled)),
             fixed=tuple(others),
+            scales=True,
         )
     kept, combined = independent(np.hstack([links, rotors[:, free]]))
     base = [place for place in kept if place < every.size]

@@ -49,14 +49,14 @@ def solved(matrix: Array, wanted: Array, joint: Whole, joints: int, least: Array
     least : ndarray, shape (parameters,)
         Lower bounds.
     """
-    scatter = _scatter(wanted, joint, joints)
+    scatter = scatter_of(wanted, joint, joints)
     values, at_bound = np.zeros(len(least)), np.zeros(len(least), dtype=bool)
     residual = wanted
     for _ in range(_ROUNDS):
         weight = 1.0 / scatter[joint]
         values, at_bound = bounded(matrix * weight[:, None], wanted * weight, least)
         residual = wanted - matrix @ values
-        before, scatter = scatter, _scatter(residual, joint, joints)
+        before, scatter = scatter, scatter_of(residual, joint, joints)
         if np.all(np.abs(scatter - before) <= _SETTLED * before):
             break
     return Solution(values=values, at_bound=at_bound, residual=residual, scatter=scatter)
@@ -89,13 +89,12 @@ def bounded(matrix: Array, wanted: Array, least: Array) -> tuple[Array, NDArray[
 
 
 def covariance_of(
-    matrix: Array, solution: Solution, joint: Whole, segments: Segments
+    jacobian: Array, solution: Solution, joint: Whole, segments: Segments
 ) -> Covariance:
-    """Return the covariance of the values that are free, clustered over segments of motion."""
+    """Return the covariance of the values whose derivatives these are, clustered over segments of motion."""
     weight = 1.0 / solution.scatter[joint]
-    free = np.flatnonzero(~solution.at_bound)
     return parameter_covariance(
-        matrix[:, free] * weight[:, None], solution.residual * weight, None, segments=segments
+        jacobian * weight[:, None], solution.residual * weight, None, segments=segments
     )
 
 
@@ -120,7 +119,7 @@ def time_segments(start: Array, stop: Array, recording: Whole) -> Segments:
     return Segments(length=length, cuts=(np.unique(cuts), np.unique(between)))
 
 
-def _scatter(residual: Array, joint: Whole, joints: int) -> Array:
+def scatter_of(residual: Array, joint: Whole, joints: int) -> Array:
     """Root mean square by joint; of nothing 1."""
     power = np.bincount(joint, residual * residual, joints)
     count = np.bincount(joint, minlength=joints)
