@@ -14,6 +14,7 @@ from jointid.robot.columns import MEANINGS, UNITS
 from jointid.robot.findings import findings_of
 from jointid.robot.fit import Fit
 from jointid.robot.inertia import FREE
+from jointid.robot.models import PLAIN, STRIBECK
 from jointid.robot.result import RobotEstimate, RobotJoint
 from jointid.robot.robot import Robot
 
@@ -44,6 +45,7 @@ def concluded(
     joints = {
         name: RobotJoint(
             name=name,
+            model=STRIBECK if "static" in of_joints[k] else PLAIN,
             parameters={key: of_joints[k][key] for key in MEANINGS if key in of_joints[k]},
             residuals=_residuals(k, balance, fit, duration),
             windows=_table(k, balance, fit),

@@ -34,6 +34,7 @@ def document_of(estimate: RobotEstimate) -> dict[str, Any]:
         "condition": _finite(estimate.condition),
         "joints": {
             name: {
+                "model": joint.model,
                 "parameters": {key: _parameter(p) for key, p in joint.parameters.items()},
                 "residuals": _finite(asdict(joint.residuals)),
             }

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +15,13 @@ from jointid.base.errors import InputError
 from jointid.joint.model import Model
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.balance import Balance, balance_of
+from jointid.robot.choice import with_static
 from jointid.robot.conclusion import concluded
 from jointid.robot.decays import Decays, solved_with_decays
 from jointid.robot.findings import turned_zeros
 from jointid.robot.fit import Fit
 from jointid.robot.inertia import MODES, inertia_columns
+from jointid.robot.models import AUTO, PLAIN, friction_models
 from jointid.robot.motion import Motion
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
@@ -29,7 +30,6 @@ from jointid.robot.zeros import zeros_of
 
 Array = NDArray[np.float64]
 
-_MODELS = ("coulomb_viscous", "stribeck")
 _LONGEST = 0.1  # [s]: longer windows blur reversals and leave few
 
 
@@ -38,7 +38,7 @@ def identify_robot(
     robot: Robot,
     *,
     inertia: str = "urdf",
-    model: Model | str | Mapping[str, Any] | None = None,
+    model: Model | str | Mapping[str, Model | str] | None = None,
     windows: float | None = None,
     min_speed: float | Sequence[float] | Mapping[str, float] | None = None,
     mask_standstill: bool = True,
@@ -59,7 +59,8 @@ def identify_robot(
         Whether the links' inertias are those of the URDF, scaled link by link, or identified: as base parameters,
         the combinations that motion shows. Default ``"urdf"``.
     model : Model, str or mapping, optional
-        Friction of every joint: "coulomb_viscous" (default) or "stribeck".
+        Friction of the joints: "coulomb_viscous", "stribeck", or "auto" (default): each joint has static friction if
+        that predicts its held-out torque better. A mapping from joints' names to models says it for some of them.
     windows : float, optional
         Duration of the windows [s]. Default: what the velocities' noise asks for, at most 0.1 s.
     min_speed : float, sequence or mapping of float, optional
@@ -97,7 +98,7 @@ def identify_robot(
         raise InputError(
             f"one of {', '.join(MODES)} is expected", argument="inertia", value=inertia
         )
-    chosen = _model(model)
+    models = friction_models(model, robot)
     slowest = _least_speeds(min_speed, robot)
     motions = [Motion.of(run, robot, slowest, mask_standstill) for run in runs]
     duration = _duration(windows, motions)
@@ -109,10 +110,9 @@ def identify_robot(
     balance = balance_of(robot, motions, duration)
     if not balance.rows.torque.size:
         raise InputError("no joint moves", argument="recordings", value=runs[0].name)
-    stribeck = tuple(range(robot.n)) if chosen.name == "stribeck" else ()
-    estimate = _solved(robot, balance, inertia, duration, stribeck)
+    estimate = _solved(robot, balance, inertia, duration, models)
     settings = {
-        "model": str(chosen.name),
+        "model": {name: joint.model for name, joint in estimate.joints.items()},
         "inertia": inertia,
         "window_duration": duration,
         "zero_offsets": list(robot.zero_offsets or (0.0,) * robot.n),
@@ -133,7 +133,7 @@ def identify_robot(
 
 
 def _solved(
-    robot: Robot, balance: Balance, mode: str, duration: float, stribeck: tuple[int, ...]
+    robot: Robot, balance: Balance, mode: str, duration: float, models: Sequence[str]
 ) -> RobotEstimate:
     columns = inertia_columns(robot, mode)
     kept = [
@@ -145,8 +145,17 @@ def _solved(
     least = np.append(balance.least[kept], np.full(len(columns.names), -np.inf))
     rows = balance.rows
     wanted = rows.torque - columns.known(balance)
+    stribeck = tuple(joint for joint in range(robot.n) if models[joint] != PLAIN)
     decays = Decays(balance=balance, joints=stribeck)
     found = solved_with_decays(decays, matrix, wanted, least)
+    asked = tuple(joint for joint in stribeck if models[joint] == AUTO)
+    if asked:
+        needed = with_static(found, matrix, wanted, rows, stribeck)
+        kept_joints = tuple(joint for joint in stribeck if joint not in asked or joint in needed)
+        if kept_joints != stribeck:
+            start = [found.decays[stribeck.index(joint)] for joint in kept_joints]
+            stribeck, decays = kept_joints, Decays(balance=balance, joints=kept_joints)
+            found = solved_with_decays(decays, matrix, wanted, least, start)
     labels = [balance.labels[place] for place in kept]
     ranges = [decays.bounds(joint) for joint in stribeck]
     fit = Fit.of(found, labels, columns, matrix, stribeck, ranges)
@@ -168,18 +177,6 @@ def _runs(recordings: object) -> list[RobotRecording]:
     for run in given:
         require_kind("recordings", run, RobotRecording)
     return list(given)
-
-
-def _model(model: object) -> Model:
-    chosen = Model.of(model)
-    stated = {name for name in chosen.stated() if name != "name"}
-    if chosen.name not in (None, *_MODELS) or stated:
-        raise InputError(
-            f"of a whole robot's friction, {' or '.join(_MODELS)} is identified",
-            argument="model",
-            value=str(chosen),
-        )
-    return chosen if chosen.name else chosen.replace(name=_MODELS[0])
 
 
 def _least_speeds(

@@ -26,8 +26,11 @@ class RobotJoint:
     Attributes
     ----------
     name : str
+    model : str
+        "coulomb_viscous" or "stribeck".
     parameters : mapping of str to ParameterEstimate
-        At the joint: "coulomb", "viscous", "torque_offset"; of a motor that turns with several joints "motor_coulomb"
+        At the joint: "coulomb", "viscous", "torque_offset", with the model "stribeck" also "static" and "stribeck"; of a
+        motor that turns with several joints "motor_coulomb"
         and "motor_viscous"; "rotor_inertia" where it is identified, "inertia_scale" with ``inertia="scaled"``.
     residuals : ResidualStatistics
     windows : WindowTable
@@ -35,6 +38,7 @@ class RobotJoint:
     """
 
     name: str
+    model: str
     parameters: Mapping[str, ParameterEstimate]
     residuals: ResidualStatistics
     windows: WindowTable

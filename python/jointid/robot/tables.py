@@ -27,7 +27,7 @@ def head(estimate: RobotEstimate) -> list[str]:
     shown = [
         f"{name} [{units[name]}]" if units[name] else name for name in shown_parameters(estimate)
     ]
-    return ["joint", *shown, "residual", "left out", "warnings"]
+    return ["joint", "model", *shown, "residual", "left out", "warnings"]
 
 
 def rows(estimate: RobotEstimate) -> list[list[str]]:
@@ -36,6 +36,7 @@ def rows(estimate: RobotEstimate) -> list[list[str]]:
     return [
         [
             joint.name,
+            joint.model,
             *(value_with_error(joint.parameters.get(name)) for name in names),
             f"{100.0 * joint.relative_residual:.1f} %",
             percent(joint.residuals.left_out),
