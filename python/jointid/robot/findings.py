@@ -13,12 +13,14 @@ from jointid.estimate.wording import number, percent, two_digits
 from jointid.robot.inertia import FREE, InertiaColumns
 from jointid.robot.result import RobotEstimate, RobotJoint
 from jointid.robot.robot import Robot
+from jointid.robot.wrong_facts import WrongFact
 from jointid.robot.zeros import Zeros
 
 _STANDING = 0.1  # of the time: worth saying
 _MOSTLY = 0.35
 _VAGUE = 0.25  # a standard error, of the value
 _POOR = 0.15  # of the torque
+_DOUBTFUL = 0.05  # of the torque: worth a look at the given facts
 _FRICTION = ("coulomb", "viscous", "motor_coulomb", "motor_viscous")
 _RANK = {"blocking": 0, "warning": 1, "info": 2}
 
@@ -55,6 +57,44 @@ def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
                 function="Robot.from_urdf",
             ),
         ),
+    )
+
+
+def doubtful_joints(estimate: RobotEstimate) -> list[int]:
+    """Joints whose balance says that something that was given is wrong: much is left, or friction would be negative."""
+    return [
+        number
+        for number, joint in enumerate(estimate.joints.values())
+        if joint.relative_residual > _DOUBTFUL
+        or any(joint.parameters[name].at_bound == "min" for name in ("coulomb", "viscous"))
+    ]
+
+
+def named_fact(wrong: WrongFact) -> Finding:
+    """The finding that one fact, if it were otherwise, would explain most of what is left."""
+    first, *others = wrong.joints
+    both = " and ".join(wrong.joints)
+    better = f"{percent(wrong.before)} of a joint's torque stays unexplained as it is, and {percent(wrong.after)} so"
+    coupling = f"motor {first} turns with {' and '.join(others)} by {wrong.coupling or 0.0:g}"
+    texts = {
+        "swapped_joints": f"the columns of {both} are probably exchanged",
+        "swapped_torques": f"the torques of {both} are probably exchanged",
+        "wrong_sign": f"{first} probably turns the other way: its position and torque have the wrong sign, or its gear "
+        "ratio",
+        "wrong_coupling": f"a coupling is probably wrong: if {coupling}, and not as given, much more is explained",
+    }
+    advice: tuple[Action, ...] = (Action("inspect", text="the order and names of the columns"),)
+    if wrong.kind == "wrong_sign":
+        advice = (Action("inspect", text="the sign of this joint's gear ratio and signals"),)
+    if wrong.kind == "wrong_coupling":
+        row = {first: {others[0]: wrong.coupling}}
+        advice = (Action("call", {"couplings": row}, function="Robot.from_urdf"),)
+    return Finding(
+        code=wrong.kind,
+        severity="warning",
+        evidence={"before": Measured(wrong.before), "after": Measured(wrong.after)},
+        cause=f"{texts[wrong.kind]}: {better}",
+        advice=advice,
     )
 
 

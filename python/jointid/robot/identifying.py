@@ -18,7 +18,7 @@ from jointid.robot.balance import Balance, balance_of
 from jointid.robot.choice import with_static
 from jointid.robot.conclusion import concluded
 from jointid.robot.decays import Decays, solved_with_decays
-from jointid.robot.findings import turned_zeros
+from jointid.robot.findings import doubtful_joints, named_fact, turned_zeros
 from jointid.robot.fit import Fit
 from jointid.robot.inertia import MODES, inertia_columns
 from jointid.robot.models import AUTO, PLAIN, friction_models
@@ -26,6 +26,7 @@ from jointid.robot.motion import Motion
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
 from jointid.robot.solving import covariance_of, time_segments
+from jointid.robot.wrong_facts import wrong_fact
 from jointid.robot.zeros import zeros_of
 
 Array = NDArray[np.float64]
@@ -124,6 +125,10 @@ def identify_robot(
     findings = estimate.findings
     if zeros is not None and zeros.found:
         findings = (turned_zeros(zeros, robot), *findings)
+    suspects = doubtful_joints(estimate)
+    wrong = wrong_fact(robot, motions, duration, suspects) if suspects else None
+    if wrong is not None:
+        findings = (named_fact(wrong), *findings)
     return replace(
         estimate,
         findings=findings,

@@ -39,6 +39,8 @@ class Motion:
         The same of the motors.
     wished : ndarray, shape (n,)
         Duration of a window that the noise of each velocity asks for [s].
+    at_motor : bool
+        Whether positions were recorded at the motors.
     """
 
     time: Array
@@ -51,6 +53,7 @@ class Motion:
     moving: Flags
     motor_moving: Flags
     wished: Array
+    at_motor: bool
 
     @classmethod
     def of(
@@ -101,6 +104,7 @@ class Motion:
             motor_velocity=own[1],
             moving=of_joints,
             motor_moving=of_motors,
+            at_motor=at_motor,
             wished=np.array(
                 [_core.window_duration(each, _UNKNOWNS, mask_standstill) for each in joints]
             ),

@@ -29,9 +29,9 @@ class RobotJoint:
     model : str
         "coulomb_viscous" or "stribeck".
     parameters : mapping of str to ParameterEstimate
-        At the joint: "coulomb", "viscous", "torque_offset", with the model "stribeck" also "static" and "stribeck"; of a
-        motor that turns with several joints "motor_coulomb"
-        and "motor_viscous"; "rotor_inertia" where it is identified, "inertia_scale" with ``inertia="scaled"``.
+        At the joint: "coulomb", "viscous" and "torque_offset"; "static" and "stribeck" with the model "stribeck"; of
+        a motor that turns with several joints "motor_coulomb" and "motor_viscous"; "rotor_inertia" where it is
+        identified, "inertia_scale" with ``inertia="scaled"``.
     residuals : ResidualStatistics
     windows : WindowTable
         Its `friction` is the torque less all but this joint's friction.

@@ -13,19 +13,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.robot.balance import balance_of
-from jointid.robot.inertia import URDF, inertia_columns
 from jointid.robot.motion import Motion
 from jointid.robot.robot import Robot
-from jointid.robot.solving import solved
+from jointid.robot.thinned import misfits, thinned
 
 Array = NDArray[np.float64]
 
 _POOR = 0.12  # of the torque: less is not looked into
 _TURNS = (0.5 * np.pi, -0.5 * np.pi, np.pi)
 _BETTER = 0.7  # of the best misfit so far: what one more turned joint has to reach
-_CLEARLY = 0.5  # of the misfit without any: what all of them together have to reach
-_SAMPLES = 2000  # of a thinned recording
+_CLEARLY = 0.5  # of the misfit without any: what all of them together have to reach, and that it is poor no more
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,7 +34,7 @@ class Zeros:
     offsets : tuple of float
         [rad]; all 0 where no others fit clearly better.
     before, after : float
-        Relative residual with the URDF's inertias, without and with them.
+        Relative residual of all joints with the URDF's inertias, without and with them.
     """
 
     offsets: tuple[float, ...]
@@ -52,7 +49,7 @@ class Zeros:
 
 def zeros_of(robot: Robot, motions: Sequence[Motion], duration: float) -> Zeros:
     """Return the offsets among quarter turns with which the URDF's inertias fit."""
-    thin = [_thinned(motion) for motion in motions]
+    thin = [thinned(motion) for motion in motions]
     turned = np.zeros(robot.n)
     best = before = _misfit(robot, thin, turned, duration)
     hinges = [joint for joint in range(robot.n) if not robot.tree.prismatic[joint]]
@@ -67,39 +64,11 @@ def zeros_of(robot: Robot, motions: Sequence[Motion], duration: float) -> Zeros:
             break
         best, offsets = min(found)
         turned = np.array(offsets)
-    if best > _CLEARLY * before:
+    if best > min(_CLEARLY * before, _POOR):
         turned = np.zeros(robot.n)
     return Zeros(offsets=tuple(float(each) for each in turned), before=before, after=best)
 
 
 def _misfit(robot: Robot, motions: Sequence[Motion], offsets: Array, duration: float) -> float:
     moved = [replace(each, position=each.position + offsets[:, None]) for each in motions]
-    balance = balance_of(robot, moved, duration)
-    rows = balance.rows
-    if not rows.torque.size:
-        return 0.0
-    wanted = rows.torque - inertia_columns(robot, URDF).known(balance)
-    solution = solved(balance.matrix, wanted, rows.joint, robot.n, balance.least)
-    return float(np.linalg.norm(solution.residual) / (np.linalg.norm(rows.torque) or 1.0))
-
-
-def _thinned(motion: Motion) -> Motion:
-    """A motion with every k-th sample; what is moving stays so where all intervals between are."""
-    every = max(1, motion.time.size // _SAMPLES)
-    kept = np.arange(0, motion.time.size, every)
-    whole = kept[:-1]
-
-    def moving(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        return np.logical_and.reduceat(flags, whole, axis=1)[:, : kept.size - 1]
-
-    return replace(
-        motion,
-        time=motion.time[kept],
-        position=motion.position[:, kept],
-        velocity=motion.velocity[:, kept],
-        torque=motion.torque[:, kept],
-        motor_position=motion.motor_position[:, kept],
-        motor_velocity=motion.motor_velocity[:, kept],
-        moving=moving(motion.moving),
-        motor_moving=moving(motion.motor_moving),
-    )
+    return misfits(robot, moved, duration)[0]
