@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from jointid.robot.motion import Motion
 from jointid.robot.robot import Robot
-from jointid.robot.thinned import misfits, thinned
+from jointid.robot.quick_look import misfits, thinned
 
 Array = NDArray[np.float64]
 
