@@ -1,4 +1,4 @@
-"""Which joints have static friction: those whose held-out torque it predicts better."""
+"""What held-out torque decides: which joints have static friction, and how much the URDF's inertias say."""
 
 from __future__ import annotations
 
@@ -7,15 +7,22 @@ from numpy.typing import NDArray
 
 from jointid.robot.balance import Rows
 from jointid.robot.decays import DecaySolution
+from jointid.robot.solving import Known, Solution
 
 Array = NDArray[np.float64]
 
 _FOLDS = 8  # stretches of time, held out in turn
+_CERTAINTIES = (1.0, 3.0, 10.0, 30.0, 100.0)
 _CLEAR = 1.0  # standard errors by which the misfit falls
 
 
 def with_static(
-    found: DecaySolution, matrix: Array, wanted: Array, rows: Rows, joints: tuple[int, ...]
+    found: DecaySolution,
+    matrix: Array,
+    wanted: Array,
+    rows: Rows,
+    joints: tuple[int, ...],
+    known: Known,
 ) -> tuple[int, ...]:
     """Return the joints that need static friction.
 
@@ -32,29 +39,66 @@ def with_static(
     wanted : ndarray, shape (rows,)
     rows : Rows
     joints : tuple of int
+    known : Known
+        Of the other columns' parameters beforehand.
     """
-    weight = 1.0 / found.solution.scatter[rows.joint]
-    table = np.column_stack([matrix, found.columns, wanted]) * weight[:, None]
-    norms = np.linalg.norm(table, axis=0)
-    table /= np.where(norms > 0.0, norms, 1.0)
-    folds = _folds(rows)
-    count = len(found.solution.scatter)
-    products = np.zeros((_FOLDS, count, table.shape[1], table.shape[1]))
-    for fold in range(_FOLDS):
-        for joint in range(count):
-            mine = table[(folds == fold) & (rows.joint == joint)]
-            products[fold, joint] = mine.T @ mine
-    every = np.arange(table.shape[1] - 1)
+    full = np.hstack([matrix, found.columns])
+    products, norms = _products(full, wanted, rows, found.solution.scatter)
+    said = known.padded(len(joints))
+    beforehand = np.column_stack([said.matrix, said.wanted]) / norms
+    every = np.arange(full.shape[1])
     kept = []
     for place, joint in enumerate(joints):
         if found.at_bound[place]:
             continue
         without = np.delete(every, matrix.shape[1] + place)
-        fall = _misfits(products, without, joint) - _misfits(products, every, joint)
+        fall = _misfits(products, beforehand, without, joint) - _misfits(
+            products, beforehand, every, joint
+        )
         scatter = float(np.std(fall, ddof=1)) * np.sqrt(_FOLDS)
         if fall.sum() > _CLEAR * scatter:
             kept.append(joint)
     return tuple(kept)
+
+
+def certainty(
+    matrix: Array, wanted: Array, rows: Rows, plain: Solution, known: Known
+) -> tuple[float, Known]:
+    """Return how certain the URDF's inertias are made, as a factor, and what is then known of the parameters.
+
+    Base parameters are many; of a short motion each fits some of its noise. They are held near the URDF's by as much as
+    makes the prediction of held-out stretches best, and not at all nearer than weakly if nothing is gained by it.
+    """
+    if not known.wanted.size:
+        return 0.0, known
+    products, norms = _products(matrix, wanted, rows, plain.scatter)
+    every = np.arange(matrix.shape[1])
+    found = []
+    for factor in _CERTAINTIES:
+        said = known.tightened(factor)
+        beforehand = np.column_stack([said.matrix, said.wanted]) / norms
+        misfit = sum(
+            float(_misfits(products, beforehand, every, joint).sum())
+            for joint in range(products.shape[1])
+        )
+        found.append(misfit)
+    factor = _CERTAINTIES[int(np.argmin(found))]
+    return factor, known.tightened(factor)
+
+
+def _products(matrix: Array, wanted: Array, rows: Rows, scatter: Array) -> tuple[Array, Array]:
+    """Products of the weighted, scaled columns with each other and the target, by stretch and joint; the scales."""
+    table = np.column_stack([matrix, wanted]) / scatter[rows.joint][:, None]
+    norms = np.linalg.norm(table, axis=0)
+    norms = np.where(norms > 0.0, norms, 1.0)
+    table /= norms
+    folds, count = _folds(rows), len(scatter)
+    products = np.zeros((_FOLDS, count, table.shape[1], table.shape[1]))
+    for fold in range(_FOLDS):
+        for joint in range(count):
+            mine = table[(folds == fold) & (rows.joint == joint)]
+            products[fold, joint] = mine.T @ mine
+    return products, norms
 
 
 def _folds(rows: Rows) -> NDArray[np.int64]:
@@ -70,10 +114,10 @@ def _folds(rows: Rows) -> NDArray[np.int64]:
     return np.minimum((share * _FOLDS).astype(np.int64), _FOLDS - 1)
 
 
-def _misfits(products: Array, columns: NDArray[np.int64], joint: int) -> Array:
+def _misfits(products: Array, beforehand: Array, columns: NDArray[np.int64], joint: int) -> Array:
     """Squared residuals of a joint in each stretch, with the values that the others give."""
     target = products.shape[-1] - 1
-    whole = products.sum(axis=(0, 1))
+    whole = products.sum(axis=(0, 1)) + beforehand.T @ beforehand
     found = np.empty(_FOLDS)
     for fold in range(_FOLDS):
         rest = whole - products[fold].sum(axis=0)

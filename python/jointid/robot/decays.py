@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from jointid.identification.search.computed_bounds import shape_bounds
 from jointid.robot.balance import Balance
-from jointid.robot.solving import Solution, bounded, scatter_of, solved
+from jointid.robot.solving import Known, Solution, bounded, scatter_of, solved
 
 Array = NDArray[np.float64]
 
@@ -103,7 +103,12 @@ class DecaySolution:
 
 
 def solved_with_decays(
-    decays: Decays, matrix: Array, wanted: Array, least: Array, start: Sequence[float] | None = None
+    decays: Decays,
+    matrix: Array,
+    wanted: Array,
+    least: Array,
+    known: Known,
+    start: Sequence[float] | None = None,
 ) -> DecaySolution:
     """Return the best values of linear parameters and decays.
 
@@ -114,13 +119,15 @@ def solved_with_decays(
         Fixed columns.
     wanted : ndarray, shape (rows,)
     least : ndarray, shape (parameters,)
+    known : Known
+        Of the fixed columns' parameters beforehand.
     start : sequence of float, optional
         Decays to begin with. Default: from a grid.
     """
     rows, joints = decays.balance.rows, decays.balance.standing.size
     least = np.append(least, np.zeros(len(decays.joints)))
     bounds = np.log([decays.bounds(joint) for joint in decays.joints]).reshape(-1, 2)
-    plain = solved(matrix, wanted, rows.joint, joints, least[: matrix.shape[1]])
+    plain = solved(matrix, wanted, rows.joint, joints, least[: matrix.shape[1]], known)
     if not decays.joints:
         nothing = np.zeros(0)
         return DecaySolution(
@@ -135,13 +142,13 @@ def solved_with_decays(
         if start is None
         else np.clip(np.log(np.asarray(start)), bounds[:, 0], bounds[:, 1])
     )
-    scatter = plain.scatter
+    scatter, known = plain.scatter, known.padded(len(decays.joints))
     for _ in range(3):
         weight = 1.0 / scatter[rows.joint]
-        logs = _searched(decays, logs, bounds, matrix, wanted, least, weight)
+        logs = _searched(decays, logs, bounds, matrix, wanted, least, known, weight)
         value, slope = decays.columns(np.exp(logs))
         found = np.hstack([matrix, value])
-        values, held = bounded(found * weight[:, None], wanted * weight, least)
+        values, held = bounded(found * weight[:, None], wanted * weight, least, known)
         residual = wanted - found @ values
         before, scatter = scatter, scatter_of(residual, rows.joint, joints)
         if np.all(np.abs(scatter - before) <= 0.01 * before):
@@ -183,6 +190,7 @@ def _searched(
     matrix: Array,
     wanted: Array,
     least: Array,
+    known: Known,
     weight: Array,
 ) -> Array:
     """Gauss-Newton on the logarithms of the decays, all linear parameters eliminated."""
@@ -191,13 +199,13 @@ def _searched(
     def at(place: Array) -> tuple[float, Array, Array]:
         value, slope = decays.columns(np.exp(place))
         full = np.hstack([fixed, value * weight[:, None]])
-        values, held = bounded(full, target, least)
+        values, held = bounded(full, target, least, known)
         residual = target - full @ values
         static = values[matrix.shape[1] :]
         jacobian = slope * (static * np.exp(place)) * weight[:, None]
         basis = np.linalg.qr(_scaled(full[:, ~held]))[0]
         jacobian -= basis @ (basis.T @ jacobian)
-        return float(residual @ residual), residual, jacobian
+        return float(residual @ residual) + known.misfit(values), residual, jacobian
 
     misfit, residual, jacobian = at(logs)
     for _ in range(_STEPS):

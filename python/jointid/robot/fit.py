@@ -97,6 +97,5 @@ class Fit:
             jacobian=np.hstack([matrix, found.columns, found.jacobian]),
             residual=solution.residual,
             columns=columns,
-            inertial=columns.given
-            + columns.directions @ solution.values[len(labels) : len(labels) + len(inertial)],
+            inertial=columns.inertial(solution.values[len(labels) : len(labels) + len(inertial)]),
         )

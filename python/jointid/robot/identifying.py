@@ -15,7 +15,7 @@ from jointid.base.errors import InputError
 from jointid.joint.model import Model
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.balance import Balance, balance_of
-from jointid.robot.choice import with_static
+from jointid.robot.choice import certainty, with_static
 from jointid.robot.conclusion import concluded
 from jointid.robot.decays import Decays, solved_with_decays
 from jointid.robot.findings import doubtful_joints, named_fact, turned_zeros
@@ -25,7 +25,7 @@ from jointid.robot.models import AUTO, PLAIN, friction_models
 from jointid.robot.motion import Motion
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
-from jointid.robot.solving import covariance_of, time_segments
+from jointid.robot.solving import covariance_of, solved, time_segments
 from jointid.robot.wrong_facts import wrong_fact
 from jointid.robot.zeros import zeros_of
 
@@ -151,16 +151,20 @@ def _solved(
     rows = balance.rows
     wanted = rows.torque - columns.known(balance)
     stribeck = tuple(joint for joint in range(robot.n) if models[joint] != PLAIN)
+    known = columns.beforehand(len(kept))
+    if known.wanted.size:
+        plain = solved(matrix, wanted, rows.joint, robot.n, least, known)
+        _, known = certainty(matrix, wanted, rows, plain, known)
     decays = Decays(balance=balance, joints=stribeck)
-    found = solved_with_decays(decays, matrix, wanted, least)
+    found = solved_with_decays(decays, matrix, wanted, least, known)
     asked = tuple(joint for joint in stribeck if models[joint] == AUTO)
     if asked:
-        needed = with_static(found, matrix, wanted, rows, stribeck)
+        needed = with_static(found, matrix, wanted, rows, stribeck, known)
         kept_joints = tuple(joint for joint in stribeck if joint not in asked or joint in needed)
         if kept_joints != stribeck:
             start = [found.decays[stribeck.index(joint)] for joint in kept_joints]
             stribeck, decays = kept_joints, Decays(balance=balance, joints=kept_joints)
-            found = solved_with_decays(decays, matrix, wanted, least, start)
+            found = solved_with_decays(decays, matrix, wanted, least, known, start)
     labels = [balance.labels[place] for place in kept]
     ranges = [decays.bounds(joint) for joint in stribeck]
     fit = Fit.of(found, labels, columns, matrix, stribeck, ranges)

@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 from jointid.robot.balance import Balance
 from jointid.robot.link_tree import INERTIAL, INERTIAL_UNITS
 from jointid.robot.momentum import columns_of
+from jointid.robot.prior import Prior
 from jointid.robot.robot import Robot
+from jointid.robot.solving import Known
 
 Array = NDArray[np.float64]
 
@@ -45,6 +47,8 @@ class InertiaColumns:
         Links whose scale no motion separates from the rotors' inertias or other scales; they stay at 1.
     scales : bool
         Whether the columns are scales.
+    prior : Prior or None
+        What the URDF says of base parameters.
     """
 
     names: tuple[str, ...]
@@ -56,6 +60,22 @@ class InertiaColumns:
     dropped: tuple[int, ...] = ()
     fixed: tuple[int, ...] = ()
     scales: bool = False
+    prior: Prior | None = None
+
+    def inertial(self, values: Array) -> Array:
+        """Return the inertial parameters of all links that have these values, shape (10 n,)."""
+        if self.prior is not None:
+            return self.prior.completed(values)
+        return np.asarray(self.given + self.directions @ values)
+
+    def beforehand(self, others: int) -> Known:
+        """Return what the prior says of the parameters, behind so many others."""
+        if self.prior is None:
+            return Known.nothing(others + len(self.names))
+        empty = np.zeros((len(self.names), others))
+        return Known(
+            matrix=np.hstack([empty, self.prior.root]), wanted=self.prior.root @ self.prior.mean
+        )
 
     def columns(self, balance: Balance) -> Array:
         """Return the columns' integrals."""
@@ -93,19 +113,21 @@ def inertia_columns(robot: Robot, mode: str) -> InertiaColumns:
             fixed=tuple(others),
             scales=True,
         )
-    kept, combined = independent(np.hstack([links, rotors[:, free]]))
+    structure = np.hstack([links, rotors[:, free]])
+    kept, combined = independent(structure)
     base = [place for place in kept if place < every.size]
     separate = {free[place - every.size] for place in kept if place >= every.size}
     directions = np.zeros((every.size, len(base)))
     directions[base, np.arange(len(base))] = 1.0
-    start = combined[: len(base), : every.size] @ every
+    prior = Prior.of(robot, combined[: len(base)], free)
     return InertiaColumns(
         names=tuple(_combination(robot, combined[row], free) for row in range(len(base))),
         units=tuple(INERTIAL_UNITS[place % 10] for place in base),
         joints=tuple(place // 10 for place in base),
         directions=directions,
         given=np.zeros(every.size),
-        start=start,
+        start=combined[: len(base), : every.size] @ every,
+        prior=prior,
         dropped=tuple(motor for motor in free if motor not in separate),
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,7 +38,46 @@ class Solution:
     scatter: Array
 
 
-def solved(matrix: Array, wanted: Array, joint: Whole, joints: int, least: Array) -> Solution:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Known:
+    """What is known of the parameters beforehand: rows of unit variance beside those of the recording.
+
+    Attributes
+    ----------
+    matrix : ndarray, shape (rows, parameters)
+    wanted : ndarray, shape (rows,)
+    """
+
+    matrix: Array
+    wanted: Array
+
+    @classmethod
+    def nothing(cls, count: int) -> Self:
+        """Nothing is known of so many parameters."""
+        return cls(matrix=np.zeros((0, count)), wanted=np.zeros(0))
+
+    def padded(self, count: int) -> Known:
+        """The same, with further parameters of which nothing is known."""
+        more = np.zeros((len(self.wanted), count))
+        return Known(matrix=np.hstack([self.matrix, more]), wanted=self.wanted)
+
+    def tightened(self, factor: float) -> Known:
+        """The same, as many times as certain."""
+        return Known(matrix=factor * self.matrix, wanted=factor * self.wanted)
+
+    def misfit(self, values: Array) -> float:
+        """Squared distance of values from what is known."""
+        return float(np.sum((self.wanted - self.matrix @ values) ** 2))
+
+
+def solved(
+    matrix: Array,
+    wanted: Array,
+    joint: Whole,
+    joints: int,
+    least: Array,
+    known: Known | None = None,
+) -> Solution:
     """Return the values that fit best, with the weight of each joint from its own residuals.
 
     Parameters
@@ -48,13 +88,15 @@ def solved(matrix: Array, wanted: Array, joint: Whole, joints: int, least: Array
     joints : int
     least : ndarray, shape (parameters,)
         Lower bounds.
+    known : Known, optional
+        Default: nothing.
     """
     scatter = scatter_of(wanted, joint, joints)
     values, at_bound = np.zeros(len(least)), np.zeros(len(least), dtype=bool)
     residual = wanted
     for _ in range(_ROUNDS):
         weight = 1.0 / scatter[joint]
-        values, at_bound = bounded(matrix * weight[:, None], wanted * weight, least)
+        values, at_bound = bounded(matrix * weight[:, None], wanted * weight, least, known)
         residual = wanted - matrix @ values
         before, scatter = scatter, scatter_of(residual, joint, joints)
         if np.all(np.abs(scatter - before) <= _SETTLED * before):
@@ -62,11 +104,16 @@ def solved(matrix: Array, wanted: Array, joint: Whole, joints: int, least: Array
     return Solution(values=values, at_bound=at_bound, residual=residual, scatter=scatter)
 
 
-def bounded(matrix: Array, wanted: Array, least: Array) -> tuple[Array, NDArray[np.bool_]]:
+def bounded(
+    matrix: Array, wanted: Array, least: Array, known: Known | None = None
+) -> tuple[Array, NDArray[np.bool_]]:
     """Return the least-squares values above lower bounds, and which are at them."""
     from scipy.linalg import qr
     from scipy.optimize import lsq_linear
 
+    if known is not None and known.wanted.size:
+        matrix = np.concatenate([matrix, known.matrix])
+        wanted = np.append(wanted, known.wanted)
     count = matrix.shape[1]
     norms = np.linalg.norm(matrix, axis=0)
     present = np.flatnonzero(norms > 0.0)

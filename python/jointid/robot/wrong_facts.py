@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.robot.motion import Motion
-from jointid.robot.robot import Robot
 from jointid.robot.quick_look import misfits, thinned
+from jointid.robot.robot import Robot
 
 Array = NDArray[np.float64]
 
