@@ -47,14 +47,13 @@ def with_static(
     said = known.padded(len(joints))
     beforehand = np.column_stack([said.matrix, said.wanted]) / norms
     every = np.arange(full.shape[1])
+    whole = _misfits(products, beforehand, every)
     kept = []
     for place, joint in enumerate(joints):
         if found.at_bound[place]:
             continue
         without = np.delete(every, matrix.shape[1] + place)
-        fall = _misfits(products, beforehand, without, joint) - _misfits(
-            products, beforehand, every, joint
-        )
+        fall = (_misfits(products, beforehand, without) - whole)[:, joint]
         scatter = float(np.std(fall, ddof=1)) * np.sqrt(_FOLDS)
         if fall.sum() > _CLEAR * scatter:
             kept.append(joint)
@@ -77,11 +76,7 @@ def certainty(
     for factor in _CERTAINTIES:
         said = known.tightened(factor)
         beforehand = np.column_stack([said.matrix, said.wanted]) / norms
-        misfit = sum(
-            float(_misfits(products, beforehand, every, joint).sum())
-            for joint in range(products.shape[1])
-        )
-        found.append(misfit)
+        found.append(float(_misfits(products, beforehand, every).sum()))
     factor = _CERTAINTIES[int(np.argmin(found))]
     return factor, known.tightened(factor)
 
@@ -114,20 +109,20 @@ def _folds(rows: Rows) -> NDArray[np.int64]:
     return np.minimum((share * _FOLDS).astype(np.int64), _FOLDS - 1)
 
 
-def _misfits(products: Array, beforehand: Array, columns: NDArray[np.int64], joint: int) -> Array:
-    """Squared residuals of a joint in each stretch, with the values that the others give."""
+def _misfits(products: Array, beforehand: Array, columns: NDArray[np.int64]) -> Array:
+    """Squared residuals of each stretch and joint, with the values that the other stretches give."""
     target = products.shape[-1] - 1
     whole = products.sum(axis=(0, 1)) + beforehand.T @ beforehand
-    found = np.empty(_FOLDS)
+    found = np.empty(products.shape[:2])
     for fold in range(_FOLDS):
         rest = whole - products[fold].sum(axis=0)
         values = np.linalg.lstsq(
             rest[np.ix_(columns, columns)], rest[columns, target], rcond=1e-12
         )[0]
-        held = products[fold, joint]
-        found[fold] = (
-            held[target, target]
-            - 2.0 * values @ held[columns, target]
-            + values @ held[np.ix_(columns, columns)] @ values
-        )
+        for joint, held in enumerate(products[fold]):
+            found[fold, joint] = (
+                held[target, target]
+                - 2.0 * values @ held[columns, target]
+                + values @ held[np.ix_(columns, columns)] @ values
+            )
     return found

@@ -10,10 +10,11 @@ from jointid.estimate.student import quantile
 from jointid.identification.inference.covariance import Covariance
 from jointid.problem.window_table import WindowTable
 from jointid.robot.balance import Balance
+from jointid.robot.bodies import possible
 from jointid.robot.columns import MEANINGS, UNITS
 from jointid.robot.findings import findings_of
 from jointid.robot.fit import Fit
-from jointid.robot.inertia import FREE
+from jointid.robot.inertia import URDF
 from jointid.robot.models import PLAIN, STRIBECK
 from jointid.robot.result import RobotEstimate, RobotJoint
 from jointid.robot.robot import Robot
@@ -58,7 +59,7 @@ def concluded(
         inertia=mode,
         base_parameters=base,
         inertial=fit.inertial.reshape(robot.n, 10),
-        consistent=_consistent(mode, joints),
+        consistent=None if mode == URDF else possible(fit.inertial.reshape(robot.n, 10)),
         relative_residual=float(np.linalg.norm(fit.residual)) / (measured or 1.0),
         free=tuple(free),
         covariance=covariance.matrix,
@@ -144,11 +145,3 @@ def _table(joint: int, balance: Balance, fit: Fit) -> WindowTable:
         velocity=rows.velocity[mine],
         friction=(own + residual) / rows.duration[mine],
     )
-
-
-def _consistent(mode: str, joints: dict[str, RobotJoint]) -> bool | None:
-    """Whether a body can have the inertial parameters: the URDF's are not judged, scales must be positive."""
-    if mode == FREE:
-        return None
-    scales = [each.parameters.get("inertia_scale") for each in joints.values()]
-    return all(each is None or each.value > 0.0 for each in scales)

@@ -19,6 +19,9 @@ from jointid.robot.zeros import Zeros
 _STANDING = 0.1  # of the time: worth saying
 _MOSTLY = 0.35
 _VAGUE = 0.25  # a standard error, of the value
+_MATTERS, _SURE = 0.05, 3.0  # of a link's scale, and in its errors
+_EXPLAINED = 0.85  # of the residual: what scales have to leave at most to blame the URDF
+_MOST_LINKS = 2
 _POOR = 0.15  # of the torque
 _DOUBTFUL = 0.05  # of the torque: worth a look at the given facts
 _FRICTION = ("coulomb", "viscous", "motor_coulomb", "motor_viscous")
@@ -176,16 +179,65 @@ def _of_inertia(estimate: RobotEstimate, columns: InertiaColumns) -> Iterator[Fi
             advice=(Action("call", {"rotor_inertias": ...}, function="Robot.from_urdf"),),
         )
     if estimate.consistent is False:
+        free = estimate.inertia == FREE
+        nearest = (
+            "of the sets with these base parameters, the one nearest to the URDF's has links"
+            if free
+            else ""
+        )
         yield Finding(
             code="impossible_inertia",
-            cause="a link's inertia is scaled by a negative number, which no body has: friction may be right, the "
-            "inertia is not",
-            advice=(Action("call", {"inertia": FREE}, function="identify_robot"),),
+            severity="info" if free else "warning",
+            cause=f"{nearest or 'there are links'} that no body can be: friction and the torque of motion may be "
+            "right, single inertial parameters are not",
+            advice=() if free else (Action("call", {"inertia": FREE}, function="identify_robot"),),
         )
-    if estimate.inertia == FREE:
+    for joint in estimate.joints.values():
+        scale = joint.parameters.get("inertia_scale")
+        if scale is not None and scale.stderr and _far(scale.value, scale.stderr):
+            yield Finding(
+                code="scaled_inertia",
+                severity="info",
+                parameters=(f"{joint.name}.inertia_scale",),
+                evidence={"scale": Measured(scale.value), "stderr": Measured(scale.stderr)},
+                cause=f"the link that {joint.name} moves has {scale.value:.3g} ± {two_digits(scale.stderr)} times the "
+                "URDF's inertial parameters",
+            )
+
+
+def _far(scale: float, stderr: float) -> bool:
+    """Whether a scale is another than 1, by its error and by what matters."""
+    return abs(scale - 1.0) > max(_MATTERS, _SURE * stderr)
+
+
+def wrong_inertias(estimate: RobotEstimate, scaled: RobotEstimate) -> Iterator[Finding]:
+    """Findings that links are heavier or lighter than the URDF has them, where that explains the torque better.
+
+    Parameters
+    ----------
+    estimate : RobotEstimate
+        With the URDF's inertias.
+    scaled : RobotEstimate
+        Of the same, with scales.
+    """
+    if scaled.relative_residual > _EXPLAINED * estimate.relative_residual:
+        return
+    scales = {name: joint.parameters.get("inertia_scale") for name, joint in scaled.joints.items()}
+    far = [
+        (abs(p.value - 1.0) / p.stderr, name, p)
+        for name, p in scales.items()
+        if p is not None and p.stderr and _far(p.value, p.stderr)
+    ]
+    for _, name, p in sorted(far, key=lambda each: each[:2], reverse=True)[:_MOST_LINKS]:
         yield Finding(
-            code="unchecked_inertia",
-            severity="info",
-            cause="the base parameters are not checked for physical consistency: use them as a whole, for the torque "
-            "that motion needs",
+            code="wrong_inertia",
+            evidence={
+                "scale": Measured(p.value),
+                "stderr": Measured(p.stderr or 0.0),
+                "residual": Measured(estimate.relative_residual),
+                "residual_scaled": Measured(scaled.relative_residual),
+            },
+            cause=f"the link that {name} moves is not as in the URDF: {p.value:.3g} ± {two_digits(p.stderr or 0.0)} "
+            "times its inertial parameters fit",
+            advice=(Action("call", {"inertia": "scaled"}, function="identify_robot"),),
         )

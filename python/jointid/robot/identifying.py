@@ -18,9 +18,9 @@ from jointid.robot.balance import Balance, balance_of
 from jointid.robot.choice import certainty, with_static
 from jointid.robot.conclusion import concluded
 from jointid.robot.decays import Decays, solved_with_decays
-from jointid.robot.findings import doubtful_joints, named_fact, turned_zeros
+from jointid.robot.findings import doubtful_joints, named_fact, turned_zeros, wrong_inertias
 from jointid.robot.fit import Fit
-from jointid.robot.inertia import MODES, inertia_columns
+from jointid.robot.inertia import MODES, SCALED, URDF, inertia_columns
 from jointid.robot.models import AUTO, PLAIN, friction_models
 from jointid.robot.motion import Motion
 from jointid.robot.result import RobotEstimate
@@ -125,6 +125,9 @@ def identify_robot(
     findings = estimate.findings
     if zeros is not None and zeros.found:
         findings = (turned_zeros(zeros, robot), *findings)
+    if inertia == URDF:
+        scaled = _solved(robot, balance, SCALED, duration, models)
+        findings = (*wrong_inertias(estimate, scaled), *findings)
     suspects = doubtful_joints(estimate)
     wrong = wrong_fact(robot, motions, duration, suspects) if suspects else None
     if wrong is not None:
