@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,8 +25,8 @@ class Rows:
 
     Attributes
     ----------
-    joint, recording, window : ndarray of int, shape (rows,)
-        Windows are counted in each recording.
+    joint, piece, window : ndarray of int, shape (rows,)
+        Pieces are counted through all recordings, windows in each piece.
     start, stop : ndarray, shape (rows,)
         [s]
     duration : ndarray, shape (rows,)
@@ -38,7 +38,7 @@ class Rows:
     """
 
     joint: Whole
-    recording: Whole
+    piece: Whole
     window: Whole
     start: Array
     stop: Array
@@ -68,7 +68,9 @@ class Balance:
     samples : int
     velocity_noise : ndarray, shape (n,)
     summings : tuple of Summing
-        One a recording: for columns that are not linear.
+        One a piece: for columns that are not linear.
+    places : tuple of ndarray of int
+        Numbers of each joint's rows.
     """
 
     rows: Rows
@@ -81,13 +83,22 @@ class Balance:
     samples: int
     velocity_noise: Array
     summings: tuple[Summing, ...]
+    places: tuple[Whole, ...]
+
+    def windows_of(self, joint: int, piece: int) -> Whole:
+        """Return the windows of a joint's rows in a piece, in their order."""
+        rows, mine = self.rows, self.places[joint]
+        return np.asarray(rows.window[mine[rows.piece[mine] == piece]])
 
 
-def balance_of(robot: Robot, motions: Sequence[Motion], duration: float) -> Balance:
-    """Return the balances of a robot's joints over windows of some duration [s]."""
+def balance_of(robot: Robot, motions: Iterable[Motion], duration: float) -> Balance:
+    """Return the balances of a robot's joints over windows of some duration [s].
+
+    Motions are looked at one after the other; of each only its velocities and windows are kept.
+    """
     parts = [_part(robot, motion, number, duration) for number, motion in enumerate(motions)]
     first = parts[0]
-    time = np.array([motion.time[-1] - motion.time[0] for motion in motions])
+    time = np.array([float(part.summings[0].step.sum()) for part in parts])
     rows = Rows(
         **{
             name: np.concatenate([getattr(part.rows, name) for part in parts])
@@ -105,6 +116,7 @@ def balance_of(robot: Robot, motions: Sequence[Motion], duration: float) -> Bala
         samples=sum(part.samples for part in parts),
         velocity_noise=np.mean([part.velocity_noise for part in parts], axis=0),
         summings=tuple(summing for part in parts for summing in part.summings),
+        places=tuple(np.flatnonzero(rows.joint == joint) for joint in range(robot.n)),
     )
 
 
@@ -112,10 +124,10 @@ def _part(robot: Robot, motion: Motion, number: int, duration: float) -> Balance
     """The balances of one recording."""
     windows = Windows.of(motion.time, duration)
     summing = Summing.of(robot, motion, windows)
-    columns = linear_columns(robot, summing)
+    columns = linear_columns(robot, motion, summing)
     inertia = inertia_integrals(robot.tree, motion, summing.usable, windows)
     given = {
-        motor: (float(value), rotor_values(motor, robot, summing))
+        motor: (float(value), rotor_values(motor, robot, motion, summing))
         for motor, value in enumerate(robot.rotor_inertias)
         if value is not None
     }
@@ -141,7 +153,7 @@ def _part(robot: Robot, motion: Motion, number: int, duration: float) -> Balance
         rows.append(
             Rows(
                 joint=np.full(kept.size, joint),
-                recording=np.full(kept.size, number),
+                piece=np.full(kept.size, number),
                 window=kept,
                 start=starts[kept],
                 stop=stops[kept],
@@ -173,6 +185,7 @@ def _part(robot: Robot, motion: Motion, number: int, duration: float) -> Balance
         samples=motion.time.size,
         velocity_noise=motion.velocity_noise,
         summings=(summing,),
+        places=(),
     )
 
 

@@ -65,9 +65,20 @@ class Column:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Summing:
-    """Integrals over intervals summed over the windows, of each joint's usable intervals alone."""
+    """Integrals over intervals summed over the windows, of each joint's usable intervals alone.
 
-    motion: Motion
+    Attributes
+    ----------
+    velocity : ndarray, shape (n, samples)
+        Of the joints.
+    usable : ndarray of bool, shape (n, samples - 1)
+        Intervals in which a joint's balance holds.
+    windows : Windows
+    step : ndarray, shape (samples - 1,)
+        [s]
+    """
+
+    velocity: Array
     usable: Flags
     windows: Windows
     step: Array
@@ -79,14 +90,16 @@ class Summing:
         for joint in range(robot.n):
             for motor in np.flatnonzero(robot.coupled & (robot.couplings[:, joint] != 0.0)):
                 usable[joint] &= motion.motor_moving[motor]
-        return cls(motion=motion, usable=usable, windows=windows, step=np.diff(motion.time))
+        return cls(
+            velocity=motion.velocity, usable=usable, windows=windows, step=np.diff(motion.time)
+        )
 
     def __call__(self, joint: int, intervals: Array) -> Array:
         """Return the sums over the windows, of a joint's usable intervals."""
         return self.windows.summed(np.where(self.usable[joint], intervals, 0.0))
 
 
-def linear_columns(robot: Robot, summing: Summing) -> list[Column]:
+def linear_columns(robot: Robot, motion: Motion, summing: Summing) -> list[Column]:
     """Return the columns of Coulomb and viscous friction, offsets, and rotor inertias.
 
     A joint's viscous coefficient is the torque at the joint per its own speed. What a coupled motor adds to it is in
@@ -94,17 +107,16 @@ def linear_columns(robot: Robot, summing: Summing) -> list[Column]:
     """
     found: list[Column] = []
     for joint in range(robot.n):
-        found += _of_joint(joint, summing)
+        found += _of_joint(joint, motion, summing)
         if robot.coupled[joint]:
-            found += _of_motor(joint, robot, summing)
+            found += _of_motor(joint, robot, motion, summing)
         if robot.rotor_inertias[joint] is None:
-            values = rotor_values(joint, robot, summing)
+            values = rotor_values(joint, robot, motion, summing)
             found.append(Column(joint=joint, name="rotor_inertia", values=values, least=0.0))
     return found
 
 
-def _of_joint(joint: int, summing: Summing) -> list[Column]:
-    motion = summing.motion
+def _of_joint(joint: int, motion: Motion, summing: Summing) -> list[Column]:
     direction = summing(joint, direction_integrals(motion.velocity[joint], summing.step))
     travel = summing(joint, np.diff(motion.position[joint]))
     return [
@@ -114,8 +126,8 @@ def _of_joint(joint: int, summing: Summing) -> list[Column]:
     ]
 
 
-def _of_motor(motor: int, robot: Robot, summing: Summing) -> list[Column]:
-    motion, row = summing.motion, robot.couplings[motor]
+def _of_motor(motor: int, robot: Robot, motion: Motion, summing: Summing) -> list[Column]:
+    row = robot.couplings[motor]
     direction = direction_integrals(motion.motor_velocity[motor], summing.step)
     travel = np.diff(motion.motor_position[motor])
     coulomb, viscous = {}, {}
@@ -129,7 +141,7 @@ def _of_motor(motor: int, robot: Robot, summing: Summing) -> list[Column]:
     ]
 
 
-def rotor_values(motor: int, robot: Robot, summing: Summing) -> dict[int, Array]:
+def rotor_values(motor: int, robot: Robot, motion: Motion, summing: Summing) -> dict[int, Array]:
     """Integrals of the torque that a motor's inertia of 1 needs, at each joint that it turns with."""
-    row, change = robot.couplings[motor], np.diff(summing.motion.motor_velocity[motor])
+    row, change = robot.couplings[motor], np.diff(motion.motor_velocity[motor])
     return {joint: row[joint] * summing(joint, change) for joint in map(int, np.flatnonzero(row))}

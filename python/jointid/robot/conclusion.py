@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,9 +25,15 @@ Array = NDArray[np.float64]
 
 
 def concluded(
-    robot: Robot, balance: Balance, mode: str, fit: Fit, covariance: Covariance, duration: float
+    robot: Robot,
+    balance: Balance,
+    mode: str,
+    fit: Fit,
+    covariance: Covariance,
+    duration: float,
+    runs: Sequence[int],
 ) -> RobotEstimate:
-    """Return the estimate; `settings` and `seconds` are still to be set."""
+    """Return the estimate; `settings` and `seconds` are still to be set. `runs`: the recording of each piece."""
     places = np.cumsum(~fit.at_bound) - 1
     of_joints: list[dict[str, ParameterEstimate]] = [{} for _ in robot.names]
     base: dict[str, ParameterEstimate] = {}
@@ -49,7 +57,7 @@ def concluded(
             model=STRIBECK if "static" in of_joints[k] else PLAIN,
             parameters={key: of_joints[k][key] for key in MEANINGS if key in of_joints[k]},
             residuals=_residuals(k, balance, fit, duration),
-            windows=_table(k, balance, fit),
+            windows=_table(k, balance, fit, runs),
         )
         for k, name in enumerate(robot.names)
     }
@@ -125,7 +133,7 @@ def _residuals(joint: int, balance: Balance, fit: Fit, duration: float) -> Resid
     )
 
 
-def _table(joint: int, balance: Balance, fit: Fit) -> WindowTable:
+def _table(joint: int, balance: Balance, fit: Fit, runs: Sequence[int]) -> WindowTable:
     mine = balance.rows.joint == joint
     friction = [
         place
@@ -136,7 +144,7 @@ def _table(joint: int, balance: Balance, fit: Fit) -> WindowTable:
     residual = fit.residual[mine]
     rows = balance.rows
     return WindowTable(
-        recording=rows.recording[mine],
+        recording=np.array(runs)[rows.piece[mine]],
         start=rows.start[mine],
         stop=rows.stop[mine],
         duration=rows.duration[mine],

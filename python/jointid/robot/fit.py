@@ -9,8 +9,12 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.robot.decays import DecaySolution
+from jointid.identification.inference.covariance import Covariance, parameter_covariance
+from jointid.robot.balance import Balance
+from jointid.robot.decays import Decays, DecaySolution
 from jointid.robot.inertia import InertiaColumns
+from jointid.robot.products import Products
+from jointid.robot.solving import time_segments
 
 Array = NDArray[np.float64]
 
@@ -32,6 +36,8 @@ class Fit:
     at_bound : ndarray of bool
     jacobian : ndarray, shape (rows, parameters)
     residual : ndarray, shape (rows,)
+    scatter : ndarray, shape (joints,)
+        Root mean square of each joint's residuals.
     columns : InertiaColumns
     inertial : ndarray, shape (10 n,)
         Inertial parameters of all links.
@@ -44,39 +50,39 @@ class Fit:
     at_bound: NDArray[np.bool_]
     jacobian: Array
     residual: Array
+    scatter: Array
     columns: InertiaColumns
     inertial: Array
 
     @classmethod
     def of(
         cls,
-        found: DecaySolution,
-        labels: Sequence[tuple[int, str]],
+        balance: Balance,
         columns: InertiaColumns,
-        matrix: Array,
-        stribeck: Sequence[int],
-        ranges: Sequence[tuple[float, float]],
+        kept: Sequence[int],
+        products: Products,
+        decays: Decays,
+        found: DecaySolution,
     ) -> Self:
         """Return the fit of a solution.
 
         Parameters
         ----------
-        found : DecaySolution
-        labels : sequence of (int, str)
-            Of the first columns of the matrix.
+        balance : Balance
         columns : InertiaColumns
-            The others.
-        matrix : ndarray
-        stribeck : sequence of int
-            Joints with static friction.
-        ranges : sequence of (float, float)
-            Of their decays.
+        kept : sequence of int
+            Columns of the balance that are used, before those of the inertia.
+        products : Products
+            Of these two.
+        decays : Decays
+        found : DecaySolution
         """
-        solution = found.solution
+        labels = [balance.labels[place] for place in kept]
         inertial: list[tuple[int | None, str]] = [
             (joint, "inertia_scale") if columns.scales else (None, name)
             for joint, name in zip(columns.joints, columns.names, strict=True)
         ]
+        stribeck, decay = decays.joints, np.exp(found.logs)
         every = [
             *labels,
             *inertial,
@@ -85,17 +91,42 @@ class Fit:
         ]
         linear = len(every) - len(stribeck)
         positive = [joint is not None and name not in _SIGNED for joint, name in every[:linear]]
+        lengths = np.append(products.norms[:-1], decays.norms)
+        values = found.solution.values * (products.norms[-1] / lengths)
+        first = len(labels) + len(inertial)
+        jacobian = np.zeros((balance.rows.joint.size, len(every)))
+        jacobian[:, : len(labels)] = balance.matrix[:, kept]
+        jacobian[:, len(labels) : first] = columns.columns(balance)
+        for number, joint in enumerate(stribeck):
+            mine = balance.places[joint]
+            value, slope = decays.column(joint, float(decay[number]))
+            jacobian[mine, first + number] = value
+            static = values[first + number]
+            jacobian[mine, linear + number] = static * slope / decay[number]
+        wanted = balance.rows.torque - columns.known(balance)
         return cls(
             labels=tuple(every),
             units=("",) * len(labels) + columns.units + ("",) * (2 * len(stribeck)),
-            values=np.append(solution.values, found.decays),
+            values=np.append(values, decay),
             bounds=(
                 *((0.0 if each else -np.inf, np.inf) for each in positive),
-                *ranges,
+                *(decays.bounds(joint) for joint in stribeck),
             ),
-            at_bound=np.append(solution.at_bound, found.at_bound),
-            jacobian=np.hstack([matrix, found.columns, found.jacobian]),
-            residual=solution.residual,
+            at_bound=np.append(found.solution.at_bound, found.at_bound),
+            jacobian=jacobian,
+            residual=wanted - jacobian[:, :linear] @ values,
+            scatter=found.solution.scatter * products.norms[-1],
             columns=columns,
-            inertial=columns.inertial(solution.values[len(labels) : len(labels) + len(inertial)]),
+            inertial=columns.inertial(values[len(labels) : first]),
+        )
+
+    def covariance(self, balance: Balance) -> Covariance:
+        """Return the covariance of the free parameters, clustered over segments of motion."""
+        rows = balance.rows
+        weight = 1.0 / self.scatter[rows.joint]
+        return parameter_covariance(
+            self.jacobian[:, ~self.at_bound] * weight[:, None],
+            self.residual * weight,
+            None,
+            segments=time_segments(rows.start, rows.stop, rows.piece),
         )

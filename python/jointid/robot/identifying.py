@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -14,6 +15,7 @@ from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.joint.model import Model
 from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.asked import duration_of, least_speeds, recordings_of
 from jointid.robot.balance import Balance, balance_of
 from jointid.robot.choice import certainty, with_static
 from jointid.robot.conclusion import concluded
@@ -22,16 +24,18 @@ from jointid.robot.findings import doubtful_joints, named_fact, turned_zeros, wr
 from jointid.robot.fit import Fit
 from jointid.robot.inertia import MODES, SCALED, URDF, inertia_columns
 from jointid.robot.models import AUTO, PLAIN, friction_models
-from jointid.robot.motion import Motion
+from jointid.robot.motion import Motion, part_of
+from jointid.robot.products import Products
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
-from jointid.robot.solving import covariance_of, solved, time_segments
+from jointid.robot.solving import solved
 from jointid.robot.wrong_facts import wrong_fact
 from jointid.robot.zeros import zeros_of
 
 Array = NDArray[np.float64]
 
-_LONGEST = 0.1  # [s]: longer windows blur reversals and leave few
+_PIECE = 120_000  # samples of a long recording that are looked at at once
+_LOOKS = 4  # recordings by whose beginnings facts are judged
 
 
 def identify_robot(
@@ -94,24 +98,34 @@ def identify_robot(
     """
     started = time.perf_counter()
     require_kind("robot", robot, Robot)
-    runs = _runs(recordings)
+    runs = recordings_of(recordings)
     if inertia not in MODES:
         raise InputError(
             f"one of {', '.join(MODES)} is expected", argument="inertia", value=inertia
         )
     models = friction_models(model, robot)
-    slowest = _least_speeds(min_speed, robot)
-    motions = [Motion.of(run, robot, slowest, mask_standstill) for run in runs]
-    duration = _duration(windows, motions)
-    zeros = None if robot.zero_offsets is not None else zeros_of(robot, motions, duration)
-    if zeros is not None and zeros.found:
-        robot = replace(robot, zero_offsets=zeros.offsets)
-        shift = np.array(zeros.offsets)[:, None]
-        motions = [replace(each, position=each.position + shift) for each in motions]
-    balance = balance_of(robot, motions, duration)
+    slowest = least_speeds(min_speed, robot)
+    pieces = _pieces(runs)
+    numbers = [number for number, _, _ in pieces]
+    firsts = [pieces[numbers.index(number)] for number in range(len(runs))][:_LOOKS]
+
+    def motion(piece: tuple[int, int, int]) -> Motion:
+        number, low, high = piece
+        return Motion.of(part_of(runs[number], low, high), robot, slowest, mask_standstill)
+
+    looks = {piece: motion(piece) for piece in firsts}
+    duration = duration_of(windows, list(looks.values()))
+    zeros = None
+    if robot.zero_offsets is None:
+        zeros = zeros_of(robot, list(looks.values()), duration)
+        if zeros.found:
+            robot = replace(robot, zero_offsets=zeros.offsets)
+            looks = {piece: motion(piece) for piece in firsts}
+    every = (looks[piece] if piece in looks else motion(piece) for piece in pieces)
+    balance = balance_of(robot, every, duration)
     if not balance.rows.torque.size:
         raise InputError("no joint moves", argument="recordings", value=runs[0].name)
-    estimate = _solved(robot, balance, inertia, duration, models)
+    estimate = _solved(robot, balance, inertia, duration, models, numbers)
     settings = {
         "model": {name: joint.model for name, joint in estimate.joints.items()},
         "inertia": inertia,
@@ -126,10 +140,10 @@ def identify_robot(
     if zeros is not None and zeros.found:
         findings = (turned_zeros(zeros, robot), *findings)
     if inertia == URDF:
-        scaled = _solved(robot, balance, SCALED, duration, models)
+        scaled = _solved(robot, balance, SCALED, duration, models, numbers)
         findings = (*wrong_inertias(estimate, scaled), *findings)
     suspects = doubtful_joints(estimate)
-    wrong = wrong_fact(robot, motions, duration, suspects) if suspects else None
+    wrong = wrong_fact(robot, list(looks.values()), duration, suspects) if suspects else None
     if wrong is not None:
         findings = (named_fact(wrong), *findings)
     return replace(
@@ -141,7 +155,12 @@ def identify_robot(
 
 
 def _solved(
-    robot: Robot, balance: Balance, mode: str, duration: float, models: Sequence[str]
+    robot: Robot,
+    balance: Balance,
+    mode: str,
+    duration: float,
+    models: Sequence[str],
+    runs: Sequence[int],
 ) -> RobotEstimate:
     columns = inertia_columns(robot, mode)
     kept = [
@@ -149,82 +168,41 @@ def _solved(
         for place, (joint, name) in enumerate(balance.labels)
         if name != "rotor_inertia" or joint not in columns.dropped
     ]
-    matrix = np.hstack([balance.matrix[:, kept], columns.columns(balance)])
+    wanted = balance.rows.torque - columns.known(balance)
+    blocks = [
+        np.column_stack(
+            [
+                balance.matrix[place][:, kept],
+                balance.inertia[place] @ columns.directions,
+                wanted[place],
+            ]
+        )
+        for place in balance.places
+    ]
+    products = Products.of(blocks, list(balance.places), balance.rows)
     least = np.append(balance.least[kept], np.full(len(columns.names), -np.inf))
-    rows = balance.rows
-    wanted = rows.torque - columns.known(balance)
-    stribeck = tuple(joint for joint in range(robot.n) if models[joint] != PLAIN)
     known = columns.beforehand(len(kept))
     if known.wanted.size:
-        plain = solved(matrix, wanted, rows.joint, robot.n, least, known)
-        _, known = certainty(matrix, wanted, rows, plain, known)
+        _, known = certainty(products, solved(products, least, known), known)
+    stribeck = tuple(joint for joint in range(robot.n) if models[joint] != PLAIN)
     decays = Decays(balance=balance, joints=stribeck)
-    found = solved_with_decays(decays, matrix, wanted, least, known)
-    asked = tuple(joint for joint in stribeck if models[joint] == AUTO)
-    if asked:
-        needed = with_static(found, matrix, wanted, rows, stribeck, known)
-        kept_joints = tuple(joint for joint in stribeck if joint not in asked or joint in needed)
-        if kept_joints != stribeck:
-            start = [found.decays[stribeck.index(joint)] for joint in kept_joints]
-            stribeck, decays = kept_joints, Decays(balance=balance, joints=kept_joints)
-            found = solved_with_decays(decays, matrix, wanted, least, known, start)
-    labels = [balance.labels[place] for place in kept]
-    ranges = [decays.bounds(joint) for joint in stribeck]
-    fit = Fit.of(found, labels, columns, matrix, stribeck, ranges)
-    segments = time_segments(rows.start, rows.stop, rows.recording)
-    jacobian = fit.jacobian[:, ~fit.at_bound]
-    covariance = covariance_of(jacobian, found.solution, rows.joint, segments)
-    return concluded(robot, balance, mode, fit, covariance, duration)
+    found = solved_with_decays(decays, products, least, known)
+    if AUTO in models:
+        needed = with_static(found, products, decays.norms, stribeck, known)
+        left = tuple(joint for joint in stribeck if models[joint] != AUTO or joint in needed)
+        if left != stribeck:
+            start = [float(found.logs[stribeck.index(joint)]) for joint in left]
+            decays = Decays(balance=balance, joints=left)
+            found = solved_with_decays(decays, products, least, known, start)
+    fit = Fit.of(balance, columns, kept, products, decays, found)
+    return concluded(robot, balance, mode, fit, fit.covariance(balance), duration, runs)
 
 
-def _runs(recordings: object) -> list[RobotRecording]:
-    given = [recordings] if isinstance(recordings, RobotRecording) else recordings
-    if not isinstance(given, list | tuple) or not given:
-        raise InputError(
-            "a RobotRecording, or several, is expected",
-            argument="recordings",
-            value=recordings,
-            remedy="read one with load_robot",
-        )
-    for run in given:
-        require_kind("recordings", run, RobotRecording)
-    return list(given)
-
-
-def _least_speeds(
-    min_speed: float | Sequence[float] | Mapping[str, float] | None, robot: Robot
-) -> Array:
-    if min_speed is None:
-        return np.zeros(robot.n)
-    if isinstance(min_speed, Mapping):
-        for name in min_speed:
-            if name not in robot.names:
-                raise InputError("the robot has no such joint", argument="min_speed", value=name)
-        given = np.array([float(min_speed.get(name, 0.0)) for name in robot.names])
-    else:
-        try:
-            given = np.asarray(min_speed, dtype=np.float64)
-        except (TypeError, ValueError):
-            given = np.full((0,), np.nan)
-        given = np.full(robot.n, float(given)) if given.ndim == 0 else given
-    if given.shape != (robot.n,) or not np.all((given >= 0.0) & np.isfinite(given)):
-        raise InputError(
-            f"0 or more is expected, one for all or one for each of the {robot.n} joints",
-            argument="min_speed",
-            value=min_speed,
-        )
-    return given
-
-
-def _duration(windows: float | None, motions: Sequence[Motion]) -> float:
-    if windows is not None:
-        number = isinstance(windows, int | float) and not isinstance(windows, bool)
-        shortest = min(4.0 * float(np.median(np.diff(motion.time))) for motion in motions)
-        if not number or not shortest <= windows <= 1e3:
-            raise InputError(
-                f"a duration in seconds of {shortest:.3g} or more is expected",
-                argument="windows",
-                value=windows,
-            )
-        return float(windows)
-    return min(max(float(motion.wished.max()) for motion in motions), _LONGEST)
+def _pieces(runs: Sequence[RobotRecording]) -> list[tuple[int, int, int]]:
+    """Parts of the recordings that are looked at at once: number of the recording, first sample, end."""
+    found = []
+    for number, run in enumerate(runs):
+        count = max(1, -(-run.samples // _PIECE))
+        edges = np.linspace(0, run.samples, count + 1).round().astype(int).tolist()
+        found += [(number, low, high) for low, high in itertools.pairwise(edges)]
+    return found

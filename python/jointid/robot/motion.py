@@ -111,6 +111,17 @@ class Motion:
         )
 
 
+def part_of(recording: RobotRecording, first: int, end: int) -> RobotRecording:
+    """Return some samples of a recording."""
+    if first == 0 and end == recording.samples:
+        return recording
+    fields = recording.fields()
+    for signal in recording.signals:
+        fields[signal] = fields[signal][first:end]
+    fields["extra"] = {}
+    return RobotRecording(**fields)
+
+
 def _signals(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, bool]:
     """Positions and torques, one row a joint, and whether the positions are of the motors.
 

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from jointid.robot.balance import balance_of
 from jointid.robot.inertia import URDF, inertia_columns
 from jointid.robot.motion import Motion
+from jointid.robot.products import Products, powers
 from jointid.robot.robot import Robot
-from jointid.robot.solving import solved
+from jointid.robot.solving import Known, solved
 
 Array = NDArray[np.float64]
 
@@ -34,8 +35,10 @@ def misfits(robot: Robot, motions: Sequence[Motion], duration: float) -> tuple[f
     if not rows.torque.size:
         return 0.0, 0.0
     wanted = rows.torque - inertia_columns(robot, URDF).known(balance)
-    solution = solved(balance.matrix, wanted, rows.joint, robot.n, balance.least)
-    left = np.bincount(rows.joint, solution.residual**2, robot.n)
+    table = np.column_stack([balance.matrix, wanted])
+    products = Products.of([table[place] for place in balance.places], list(balance.places), rows)
+    solution = solved(products, balance.least, Known.nothing(products.columns))
+    left = products.norms[-1] ** 2 * powers(products.sums.sum(axis=0), solution.values)
     power = np.bincount(rows.joint, rows.torque**2, robot.n)
     known = power > 0.0
     usual = float(np.sqrt(np.mean(left[known] / power[known])))
