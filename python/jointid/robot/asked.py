@@ -15,6 +15,7 @@ from jointid.robot.robot import Robot
 
 Array = NDArray[np.float64]
 
+_ENOUGH = 10_000  # windows
 _LONGEST = 0.1  # [s]: longer windows blur reversals and leave few
 
 
@@ -59,8 +60,11 @@ def least_speeds(
     return given
 
 
-def duration_of(windows: float | None, motions: Sequence[Motion]) -> float:
-    """Return the duration of the windows: as given, else what the velocities' noise asks for [s]."""
+def duration_of(windows: float | None, motions: Sequence[Motion], total: float) -> float:
+    """Return the duration of the windows: as given, else what the velocities' noise asks for [s].
+
+    Of a long recording, `total` seconds, windows may be longer than that: there are enough of them.
+    """
     if windows is not None:
         number = isinstance(windows, int | float) and not isinstance(windows, bool)
         shortest = min(4.0 * float(np.median(np.diff(motion.time))) for motion in motions)
@@ -71,4 +75,5 @@ def duration_of(windows: float | None, motions: Sequence[Motion]) -> float:
                 value=windows,
             )
         return float(windows)
-    return min(max(float(motion.wished.max()) for motion in motions), _LONGEST)
+    wished = max(float(motion.wished.max()) for motion in motions)
+    return min(max(wished, total / _ENOUGH), _LONGEST)

@@ -59,8 +59,10 @@ class Balance:
     least : ndarray
         Their lower bounds.
     matrix : ndarray, shape (rows, parameters)
-    inertia : ndarray, shape (rows, 10 n)
-        By the inertial parameters of all links.
+    inertia : ndarray, shape (rows, directions)
+        By changes of the inertial parameters.
+    basis : ndarray, shape (10 n, directions)
+        These changes, of all links' inertial parameters.
     known : ndarray, shape (rows,)
         Integral of the torque of given rotor inertias.
     standing : ndarray, shape (n,)
@@ -78,6 +80,7 @@ class Balance:
     least: Array
     matrix: Array
     inertia: Array
+    basis: Array
     known: Array
     standing: Array
     samples: int
@@ -91,12 +94,21 @@ class Balance:
         return np.asarray(rows.window[mine[rows.piece[mine] == piece]])
 
 
-def balance_of(robot: Robot, motions: Iterable[Motion], duration: float) -> Balance:
-    """Return the balances of a robot's joints over windows of some duration [s].
+def balance_of(robot: Robot, motions: Iterable[Motion], duration: float, basis: Array) -> Balance:
+    """Return the balances of a robot's joints over windows.
 
     Motions are looked at one after the other; of each only its velocities and windows are kept.
+
+    Parameters
+    ----------
+    robot : Robot
+    motions : iterable of Motion
+    duration : float
+        Of the windows [s].
+    basis : ndarray, shape (10 n, directions)
+        Changes of the inertial parameters that are asked for.
     """
-    parts = [_part(robot, motion, number, duration) for number, motion in enumerate(motions)]
+    parts = [_part(robot, motion, number, duration, basis) for number, motion in enumerate(motions)]
     first = parts[0]
     time = np.array([float(part.summings[0].step.sum()) for part in parts])
     rows = Rows(
@@ -111,6 +123,7 @@ def balance_of(robot: Robot, motions: Iterable[Motion], duration: float) -> Bala
         least=first.least,
         matrix=np.concatenate([part.matrix for part in parts]),
         inertia=np.concatenate([part.inertia for part in parts]),
+        basis=basis,
         known=np.concatenate([part.known for part in parts]),
         standing=np.average([part.standing for part in parts], axis=0, weights=time),
         samples=sum(part.samples for part in parts),
@@ -120,7 +133,7 @@ def balance_of(robot: Robot, motions: Iterable[Motion], duration: float) -> Bala
     )
 
 
-def _part(robot: Robot, motion: Motion, number: int, duration: float) -> Balance:
+def _part(robot: Robot, motion: Motion, number: int, duration: float, basis: Array) -> Balance:
     """The balances of one recording."""
     windows = Windows.of(motion.time, duration)
     summing = Summing.of(robot, motion, windows)
@@ -140,10 +153,8 @@ def _part(robot: Robot, motion: Motion, number: int, duration: float) -> Balance
         for place, column in enumerate(columns):
             if joint in column.values:
                 matrix[:, place] = column.values[joint][kept]
-        spread = np.zeros((kept.size, 10 * robot.n))
-        for place, link in enumerate(inertia[joint].links):
-            own = inertia[joint].columns[kept, 10 * place : 10 * place + 10]
-            spread[:, 10 * link : 10 * link + 10] = own
+        carried = [10 * link + k for link in inertia[joint].links for k in range(10)]
+        spread = inertia[joint].columns[kept] @ basis[carried]
         sure = np.zeros(kept.size)
         for value, values in given.values():
             if joint in values:
@@ -180,6 +191,7 @@ def _part(robot: Robot, motion: Motion, number: int, duration: float) -> Balance
         least=np.array([column.least for column in columns]),
         matrix=np.concatenate(matrices)[order],
         inertia=np.concatenate(inertias)[order],
+        basis=basis,
         known=np.concatenate(known)[order],
         standing=1.0 - summing.usable @ summing.step / total,
         samples=motion.time.size,

@@ -22,7 +22,7 @@ from jointid.robot.conclusion import concluded
 from jointid.robot.decays import Decays, solved_with_decays
 from jointid.robot.findings import doubtful_joints, named_fact, turned_zeros, wrong_inertias
 from jointid.robot.fit import Fit
-from jointid.robot.inertia import MODES, SCALED, URDF, inertia_columns
+from jointid.robot.inertia import MODES, SCALED, URDF, basis_of, inertia_columns
 from jointid.robot.models import AUTO, PLAIN, friction_models
 from jointid.robot.motion import Motion, part_of
 from jointid.robot.products import Products
@@ -114,7 +114,7 @@ def identify_robot(
         return Motion.of(part_of(runs[number], low, high), robot, slowest, mask_standstill)
 
     looks = {piece: motion(piece) for piece in firsts}
-    duration = duration_of(windows, list(looks.values()))
+    duration = duration_of(windows, list(looks.values()), sum(run.duration for run in runs))
     zeros = None
     if robot.zero_offsets is None:
         zeros = zeros_of(robot, list(looks.values()), duration)
@@ -122,7 +122,7 @@ def identify_robot(
             robot = replace(robot, zero_offsets=zeros.offsets)
             looks = {piece: motion(piece) for piece in firsts}
     every = (looks[piece] if piece in looks else motion(piece) for piece in pieces)
-    balance = balance_of(robot, every, duration)
+    balance = balance_of(robot, every, duration, basis_of(robot, inertia))
     if not balance.rows.torque.size:
         raise InputError("no joint moves", argument="recordings", value=runs[0].name)
     estimate = _solved(robot, balance, inertia, duration, models, numbers)
@@ -169,11 +169,12 @@ def _solved(
         if name != "rotor_inertia" or joint not in columns.dropped
     ]
     wanted = balance.rows.torque - columns.known(balance)
+    inertial = columns.columns(balance)
     blocks = [
         np.column_stack(
             [
                 balance.matrix[place][:, kept],
-                balance.inertia[place] @ columns.directions,
+                inertial[place],
                 wanted[place],
             ]
         )

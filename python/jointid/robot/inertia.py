@@ -79,11 +79,33 @@ class InertiaColumns:
 
     def columns(self, balance: Balance) -> Array:
         """Return the columns' integrals."""
-        return np.asarray(balance.inertia @ self.directions)
+        return np.asarray(balance.inertia @ within(balance.basis, self.directions))
 
     def known(self, balance: Balance) -> Array:
         """Return the integrals of what is given."""
-        return np.asarray(balance.inertia @ self.given + balance.known)
+        return np.asarray(balance.inertia @ within(balance.basis, self.given) + balance.known)
+
+
+def within(basis: Array, changes: Array) -> Array:
+    """Return changes of the inertial parameters as combinations of a basis that contains them."""
+    return np.asarray(np.linalg.lstsq(basis, changes, rcond=None)[0])
+
+
+def basis_of(robot: Robot, mode: str) -> Array:
+    """Return the changes of inertial parameters that a mode needs, shape (10 n, directions).
+
+    For the URDF's inertias, as they are or scaled, these are the links one by one.
+    """
+    if mode == FREE:
+        return inertia_columns(robot, FREE).directions
+    return _links(robot)
+
+
+def _links(robot: Robot) -> Array:
+    directions = np.zeros((10 * robot.n, robot.n))
+    for link in range(robot.n):
+        directions[10 * link : 10 * link + 10, link] = robot.tree.inertias[link]
+    return directions
 
 
 def inertia_columns(robot: Robot, mode: str) -> InertiaColumns:
@@ -97,9 +119,7 @@ def inertia_columns(robot: Robot, mode: str) -> InertiaColumns:
         )
     links, rotors = _structure(robot)
     if mode == SCALED:
-        directions = np.zeros((every.size, robot.n))
-        for link in range(robot.n):
-            directions[10 * link : 10 * link + 10, link] = robot.tree.inertias[link]
+        directions = _links(robot)
         kept, _ = independent(np.hstack([rotors[:, free], links @ directions]))
         scaled = [place - len(free) for place in kept if place >= len(free)]
         others = [link for link in range(robot.n) if link not in scaled]

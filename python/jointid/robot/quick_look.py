@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.robot.balance import balance_of
-from jointid.robot.inertia import URDF, inertia_columns
+from jointid.robot.inertia import URDF, basis_of, inertia_columns
 from jointid.robot.motion import Motion
 from jointid.robot.products import Products, powers
 from jointid.robot.robot import Robot
@@ -30,7 +30,7 @@ def misfits(robot: Robot, motions: Sequence[Motion], duration: float) -> tuple[f
     usual : float
         Root mean square of the joints' own: what is wrong at the wrist does not drown in the shoulder's torque.
     """
-    balance = balance_of(robot, motions, duration)
+    balance = balance_of(robot, motions, duration, basis_of(robot, URDF))
     rows = balance.rows
     if not rows.torque.size:
         return 0.0, 0.0
