@@ -5,16 +5,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.estimate.findings import Finding
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.problem.window_table import WindowTable
+from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jointid.robot.prediction import RobotPrediction
 
 Array = NDArray[np.float64]
 
@@ -129,6 +134,29 @@ class RobotEstimate:
                 value=velocity,
             )
         return friction_of(self, speeds)
+
+    def predict(self, recording: RobotRecording) -> RobotPrediction:
+        """Predict the torques of a recording, and compare them with the measured ones, over windows as identified.
+
+        Parameters
+        ----------
+        recording : RobotRecording
+            Of the same robot; it need not be one that the estimate was made from.
+
+        Returns
+        -------
+        RobotPrediction
+            Relative residuals: of each joint, and of all.
+
+        Raises
+        ------
+        InputError
+            The recording lacks a joint, its torque, or the gear ratios.
+        """
+        from jointid.robot.prediction import predict_robot
+
+        require_kind("recording", recording, RobotRecording)
+        return predict_robot(self, recording)
 
     def report(self) -> str:
         """Return the table of the joints and the findings as text."""
