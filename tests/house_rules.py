@@ -121,7 +121,7 @@ FOLDERS: dict[str, Folder] = {
         packages={"numpy", "matplotlib"},
     ),
     "exports": Folder(
-        may_use={"base", "joint", "estimate", "simulation", "identification", "problem"},
+        may_use={"base", "joint", "estimate", "simulation", "identification", "problem", "robot"},
         packages={"numpy", "scipy"},
     ),
     "hardware/session": Folder(may_use={*_DATA, "simulation"}, packages={"numpy"}),

@@ -105,9 +105,7 @@ class Motion:
             moving=of_joints,
             motor_moving=of_motors,
             at_motor=at_motor,
-            wished=np.array(
-                [_core.window_duration(each, _UNKNOWNS, mask_standstill) for each in joints]
-            ),
+            wished=np.array([masked.wished(each) for each in joints]),
         )
 
 
@@ -133,13 +131,14 @@ def _signals(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, boo
     at_motor = (robot.side or recording.side) == MOTOR
     if at_motor and torque is not None:
         torque, motor_torque = None, torque
+    if torque is None and motor_torque is None:
+        raise InputError("the recording has no torque", argument="recordings", value=recording.name)
     ratios = _ratios(recording, robot, columns) if at_motor or torque is None else np.ones(robot.n)
     if torque is not None:
         joint_torque = np.array(torque[:, columns].T)
-    elif motor_torque is not None:
-        joint_torque = robot.couplings.T @ (motor_torque[:, columns].T * ratios[:, None])
     else:
-        raise InputError("the recording has no torque", argument="recordings", value=recording.name)
+        assert motor_torque is not None
+        joint_torque = robot.couplings.T @ (motor_torque[:, columns].T * ratios[:, None])
     if not np.all(np.isfinite(joint_torque)):
         missing = robot.names[int(np.argmin(np.all(np.isfinite(joint_torque), axis=1)))]
         raise InputError(
@@ -195,4 +194,13 @@ class _Mask:
         )
 
     def moving(self, recording: _core.Recording) -> Flags:
-        return np.asarray(_core.usable_intervals(recording, self.standstill), dtype=bool)
+        try:
+            return np.asarray(_core.usable_intervals(recording, self.standstill), dtype=bool)
+        except InputError:  # it never moves: the others may
+            return np.zeros(self.time.size - 1, dtype=bool)
+
+    def wished(self, recording: _core.Recording) -> float:
+        try:
+            return _core.window_duration(recording, _UNKNOWNS, self.standstill)
+        except InputError:
+            return 0.0
