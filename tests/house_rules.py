@@ -107,16 +107,23 @@ FOLDERS: dict[str, Folder] = {
     "simulation": Folder(may_use=_DATA, packages={"numpy"}),
     "study": Folder(may_use={*_SOUGHT, "simulation"}, packages={"numpy", "pandas", "pyarrow"}),
     "design": Folder(may_use={*_SOUGHT, "simulation", "plot"}, packages={"numpy", "matplotlib"}),
+    "robot": Folder(
+        may_use={
+            *("base", "recording", "recording/wide", "joint", "problem", "estimate", "joints"),
+            *("identification/inference", "identification/search"),
+        },
+        packages={"numpy", "scipy", "pinocchio"},
+    ),
     "plot": Folder(
         may_use={*_DATA, "simulation", "estimate", "study"},
         packages={"numpy", "matplotlib"},
     ),
     "report": Folder(
-        may_use={"base", "estimate", "joints", "plot", "identification/warnings"},
+        may_use={"base", "estimate", "joints", "robot", "plot", "identification/warnings"},
         packages={"numpy", "matplotlib"},
     ),
     "exports": Folder(
-        may_use={"base", "joint", "estimate", "simulation", "identification", "problem"},
+        may_use={"base", "joint", "estimate", "simulation", "identification", "problem", "robot"},
         packages={"numpy", "scipy"},
     ),
     "hardware/session": Folder(may_use={*_DATA, "simulation"}, packages={"numpy"}),
@@ -158,6 +165,7 @@ FOLDERS: dict[str, Folder] = {
                 "recording/readers",
                 "comparison",
                 "joints",
+                "robot",
                 "simulation",
                 "study",
                 "design",
@@ -174,7 +182,7 @@ FOLDERS: dict[str, Folder] = {
     "": Folder(
         may_use={
             *(_SOUGHT - {"problem"}),
-            *("recording/readers", "recording/wide", "comparison", "joints", "online"),
+            *("recording/readers", "recording/wide", "comparison", "joints", "online", "robot"),
             *("simulation", "study", "design"),
             *("plot", "exports", "hardware", "commissioning", "cli"),
         },
@@ -187,7 +195,7 @@ ASKED_FOR = {"hardware", "commissioning"}
 NAMED_ON_PURPOSE = {"hardware.bench.drive_types"}
 MEDIAN = 130  # lines of a Python file, at most
 # Slow to load, or of use to few: imported inside the function that needs it (hardware aside).
-HEAVY = {"scipy", "pandas", "pyarrow", "matplotlib", "can", "canopen", "tomlkit"}
+HEAVY = {"scipy", "pandas", "pyarrow", "matplotlib", "can", "canopen", "tomlkit", "pinocchio"}
 
 FORBIDDEN_WORDS = {
     *("data", "manager", "managers", "helper", "helpers", "util", "utils"),

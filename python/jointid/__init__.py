@@ -67,6 +67,9 @@ from jointid.recording.readers.loading import load, load_runs
 from jointid.recording.readers.loading_robot import load_robot
 from jointid.recording.recording import Recording
 from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.identifying import identify_robot
+from jointid.robot.result import RobotEstimate
+from jointid.robot.robot import Robot
 from jointid.simulation.batch import SimulatedBatch, simulate_batch
 from jointid.simulation.plant import Bristle, control_estimates
 from jointid.simulation.scenario import Scenario
@@ -115,6 +118,8 @@ __all__ = [
     "Pd",
     "Pid",
     "Recording",
+    "Robot",
+    "RobotEstimate",
     "RobotRecording",
     "Scenario",
     "Search",
@@ -139,6 +144,7 @@ __all__ = [
     "hardware",
     "identify",
     "identify_joints",
+    "identify_robot",
     "load",
     "load_design",
     "load_robot",

@@ -1,7 +1,7 @@
 """Student's t."""
 
 
-def quantile(probability: float, freedom: int) -> float:
+def quantile(probability: float, freedom: float) -> float:
     """Quantile of Student's t with `freedom` degrees of freedom."""
     from scipy.special import stdtrit
 
