@@ -159,7 +159,7 @@ def fit(rows: Rows, kept: Mask) -> Fit:
         dict(zip(names, beta.tolist(), strict=True)),
         dict(zip(names, errors.tolist(), strict=True)),
         chosen,
-        beta,
+        np.asarray(beta, dtype=float),
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -14,7 +15,7 @@ from arms.classical import Array, Mask
 def folds(time: Array, begin: float, end: float, number: int) -> Iterator[Mask]:
     """Samples held out: `number` blocks one after the other."""
     edges = np.linspace(begin, end, number + 1)
-    for low, high in zip(edges[:-1], edges[1:], strict=True):
+    for low, high in itertools.pairwise(edges):
         yield (time >= low) & (time < high)
 
 
