@@ -176,6 +176,7 @@ def _step(
         middle = dynamics.acceleration(position + 0.5 * step * velocity, half, torque, sign)
         if middle is not None:
             after = velocity + step * middle
+            after[np.abs(after) < _STILL] = 0.0
             if np.all((sign * (dynamics.speeds @ after) > 0.0) | (sign == 0.0)):
                 return position + step * half, after
     for _ in range(_PARTS):
