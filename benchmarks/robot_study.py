@@ -77,24 +77,27 @@ friction that may hold any torque at standstill, a controller along sums of sine
 is in it."""
 
 _BESIDE = {
-    "friction": """The raw log at the motors, 5 kHz, 9 s; the call is told the URDF, gear ratios, the zeros of joints 2 and 3,
-and that motor 6 turns with joints 5 and 6. Model: Coulomb and viscous, as published (Janot, Vandanjon,
-Gautier). The published viscous friction of joints 5 and 6 holds motor 6's. Filtered least squares at 20 Hz;
-its standstill and slow rows are left out by the authors' limits, ours by the package.""",
-    "blocks": """Five blocks of 1.5 s, each predicted from what the other four gave. Norm of the windows' residual torque
-integrals over the norm of the measured ones, windows side by side, reversals included; the measured torque is
-not filtered. Each way predicts with its own velocity. The last column counts the joints where ours is not
-above the filtered least squares that is best in all joints together.""",
-    "runs": """Random friction (Coulomb, viscous, a Stribeck rise of 20 to 60 %), rotors and motion; 20 s at 1 kHz; stamps
-late by 50 µs in the mean, exponential; 2¹⁹ counts a turn; velocities 5 ms late; torque noise .5 % of the
-largest torque. Coverage: of the 95 % intervals of Coulomb and viscous friction.""",
-    "noise": """As above with noise on every position and no velocities. Worst error of Coulomb or viscous friction. The ratio
-is that of the standard deviations of a second difference of the true positions and of its error, of the best
-joint.""",
+    "friction": """The raw log at the motors, 5 kHz, 9 s; the call is told the URDF, gear ratios, the zeros of
+joints 2 and 3, and that motor 6 turns with joints 5 and 6. Model: Coulomb and viscous, as
+published (Janot, Vandanjon, Gautier). The published viscous friction of joints 5 and 6 holds
+motor 6's. Filtered least squares at 20 Hz; its standstill and slow rows are left out by the
+authors' limits, ours by the package.""",
+    "blocks": """Five blocks of 1.5 s, each predicted from what the other four gave. Norm of the windows'
+residual torque integrals over the norm of the measured ones, windows side by side, reversals
+included; the measured torque is not filtered. Each way predicts with its own velocity. The last
+column counts the joints where ours is not above the filtered least squares that is best in all
+joints together.""",
+    "runs": """Random friction (Coulomb, viscous, a Stribeck rise of 20 to 60 %), rotors and motion; 20 s at 1
+kHz; stamps late by 50 µs in the mean, exponential; 2¹⁹ counts a turn; velocities 5 ms late;
+torque noise .5 % of the largest torque. Coverage: of the 95 % intervals of Coulomb and viscous
+friction.""",
+    "noise": """As above with noise on every position and no velocities. Worst error of Coulomb or viscous
+friction. The ratio is that of the standard deviations of a second difference of the true
+positions and of its error, of the best joint.""",
     "heavier": """Scales of the links, and what a call says that takes the URDF's inertias for true.""",
     "facts": """One arm; the call is told something wrong, and has to say what.""",
-    "speed": """Each in a program of its own, on two cores. The loop is plain Python over 20 s: pinocchio's four regressors a
-sample, and nothing else. Memory before is that of the program with the recording.""",
+    "speed": """Each in a program of its own, on two cores. The loop is plain Python over 20 s: pinocchio's four
+regressors a sample, and nothing else. Memory before is that of the program with the recording.""",
 }
 
 

@@ -172,7 +172,7 @@ def held_out(log: Log) -> Iterator[str]:
     }
     mine = {name: held_out_of_ours(log, **options) for name, options in OURS.items()}
     for length in LENGTHS:
-        best = np.min([found[length].joints for found in theirs.values()], axis=0)
+        best = min(theirs.values(), key=lambda found: found[length].total)[length].joints
         for name, found in {**theirs, **mine}.items():
             share = found[length]
             below = f"{int(np.sum(share.joints <= best))} of {tx40.JOINTS}" if name in mine else ""
