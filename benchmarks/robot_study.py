@@ -84,9 +84,10 @@ motor 6's. Filtered least squares at 20 Hz; its standstill and slow rows are lef
 authors' limits, ours by the package.""",
     "blocks": """Five blocks of 1.5 s, each predicted from what the other four gave. Norm of the windows'
 residual torque integrals over the norm of the measured ones, windows side by side, reversals
-included; the measured torque is not filtered. Each way predicts with its own velocity. The last
-column counts the joints where ours is not above the filtered least squares that is best in all
-joints together.""",
+included; the measured torque is not filtered. Ours predicts by the
+motion of the filter of 40 Hz, so that only what was identified differs, or by its own velocity.
+The last column counts the joints where ours is not above the filtered least squares that is best
+in all joints together.""",
     "runs": """Random friction (Coulomb, viscous, a Stribeck rise of 20 to 60 %), rotors and motion; 20 s at 1
 kHz; stamps late by 50 µs in the mean, exponential; 2¹⁹ counts a turn; velocities 5 ms late;
 torque noise .5 % of the largest torque. Coverage: of the 95 % intervals of Coulomb and viscous

@@ -19,10 +19,20 @@ CUTOFFS = ((20.0, 50), (40.0, 25), (60.0, 25), (100.0, 25))  # [Hz], and each ho
 THIN = 5  # samples, for predictions: 1 kHz
 CUTOFF, EVERY = 20.0, 50  # for the parameters
 PUBLISHED_MODEL = "coulomb_viscous"
+MOTION = 40.0  # cutoff of the motion by which ours predicts [Hz]
 OURS: dict[str, dict[str, Any]] = {
-    "jointid, inertia free, Coulomb and viscous": {"inertia": "free", "model": PUBLISHED_MODEL},
-    "jointid, inertia free, model chosen": {"inertia": "free"},
-    "jointid, inertia scaled, model chosen": {"inertia": "scaled"},
+    "jointid, inertia free, Coulomb and viscous": {
+        "cutoff": MOTION,
+        "inertia": "free",
+        "model": PUBLISHED_MODEL,
+    },
+    "jointid, inertia free, model chosen": {"cutoff": MOTION, "inertia": "free"},
+    "jointid, inertia free, model chosen, its own velocity": {"cutoff": None, "inertia": "free"},
+    "jointid, inertia scaled, model chosen": {"cutoff": MOTION, "inertia": "scaled"},
+    "jointid, inertia scaled, model chosen, its own velocity": {
+        "cutoff": None,
+        "inertia": "scaled",
+    },
 }
 LENGTHS = (0.025, 0.1)  # of the windows [s]
 
@@ -97,12 +107,19 @@ def held_out_of_classical(log: Log, cutoff: float, every: int) -> dict[float, Sh
     return {length: Share.gathered(*pair) for length, pair in pairs.items()}
 
 
-def held_out_of_ours(log: Log, **options: Any) -> dict[float, Share]:
-    """By the windows' length; the call is told nothing but the robot."""
+def held_out_of_ours(log: Log, cutoff: float | None, **options: Any) -> dict[float, Share]:
+    """By the windows' length; the call is told nothing but the robot.
+
+    The motion for the prediction is filtered as in the classical way, so that only what was identified differs;
+    without a cutoff, it is the package's own.
+    """
     model, whole = tx40.urdf(log.folder), log.recording()
-    thin = log.time[::THIN]
-    position, torque = log.position[::THIN], log.torque[::THIN]
-    velocity = log.velocity()[::THIN]
+    thin, torque = log.time[::THIN], log.torque[::THIN]
+    if cutoff is None:
+        position, velocity = log.position[::THIN], log.velocity()[::THIN]
+    else:
+        signals = classical.filtered(log.time, log.position, log.torque, cutoff)
+        position, velocity = signals.position[::THIN], signals.velocity[::THIN]
     pairs: dict[float, tuple[list[Array], list[Array]]] = {length: ([], []) for length in LENGTHS}
     begin, end = tx40.MOVING
     for block in folds(log.time, begin, end, FOLDS):

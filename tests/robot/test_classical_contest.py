@@ -41,8 +41,8 @@ def test_the_classical_way_gives_the_published_friction(log: tx40_tables.Log) ->
 
 
 def test_ours_predicts_held_out_blocks_as_well(log: tx40_tables.Log) -> None:
-    theirs = tx40_tables.held_out_of_classical(log, 40.0, 25)
-    mine = tx40_tables.held_out_of_ours(log, inertia="free")
+    theirs = tx40_tables.held_out_of_classical(log, tx40_tables.MOTION, 25)
+    mine = tx40_tables.held_out_of_ours(log, tx40_tables.MOTION, inertia="free")
     for length in tx40_tables.LENGTHS:
         ours, other = mine[length], theirs[length]
         below = np.sum(ours.joints <= other.joints)
