@@ -18,7 +18,7 @@ from simulated_arm import JOINTS, URDF, Arm, Run, Sensors, random_arm, random_mo
 
 FRICTION = ("coulomb", "viscous")
 NAMES = tuple(f"joint_{number}" for number in range(1, JOINTS + 1))
-SLOW = 0.1  # rows of the filtered least squares below it are left out [rad/s]
+SLOW = 0.2  # rows of the filtered least squares below it are left out [rad/s]
 
 __all__ = ["FRICTION", "JOINTS", "NAMES", "URDF", "Arm", "Sensors", "random_arm", "recorded"]
 
@@ -37,22 +37,24 @@ def simulated(
 
 @dataclass(frozen=True)
 class Errors:
-    """Relative errors, (runs, joints), by the parameter's name, and whether the intervals hold the truth."""
+    """Relative errors, (runs, joints), by the parameter's name; whether the intervals hold the truth; errors over half-widths."""
 
     relative: dict[str, Array]
     inside: dict[str, Array]
+    scaled: dict[str, Array]
 
     @staticmethod
     def of(found: list[tuple[Arm, dict[str, Array], dict[str, Array]]]) -> Errors:
         """Of runs: the arm, values and half-widths of the intervals by the parameter's name."""
-        relative, inside = {}, {}
+        relative, inside, scaled = {}, {}, {}
         for name in FRICTION:
             truth = np.array([arm.values(name)[:JOINTS] for arm, _, _ in found])
             values = np.array([each[name] for _, each, _ in found])
             half = np.array([each[name] for _, _, each in found])
             relative[name] = values / truth - 1.0
             inside[name] = np.abs(values - truth) <= half
-        return Errors(relative, inside)
+            scaled[name] = (values - truth) / np.where(half > 0.0, half, np.nan)
+        return Errors(relative, inside, scaled)
 
     def within(self, share: float) -> int:
         """Runs of which every Coulomb and viscous friction is as near as this."""
@@ -67,6 +69,11 @@ class Errors:
     def coverage(self) -> float:
         """Share of the intervals that hold the truth."""
         return float(np.mean([each.mean() for each in self.inside.values()]))
+
+    @property
+    def of_half_width(self) -> float:
+        """Root mean square of errors over half-widths; .51 where intervals of 95 % are as wide as they should be."""
+        return float(np.sqrt(np.nanmean([each**2 for each in self.scaled.values()])))
 
 
 def of_estimate(found: jid.RobotEstimate) -> tuple[dict[str, Array], dict[str, Array]]:

@@ -32,8 +32,8 @@ def robot(**options: Any) -> jid.Robot:
     return jid.Robot.from_urdf(URDF, **options)
 
 
-def ran(arm: Arm) -> Run:
-    return run(arm, random_motion(SEED, duration=12.0))
+def ran(arm: Arm, duration: float = 12.0) -> Run:
+    return run(arm, random_motion(SEED, duration=duration))
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,7 @@ def plain() -> Run:
 
 @pytest.fixture(scope="module")
 def with_stribeck() -> Run:
-    return ran(random_arm(SEED))
+    return ran(random_arm(SEED), 20.0)
 
 
 def errors(found: jid.RobotEstimate, arm: Arm) -> dict[str, np.ndarray]:
