@@ -37,7 +37,7 @@ def simulated(
 
 @dataclass(frozen=True)
 class Errors:
-    """Relative errors, (runs, joints), by the parameter's name; whether the intervals hold the truth; errors over half-widths."""
+    """By the parameter's name, (runs, joints): relative errors, whether intervals hold the truth, errors over half of one."""
 
     relative: dict[str, Array]
     inside: dict[str, Array]

@@ -46,9 +46,8 @@ def accuracy(seeds: range) -> Iterator[str]:
         for cutoff in (20.0, 40.0):
             name = f"filtered least squares, {cutoff:g} Hz"
             found.setdefault(name, []).append((ran.arm, *by_filtering(recording, cutoff)))
-    yield f"| | all within {NEAR:.0%} | worst Coulomb | worst viscous | coverage | error, of half an interval | warnings |".replace(
-        "%", " %"
-    )
+    said = "worst Coulomb | worst viscous | coverage | error, of half an interval | warnings"
+    yield f"| | all within {100 * NEAR:g} % | {said} |"
     yield "|---|--:|--:|--:|--:|--:|---|"
     for name, runs in found.items():
         errors = Errors.of(runs)
