@@ -37,7 +37,7 @@ def simulated(
 
 @dataclass(frozen=True)
 class Errors:
-    """By the parameter's name, (runs, joints): relative errors, whether intervals hold the truth, errors over half of one."""
+    """By parameter, (runs, joints): relative errors, whether intervals hold the truth, errors over half of one."""
 
     relative: dict[str, Array]
     inside: dict[str, Array]
