@@ -25,8 +25,9 @@ def tables(seed: int, repeats: int, hour: bool) -> Iterator[str]:
     cases = [("20 s", short, inertia, repeats) for inertia in ("urdf", "scaled", "free")]
     if hour:
         cases.append(("1 hour", lengthened(short, 360), "free", 1))
-    yield "| recording | inertia | seconds, median | worst | loop of 20 s | ratio to it | memory before | peak |"
-    yield "|---|---|--:|--:|--:|--:|--:|--:|"
+    said = "seconds, median | worst | loop of 20 s | ratio to it | signals | memory before | peak"
+    yield f"| recording | inertia | {said} |"
+    yield "|---|---|--:|--:|--:|--:|--:|--:|--:|"
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "recording.npz"
         for name, recording, inertia, times in cases:
@@ -41,6 +42,7 @@ def tables(seed: int, repeats: int, hour: bool) -> Iterator[str]:
                 f"{max(seconds):.2f}",
                 f"{loop:.2f}",
                 f"{middle / loop:.2f}",
+                f"{found['arrays'][0]:.0f} MB",
                 f"{found['before'][0]:.0f} MB",
                 f"{found['peak'][0]:.0f} MB",
             )

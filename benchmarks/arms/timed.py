@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import resource
 import sys
 import time
 from pathlib import Path
@@ -33,24 +32,34 @@ def reference(recording: jid.RobotRecording) -> float:
     return time.perf_counter() - began
 
 
-def peak() -> float:
-    """Largest memory of this program so far [MB]."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+def memory(field: str) -> float:
+    """VmRSS or VmHWM [MB]; what getrusage says begins with the parent's."""
+    for line in Path("/proc/self/status").read_text(encoding="ascii").splitlines():
+        if line.startswith(f"{field}:"):
+            return int(line.split()[1]) / 1024.0
+    raise OSError(f"/proc/self/status has no {field}")
+
+
+def recorded_bytes(recording: jid.RobotRecording) -> int:
+    """Of the signals."""
+    every = [getattr(recording, name) for name in recording.signals]
+    return sum(each.nbytes for each in every)
 
 
 def main(path: str, inertia: str, repeats: int) -> None:
     """Measure and print as JSON."""
     recording = jid.load_robot(path)
     robot = jid.Robot.from_urdf(URDF)
-    before = peak()
+    before, arrays = memory("VmRSS"), recorded_bytes(recording) / 2.0**20
     seconds = []
     for _ in range(repeats):
         began = time.perf_counter()
         jid.identify_robot(recording, robot, inertia=inertia)
         seconds.append(time.perf_counter() - began)
-    after = peak()
+    after = memory("VmHWM")
     loop = reference(recording.crop(0.0, 20.0))
-    print(json.dumps({"seconds": seconds, "before": before, "peak": after, "reference": loop}))
+    found = {"before": before, "arrays": arrays, "peak": after, "reference": loop}
+    print(json.dumps({"seconds": seconds, **found}))
 
 
 if __name__ == "__main__":
