@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from arms import seven_tables, speed_tables, tx40_tables
+from arms import mismatches, seven_tables, speed_tables, tx40_tables
 
 _LOG = Path(__file__).resolve().parents[2] / "shared" / "data" / "tx40"
 
@@ -30,6 +30,10 @@ def sections(
             lambda: seven_tables.heavier(range(min(runs, 5))),
         ),
         "facts": ("Facts that are wrong", lambda: seven_tables.wrong_facts(0)),
+        "wrong": (
+            "What else may be wrong",
+            lambda: mismatches.table(range(min(runs, 3))),
+        ),
         "speed": ("Time and memory", lambda: speed_tables.tables(0, 5, hour)),
     }
     if not (log / "tx40.csv.gz").is_file():
@@ -100,6 +104,7 @@ friction. The ratio is that of the standard deviations of a second difference of
 positions and of its error, of the best joint.""",
     "heavier": """Scales of the links, and what a call says that takes the URDF's inertias for true.""",
     "facts": """One arm; the call is told something wrong, and has to say what.""",
+    "wrong": """The call is not told of it; the largest over the arms, and how often each warning came.""",
     "speed": """Each in a program of its own, on two cores. The loop is plain Python over 20 s: pinocchio's four
 regressors a sample, and nothing else. Memory before is that of the program with the recording.""",
 }
