@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
+from simulated_arm import JOINTS, URDF, Arm, Run, Sensors, random_arm, random_motion, recorded, run
 
 import jointid as jid
 from arms import classical
 from arms.classical import Array
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
-from simulated_arm import JOINTS, URDF, Arm, Run, Sensors, random_arm, random_motion, recorded, run
 
 FRICTION = ("coulomb", "viscous")
 NAMES = tuple(f"joint_{number}" for number in range(1, JOINTS + 1))
