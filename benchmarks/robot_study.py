@@ -105,8 +105,10 @@ positions and of its error, of the best joint.""",
     "heavier": """Scales of the links, and what a call says that takes the URDF's inertias for true.""",
     "facts": """One arm; the call is told something wrong, and has to say what.""",
     "wrong": """The call is not told of it; the largest over the arms, and how often each warning came.""",
-    "speed": """Each in a program of its own, on two cores. The loop is plain Python over 20 s: pinocchio's four
-regressors a sample, and nothing else. Memory before is that of the program with the recording.""",
+    "speed": """Each in a program of its own, on two cores that may have other work: so the processor's seconds
+stand beside those of the clock. The loop is plain Python over 20 s: pinocchio's four regressors a
+sample, and nothing else; the ratio is of processor seconds. Memory before is that of the program
+with the recording.""",
 }
 
 
