@@ -31,6 +31,7 @@ ROOMS: dict[str, set[str]] = {
         *("base", "model", "search"),
         *("identify/recording", "identify/balance", "identify/penalty"),
     },
+    "design": {"base", "model", "simulate", "search", "identify/balance"},
     "signals": {"base"},
     "diagnose": {
         *("base", "signals"),
@@ -105,6 +106,13 @@ FOLDERS: dict[str, Folder] = {
     "online": Folder(may_use={*_SOUGHT, "identification/inference"}, packages={"numpy"}),
     "simulation": Folder(may_use=_DATA, packages={"numpy"}),
     "study": Folder(may_use={*_SOUGHT, "simulation"}, packages={"numpy", "pandas", "pyarrow"}),
+    "design": Folder(
+        may_use={
+            *("base", "recording", "joint", "problem", "simulation", "plot"),
+            *("identification", "identification/search"),
+        },
+        packages={"numpy", "matplotlib"},
+    ),
     "plot": Folder(
         may_use={*_DATA, "simulation", "estimate", "study"},
         packages={"numpy", "matplotlib"},
@@ -158,6 +166,7 @@ FOLDERS: dict[str, Folder] = {
                 "joints",
                 "simulation",
                 "study",
+                "design",
                 "plot",
                 "report",
                 "exports",
@@ -172,7 +181,7 @@ FOLDERS: dict[str, Folder] = {
         may_use={
             *(_SOUGHT - {"problem"}),
             *("recording/readers", "recording/wide", "comparison", "joints", "online"),
-            *("simulation", "study"),
+            *("simulation", "study", "design"),
             *("plot", "exports", "hardware", "commissioning", "cli"),
         },
     ),

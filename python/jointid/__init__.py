@@ -40,6 +40,12 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.comparison.comparison import compare_models
 from jointid.comparison.result import Comparison
+from jointid.design.design import Design
+from jointid.design.design_file import load_design
+from jointid.design.design_search import DesignProgress, DesignSearch
+from jointid.design.designing import design_excitation
+from jointid.design.known import Known
+from jointid.design.motion_limits import MotionLimits
 from jointid.estimate.bootstrap import Bootstrap
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.selection import Selection
@@ -82,16 +88,21 @@ __all__ = [
     "Bristle",
     "Comparison",
     "CompensatedPid",
+    "Design",
+    "DesignProgress",
+    "DesignSearch",
     "Estimate",
     "GaOptions",
     "Generation",
     "InputError",
     "Joint",
     "JointEstimates",
+    "Known",
     "Limits",
     "Link",
     "LugreObserver",
     "Model",
+    "MotionLimits",
     "OnlineEstimate",
     "OnlineIdentifier",
     "OpenLoop",
@@ -118,11 +129,13 @@ __all__ = [
     "commissioning",
     "compare_models",
     "control_estimates",
+    "design_excitation",
     "export",
     "hardware",
     "identify",
     "identify_joints",
     "load",
+    "load_design",
     "load_robot",
     "load_runs",
     "plot",

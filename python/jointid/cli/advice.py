@@ -23,7 +23,7 @@ _TABLES = {
     "sensor": "sensor",
 }
 _VERBS = {"load": "load", "identify": "identify", "compare_models": "compare", "sweep": "sweep"}
-_VERBS |= {"simulate": "simulate", "export": "export"}
+_VERBS |= {"simulate": "simulate", "export": "export", "design_excitation": "design"}
 
 
 def words_of_action(action: Action, command: str, model: str = "") -> str:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
 from jointid.cli.arguments import fixed_values, joints_wanted, load_all, refinements, with_terms
+from jointid.cli.designs import design
 from jointid.cli.exports import export
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
 from jointid.cli.parser import BAD_USAGE
@@ -328,6 +329,7 @@ COMMANDS: dict[str, Callable[[argparse.Namespace], int | None]] = {
     "compare": compare,
     "simulate": simulate,
     "sweep": sweep,
+    "design": design,
     "run": run,
     "emulate": emulate,
     "check": check,

@@ -79,6 +79,24 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "table": "--table",
         "plot": "--plot",
     },
+    "design": {
+        **{name: option for name, option in _SCENARIO.items() if name != "trajectory"},
+        "position": "--position",
+        "velocity": "--velocity",
+        "acceleration": "--acceleration",
+        "torque": "--torque",
+        "sensor_range": "--sensor-range",
+        "prior": "--prior",
+        "parameters": "--parameter",
+        "criterion": "--criterion",
+        "evaluations": "--evaluations",
+        "joints": "--draws",
+        "rehearsals": "--rehearsals",
+        "seed": "--seed",
+        "threads": "--threads",
+        "output": "--output",
+        "plot": "--plot",
+    },
     "run": {
         "cycles": "--cycles",
         "emulate": "--emulate",
@@ -130,6 +148,7 @@ PLACEHOLDERS: Mapping[str, str] = {
     "--gain": "VALUE",
     "--sensor": "VALUE",
     "--grid": "VALUE",
+    "--prior": "LOW,HIGH",
 }
 """Options of the form NAME=VALUE, and what stands for a value that the user has to choose."""
 
@@ -202,7 +221,7 @@ def option_of(command: str, argument: str) -> tuple[str, str]:
     if argument in table:
         return table[argument], ""
     root, _, key = argument.replace("['", ".").replace("']", "").partition(".")
-    if root in ("search", "Search") and key:
+    if root in ("search", "Search", "Scenario") and key:
         return option_of(command, key)
     root = _CLASSES.get(root, root)
     for name in (f"{root}.{key}" if key else root, f"ga.{root}"):
