@@ -23,16 +23,16 @@ def sections(
         "runs": (f"{runs} simulated arms", lambda: seven_tables.accuracy(range(runs))),
         "noise": (
             "Noise that drowns accelerations",
-            lambda: seven_tables.noise(range(min(runs, 5))),
+            lambda: seven_tables.noise(range(min(runs, 3))),
         ),
         "heavier": (
             "A link that weighs 20 % more than the URDF says",
-            lambda: seven_tables.heavier(range(min(runs, 5))),
+            lambda: seven_tables.heavier(range(min(runs, 3))),
         ),
         "facts": ("Facts that are wrong", lambda: seven_tables.wrong_facts(0)),
         "wrong": (
             "What else may be wrong",
-            lambda: mismatches.table(range(min(runs, 3))),
+            lambda: mismatches.table(range(min(runs, 2))),
         ),
         "speed": ("Time and memory", lambda: speed_tables.tables(0, 5, hour)),
     }
