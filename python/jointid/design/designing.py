@@ -212,7 +212,7 @@ class _Designing:
         told = self._fine.judge(motion.core)[0].errors
         shares = [
             max(
-                told[names.index(name)],
+                float(told[names.index(name)]),
                 counted[name] / situation.ranges.scale(name, values[name]) / _CONTRADICTED,
             )
             for name in situation.asked.wanted
