@@ -58,9 +58,7 @@ std::vector<Judgement> Excitation::judge(const simulate::Trajectory& trajectory,
   thread_local std::vector<simulate::Reference> wanted;
   thread_local std::vector<simulate::Outcome> outcomes;
   wanted.resize(scenario_.instants());
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
-    wanted[k] = trajectory.at(static_cast<double>(k) * scenario_.control_period);
-  }
+  trajectory.sample(scenario_.control_period, wanted);
   std::vector<simulate::Setup> setups;
   setups.reserve(joints_.size());
   for (const auto& joint : joints_) {
@@ -68,7 +66,6 @@ std::vector<Judgement> Excitation::judge(const simulate::Trajectory& trajectory,
     setups.back().position = wanted.front().position;
   }
   outcomes.resize(setups.size());
-  for (auto& outcome : outcomes) outcome.signals.clear();
   simulate::simulate_on_this_thread(scenario_, wanted, setups, outcomes, true, cancel);
   std::vector<Judgement> result;
   result.reserve(outcomes.size());

@@ -56,10 +56,6 @@ struct Signals {
       visit(*signal);
     }
   }
-  /// Without values; the memory is kept.
-  void clear() {
-    each([](std::vector<double>& signal) { signal.clear(); });
-  }
 };
 
 struct Outcome {

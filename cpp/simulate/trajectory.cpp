@@ -144,6 +144,49 @@ Reference Trajectory::at(double time) const {
   return std::visit([&](const auto& form) { return value(form, time); }, form_);
 }
 
+void Trajectory::sample(double period, std::span<Reference> wanted) const {
+  if (const auto* sines = std::get_if<Multisine>(&form_)) {
+    sample(*sines, period, wanted);
+    return;
+  }
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    wanted[k] = at(static_cast<double>(k) * period);
+  }
+}
+
+void Trajectory::sample(const Multisine& form, double period, std::span<Reference> wanted) {
+  constexpr std::size_t kAnew = 64;  // samples after which rounding starts again
+  std::fill(wanted.begin(), wanted.end(), Reference{});
+  for (Eigen::Index i = 0; i < form.amplitude.size(); ++i) {
+    const double rate = form.frequency[i];
+    const double size = form.amplitude[i];
+    const double turn_sine = base::sin(rate * period);
+    const double turn_cosine = base::cos(rate * period);
+    double sine = 0.0;
+    double cosine = 0.0;
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      if (k % kAnew == 0) {
+        const double angle = rate * (static_cast<double>(k) * period) + form.phase[i];
+        sine = size * base::sin(angle);
+        cosine = size * base::cos(angle);
+      } else {
+        const double turned = sine * turn_cosine + cosine * turn_sine;
+        cosine = cosine * turn_cosine - sine * turn_sine;
+        sine = turned;
+      }
+      wanted[k].position += sine;
+      wanted[k].velocity += rate * cosine;
+      wanted[k].acceleration -= rate * rate * sine;
+    }
+  }
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const double time = static_cast<double>(k) * period;
+    const bool whole = form.fade <= 0.0 || (time >= form.fade && time <= form.duration - form.fade);
+    if (!whole) wanted[k] = faded(wanted[k], envelope(form.duration, form.fade, time));
+    wanted[k].position += form.offset;
+  }
+}
+
 Reference Trajectory::value(const Multisine& form, double time) {
   Reference wanted{form.fade > 0.0 ? 0.0 : form.offset, 0.0, 0.0};
   for (Eigen::Index i = 0; i < form.amplitude.size(); ++i) {

@@ -3,6 +3,7 @@
 // samples).
 
 #include <Eigen/Core>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -34,6 +35,9 @@ class Trajectory {
 
   /// What is wanted at a time [s]; held before 0 and after the last sample.
   [[nodiscard]] Reference at(double time) const;
+  /// The same at every period from 0 on, to a few units in the last place: sums of sines take one
+  /// rotation a sine and sample instead of two functions.
+  void sample(double period, std::span<Reference> wanted) const;
   /// How long it is meant to last [s].
   [[nodiscard]] double duration() const { return duration_; }
 
@@ -62,6 +66,7 @@ class Trajectory {
 
   Trajectory(Form form, double duration);
   static Reference value(const Multisine& form, double time);
+  static void sample(const Multisine& form, double period, std::span<Reference> wanted);
   static Reference value(const Sigmoid& form, double time);
   static Reference value(const Pieces& form, double time);
 

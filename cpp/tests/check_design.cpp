@@ -77,6 +77,18 @@ CHECK_CASE("design: a motion keeps its bounds, also between the samples that wer
   }
 }
 
+CHECK_CASE("design: samples of a motion are the motion") {
+  const auto trajectory = motion_of(family(), genes(3)).trajectory();
+  std::vector<simulate::Reference> wanted(2001);
+  trajectory.sample(1e-3, wanted);
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const auto at = trajectory.at(1e-3 * static_cast<double>(k));
+    CHECK_CLOSE(wanted[k].position, at.position, 1e-13);
+    CHECK_CLOSE(wanted[k].velocity, at.velocity, 1e-12);
+    CHECK_CLOSE(wanted[k].acceleration, at.acceleration, 1e-10);
+  }
+}
+
 CHECK_CASE("design: the information of a steady motion is known in closed form") {
   simulate::Signals signals;
   for (int k = 0; k <= 1000; ++k) {

@@ -17,11 +17,11 @@ class DesignSearch:
     Parameters
     ----------
     evaluations : int
-        Motions that are tried, about. Default 3000: a few seconds for 12 s of motion.
+        Motions that are tried, about. Default 3600: a few seconds for 12 s of motion.
     joints : int
         How many joints of the prior each motion is judged with. Default 4.
     rehearsals : int
-        Simulated recordings with noise from which the errors of the motion found are counted. Default 320.
+        Simulated recordings with noise from which the errors of the motion found are counted. Default 256.
     seed : int
         Default 0. The same seed gives the same motion, whatever the number of threads.
     threads : int
@@ -37,9 +37,9 @@ class DesignSearch:
     >>> search = DesignSearch(evaluations=500, seed=1)
     """
 
-    evaluations: int = 3000
+    evaluations: int = 3600
     joints: int = 4
-    rehearsals: int = 320
+    rehearsals: int = 256
     seed: int = 0
     threads: int = 0
 
