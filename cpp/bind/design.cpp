@@ -110,7 +110,12 @@ void bind_excitation(py::module_& m) {
           "judge",
           [](const Excitation& self, const simulate::Trajectory& trajectory) {
             const py::gil_scoped_release nogil;
-            return self.judge(trajectory, base::Cancel{});
+            base::Pool pool(1, SignalPoll{});
+            std::vector<Judgement> found;
+            pool.for_each(
+                1, [&](std::size_t, std::size_t) { found = self.judge(trajectory, pool.cancel()); },
+                1);
+            return found;
           },
           py::arg("trajectory"), "One judgement a joint.")
       .def("cost", &Excitation::cost, py::arg("judgements"),

@@ -1,6 +1,6 @@
 #include "design/excitation.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -11,8 +11,10 @@ namespace jointid::design {
 
 namespace {
 
-constexpr double kExcess = 20.0;   // of the logarithm, for each unit of a limit
-constexpr double kUnstable = 1e3;  // a loop that diverges: worse than any other
+constexpr double kExcess = 20.0;    // of the logarithm, for each unit of a limit
+constexpr double kUnknown = 1e6;    // an error that is none
+constexpr double kWeakest = 1e-13;  // eigenvalue of a correlation matrix
+constexpr double kUnstable = 1e3;   // a loop that diverges: worse than any other
 
 double beyond(double reached, double allowed) {
   return allowed < 1e300 ? reached / allowed - 1.0 : 0.0;
@@ -23,6 +25,23 @@ void hold(Judgement& j, const Held& held) {
   j.excess = std::max({0.0, (j.highest - held.highest) / range, (held.lowest - j.lowest) / range,
                        beyond(j.velocity, held.velocity), beyond(j.acceleration, held.acceleration),
                        beyond(j.torque, held.torque), beyond(j.link_torque, held.link_torque)});
+}
+
+/// Standard errors by an information matrix; kUnknown where it tells nothing.
+Eigen::VectorXd errors_of(const Eigen::MatrixXd& information) {
+  const Eigen::VectorXd told = information.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::VectorXd size = (told.array() > 0.0).select(told, 1.0);
+  const Eigen::MatrixXd correlation =
+      size.cwiseInverse().asDiagonal() * information * size.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
+  const Eigen::VectorXd strength = solver.eigenvalues().cwiseMax(kWeakest);
+  const Eigen::MatrixXd& directions = solver.eigenvectors();
+  Eigen::VectorXd errors =
+      (directions.cwiseAbs2() * strength.cwiseInverse()).cwiseSqrt().cwiseQuotient(size);
+  for (Eigen::Index i = 0; i < errors.size(); ++i) {
+    if (!(told[i] > 0.0) || !(errors[i] < kUnknown)) errors[i] = kUnknown;
+  }
+  return errors;
 }
 
 }  // namespace
@@ -59,18 +78,21 @@ std::vector<Judgement> Excitation::judge(const simulate::Trajectory& trajectory,
   thread_local std::vector<simulate::Outcome> outcomes;
   wanted.resize(scenario_.instants());
   trajectory.sample(scenario_.control_period, wanted);
-  std::vector<simulate::Setup> setups;
-  setups.reserve(joints_.size());
-  for (const auto& joint : joints_) {
-    setups.push_back(joint.setup);
-    setups.back().position = wanted.front().position;
-  }
-  outcomes.resize(setups.size());
-  simulate::simulate_on_this_thread(scenario_, wanted, setups, outcomes, true, cancel);
   std::vector<Judgement> result;
-  result.reserve(outcomes.size());
-  for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    result.push_back(judged(joints_[i], outcomes[i].signals));
+  result.reserve(joints_.size());
+  // No more at a time than run side by side: the signals of many joints would fill the memory.
+  for (std::size_t first = 0; first < joints_.size(); first += simulate::kSideBySide) {
+    const std::size_t last = std::min(joints_.size(), first + simulate::kSideBySide);
+    std::vector<simulate::Setup> setups;
+    for (std::size_t i = first; i < last; ++i) {
+      setups.push_back(joints_[i].setup);
+      setups.back().position = wanted.front().position;
+    }
+    outcomes.resize(setups.size());
+    simulate::simulate_on_this_thread(scenario_, wanted, setups, outcomes, true, cancel);
+    for (std::size_t i = first; i < last; ++i) {
+      result.push_back(judged(joints_[i], outcomes[i - first].signals));
+    }
   }
   return result;
 }
@@ -95,13 +117,7 @@ Judgement Excitation::judged(const Drawn& joint, const simulate::Signals& s) con
       information(s, joint.columns, joint.noise, joint.inertia, joint.viscous, period, window_);
   Eigen::MatrixXd scaled = j.information + joint.known;
   scaled = (joint.scale.asDiagonal() * scaled * joint.scale.asDiagonal()).eval();
-  const Eigen::LLT<Eigen::MatrixXd> factor(scaled);
-  j.errors = Eigen::VectorXd::Constant(joint.scale.size(), 1e6);
-  if (factor.info() == Eigen::Success) {
-    const Eigen::MatrixXd inverse =
-        factor.solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));
-    j.errors = inverse.diagonal().cwiseMax(0.0).cwiseSqrt();
-  }
+  j.errors = errors_of(scaled);
   return j;
 }
 

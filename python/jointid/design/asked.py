@@ -12,6 +12,7 @@ from jointid.base.errors import InputError
 from jointid.identification.prepared import prepare
 from jointid.joint.checks import suggestion
 from jointid.joint.joint import Joint
+from jointid.problem.constant_torque import undivided
 from jointid.recording.recording import Recording
 
 
@@ -72,8 +73,19 @@ def free_parameters(joint: Joint, wanted: Sequence[str] | None) -> Asked:
     prepared = prepare(_template(joint), joint, parameters=None, shift={}, min_speed=0.0)
     domain = prepared.domain
     names = tuple(name for name in domain.names if not domain.fixed(name))
-    chosen = names if wanted is None else tuple(wanted)
+    # No motion divides an offset from the friction of the two directions: it is taken as it is.
+    groups = undivided(names)
+    together = {name for group in groups for name in group.change}
+    names = tuple(name for name in names if name not in {group.offset for group in groups})
+    chosen = tuple(n for n in names if n not in together) if wanted is None else tuple(wanted)
     for name in chosen:
+        if name in together:
+            raise InputError(
+                f"no motion tells it apart from {', '.join(sorted(together - {name}))}",
+                argument="parameters",
+                value=name,
+                remedy="fix one of them in the joint",
+            )
         if name not in names:
             raise InputError(
                 f"the identification leaves no parameter of this name free; {suggestion(name, list(names))}",

@@ -63,7 +63,8 @@ def noise_of_balance(
     derived = position * math.sqrt(12.0 / _SMOOTHED**3) / period
     slowest = max(_STANDING * velocity, 3.0 * derived, _SLOW * _fading_speed(setup.joint))
     return _core.BalanceNoise(
-        torque=math.sqrt(variance),
+        # White in the recording's samples; fewer of them are as good as their means.
+        torque=math.sqrt(variance * sampled / period),
         position=position,
         velocity=derived,
         slowest=min(slowest, 0.05 * velocity),

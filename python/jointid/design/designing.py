@@ -19,7 +19,7 @@ from jointid.design.design import COMPLETE, Design
 from jointid.design.design_search import DesignProgress, DesignSearch
 from jointid.design.expectation import expected_errors, what_limits
 from jointid.design.holding import held_by_all
-from jointid.design.judging import Situation
+from jointid.design.judging import Situation, fade_of
 from jointid.design.known import Known
 from jointid.design.motion_limits import MotionLimits
 from jointid.design.prior import Prior, ranges_of
@@ -39,6 +39,9 @@ _FIRST = 48  # motions drawn at random, from which follows what can be asked of 
 _DETERMINED = 0.15  # relative error that one of them must reach
 _TRIED = 0.2  # of the rehearsals, to tell the motions found apart
 _CONTRADICTED = 1.25  # times the error that the information tells
+_USUAL = math.radians(20.0)  # of the thesis's motion [rad]
+_CYCLE = 6.0  # the same [s]
+_ROBUST = 0.03  # of the torque limit: the robust term of a controller that is chosen here
 _STIFF = 80.0  # 1/s: of a controller that is chosen here
 
 
@@ -119,6 +122,13 @@ def design_excitation(
     held = MotionLimits.of(limits, joint)
     if criterion not in ("worst", "determinant"):
         raise InputError("known are worst and determinant", argument="criterion", value=criterion)
+    if isinstance(controller, _core.OpenLoop):
+        raise InputError(
+            "a motion is designed for a controller that follows it",
+            argument="controller",
+            value="open_loop",
+            remedy="give another, or none",
+        )
     joint = _with_model(joint)
     asked = free_parameters(joint, parameters)
     ranges = ranges_of(joint, asked.names, prior)
@@ -129,7 +139,7 @@ def design_excitation(
         asked=asked,
         ranges=ranges,
         limits=held,
-        controller=_default_controller(nominal) if controller is None else controller,
+        controller=default_controller(nominal, held.torque) if controller is None else controller,
         sensors=assumed_sensors(joint, held.torque) if sensors is None else sensors,
         duration=positive("duration", duration),
         control_period=positive("control_period", control_period),
@@ -152,12 +162,16 @@ class _Designing:
         self._fine = situation.judge(self._values)
         self._genes = self._fine.genes
         self._evaluations = 0
+        self._counted: tuple[str, ...] = situation.asked.wanted
 
     def design(self, nominal: Joint) -> Design:
         """Search, choose, and hold the limits for many joints."""
         situation, settings = self._situation, self._settings
-        motions = self._searched(self._judge_of_the_search())
-        motions += self._usual()
+        judge = self._judge_of_the_search()
+        self._counted = self._counting(judge)
+        motions = self._searched(judge)
+        usual = self._usual()
+        motions += [] if usual is None else [usual]
         tried = max(8, round(_TRIED * settings.rehearsals))
         rehearsals = [
             rehearse(situation, each, self._values[0], tried, threads=settings.threads)
@@ -189,7 +203,7 @@ class _Designing:
             limits=situation.limits,
             peaks=peaks,
             parameters=errors,
-            reference=self._reference(),
+            reference={} if usual is None else self._shares(rehearsals[-1]),
             criterion=situation.criterion,
             joints=len(self._values),
             evaluations=self._evaluations,
@@ -201,39 +215,53 @@ class _Designing:
         )
         return replace(made, limited_by=what_limits(made, situation, judgements[0]))
 
+    def _counting(self, judge: _core.Excitation) -> tuple[str, ...]:
+        """Return the wanted parameters that some motion determines for the nominal joint; all if none."""
+        asked = self._situation.asked
+        kept = dict(zip(asked.names, judge.joints[0].weight.tolist(), strict=True))
+        return tuple(name for name in asked.wanted if kept[name] > 0.0) or asked.wanted
+
+    def _shares(self, rehearsal: Rehearsal) -> dict[str, float]:
+        """Return the relative errors that a rehearsal counted, of the wanted parameters."""
+        situation, counted, values = self._situation, rehearsal.rms(), self._values[0]
+        return {
+            n: counted[n] / situation.ranges.scale(n, values[n]) for n in situation.asked.wanted
+        }
+
     def _worth(self, motion: Trajectory, rehearsal: Rehearsal) -> float:
         """Return what the search minimises, for the nominal joint.
 
         The information's errors scatter less than those of few rehearsals, which count where they
         contradict it.
         """
-        situation, counted = self._situation, rehearsal.rms()
-        values, names = self._values[0], situation.asked.names
-        told = self._fine.judge(motion.core)[0].errors
-        shares = [
-            max(
-                float(told[names.index(name)]),
-                counted[name] / situation.ranges.scale(name, values[name]) / _CONTRADICTED,
+        told = dict(
+            zip(
+                self._situation.asked.names,
+                self._fine.judge(motion.core)[0].errors.tolist(),
+                strict=True,
             )
-            for name in situation.asked.wanted
-        ]
-        if situation.criterion == "worst":
+        )
+        counted = self._shares(rehearsal)
+        shares = [max(told[name], counted[name] / _CONTRADICTED) for name in self._counted]
+        if self._situation.criterion == "worst":
             return max(shares)
         return float(np.mean(np.log(np.maximum(shares, 1e-12))))
 
     def _judge_of_the_search(self) -> _core.Excitation:
         """Return a judge with a longer control period where that says the same of some motions."""
+        situation, threads = self._situation, self._settings.threads
         random = np.random.default_rng(self._settings.seed)
         first = random.random((self._genes, _FIRST))
-        judge = self._situation.judge(self._values, coarse=_COARSE)
+        fine = situation.judge(self._values, believed=True)
+        judge = situation.judge(self._values, coarse=_COARSE, believed=True)
         for column in range(3):
-            motion = _trajectory(self._fine, first[:, column])
-            if not _alike(_judged(self._fine, motion), _judged(judge, motion)):
-                judge = self._fine
+            motion = _trajectory(fine, first[:, column])
+            if not _alike(_judged(fine, motion), _judged(judge, motion)):
+                judge = fine
                 break
-        judge.leave_out(first, largest=_DETERMINED, threads=self._settings.threads)
+        judge.leave_out(first, largest=_DETERMINED, threads=threads)
         if not any(np.any(each.weight > 0.0) for each in judge.joints):
-            judge = self._situation.judge(self._values, coarse=1)
+            judge = situation.judge(self._values, believed=True)
         return judge
 
     def _searched(self, judge: _core.Excitation) -> list[Trajectory]:
@@ -273,30 +301,28 @@ class _Designing:
                 break
         return motions
 
-    def _usual(self) -> list[Trajectory]:
-        """Return the thesis's motion where every joint keeps the limits: a design must not be worse."""
-        motion = self._thesis()
-        judged = None if motion is None else _judged(self._fine, motion)
-        if motion is None or judged is None or any(each.excess > 0.0 for each in judged):
-            return []
-        return [motion]
-
-    def _thesis(self) -> Trajectory | None:
-        low, high = self._situation.limits.position
-        if not low <= -math.radians(20.0) <= math.radians(20.0) <= high:
-            return None
-        return Trajectory.thesis(duration=self._situation.duration)
-
-    def _reference(self) -> dict[str, float]:
-        """Return the relative errors of the thesis's motion; empty where it leaves the window."""
+    def _usual(self) -> Trajectory | None:
+        """Return the thesis's motion, ending at rest, where every joint keeps the limits: a design is not worse."""
         situation = self._situation
-        motion = self._thesis()
-        judged = None if motion is None else _judged(self._fine, motion)
-        if judged is None:
-            return {}
-        names = situation.asked.names
-        worst = np.max([each.errors for each in judged], axis=0)
-        return {n: float(worst[names.index(n)]) for n in situation.asked.wanted}
+        low, high = situation.limits.position
+        if not low <= -_USUAL <= _USUAL <= high:
+            return None
+        rate, size = 2.0 * math.pi / _CYCLE, _USUAL / 1.3
+        motion = Trajectory.sines(
+            amplitude=(size, -0.5 * size),
+            frequency=(rate, 2.0 * rate),
+            phase=(0.0, 0.0),
+            fade=fade_of(situation.duration),
+            duration=situation.duration,
+        )
+        judged = _judged(self._fine, motion)
+        if judged is None or any(each.excess > 0.0 for each in judged):
+            return None
+        time = np.linspace(0.0, situation.duration, 5000)
+        most = situation.limits.acceleration
+        if most is not None and np.abs(motion.sample(time)[2]).max() > most:
+            return None
+        return motion
 
 
 _UNSTABLE = 1e100  # of the criterion, a relative error
@@ -328,15 +354,24 @@ def _with_model(joint: Joint) -> Joint:
     return joint if joint.model.named else joint.replace(model=joint.model.replace(name="stribeck"))
 
 
-def _default_controller(nominal: Joint) -> Controller:
-    """Return a law that believes the nominal joint, or one without a model where none compensates it."""
+def default_controller(nominal: Joint, torque: float) -> Controller:
+    """Return a law that believes a joint, or one without a model where none compensates its friction.
+
+    Parameters
+    ----------
+    nominal : Joint
+        With values.
+    torque : float
+        The limit of the drive's torque, of which the robust term has a small part [N·m].
+    """
     try:
-        return _core.AdaptiveRobust(
+        law = _core.AdaptiveRobust(
             **control_estimates(nominal), friction_velocity="reference", torque_feedback=False
         )
     except InputError:
         inertia = nominal.known_inertia or 1.0
         return _core.Pd(stiffness=inertia * _STIFF * _STIFF, damping=2.0 * inertia * _STIFF)
+    return law.replace(robust_torque=min(law.robust_torque, _ROBUST * torque))
 
 
 def _matrix(known: Known | None, names: tuple[str, ...]) -> Array:

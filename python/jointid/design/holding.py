@@ -16,6 +16,7 @@ from jointid.simulation.simulated_recording import SimulatedRecording
 from jointid.simulation.trajectory import Trajectory
 
 _JOINTS = 48
+_CORNERS = 16  # of the prior
 _STEPS = 6  # times that a motion is made smaller
 _TOGETHER = 16
 
@@ -34,6 +35,7 @@ def held_by_all(
         Empty if all limits are kept, else a sentence.
     """
     joints = situation.ranges.joints(_JOINTS, seed + 1)
+    joints += situation.ranges.corners(_CORNERS, seed + 2)
     for _ in range(_STEPS):
         reached = _Reached(situation)
         for begin in range(0, len(joints), _TOGETHER):
@@ -52,7 +54,7 @@ def held_by_all(
             except InputError as error:
                 return trajectory, reached.peaks(trajectory), f"the loop is not stable: {error}"
             reached.add(batch.recordings)
-        share = reached.share()
+        share = reached.share(trajectory)
         if share <= 1.0:
             return trajectory, reached.peaks(trajectory), ""
         trajectory = _smaller(trajectory, 0.99 / share)
@@ -85,7 +87,7 @@ class _Reached:
             if self.situation.joint.sensor:
                 self.sensor = max(self.sensor, float(np.abs(true["link_torque"]).max()))
 
-    def share(self) -> float:
+    def share(self, trajectory: Trajectory) -> float:
         """Return the largest share of a limit; above 1 it is exceeded."""
         limits = self.situation.limits
         low, high = limits.position
@@ -94,6 +96,8 @@ class _Reached:
             max(self.highest - middle, middle - self.lowest) / half,
             self.velocity / limits.velocity,
         ]
+        if limits.acceleration is not None:
+            shares.append(self.peaks(trajectory).acceleration / limits.acceleration)
         if limits.sensor_range is not None:
             shares.append(self.sensor / limits.sensor_range)
         # The drive cuts what is beyond its limit: a motion that needs all of it is not followed.

@@ -30,6 +30,11 @@ _FASTEST = 8.0  # Hz
 _UNLIMITED = 1e300
 
 
+def fade_of(duration: float) -> float:
+    """Return the time over which a motion begins and ends [s]."""
+    return min(_FADE, 0.05 * duration)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Situation:
     """All that a motion is judged by, but the motion.
@@ -60,8 +65,19 @@ class Situation:
     criterion: str
     known: Array
 
-    def judge(self, values: list[dict[str, float]], *, coarse: int = 1) -> _core.Excitation:
-        """Return the judge for joints with these values; `coarse` is a factor of the control period."""
+    def judge(
+        self, values: list[dict[str, float]], *, coarse: int = 1, believed: bool = False
+    ) -> _core.Excitation:
+        """Return the judge for joints with these values.
+
+        Parameters
+        ----------
+        values : list of dict
+        coarse : int
+            A factor of the control period. Default 1.
+        believed : bool
+            Whether the prior's ranges count as information. Default False.
+        """
         period = self.control_period * coarse
         scenario = _core.Scenario(
             duration=self.duration,
@@ -71,7 +87,7 @@ class Situation:
         return _core.Excitation(
             family=self._family(values),
             scenario=scenario,
-            joints=[self._drawn(each, scenario) for each in values],
+            joints=[self._drawn(each, scenario, believed) for each in values],
             held=self._held(),
             criterion=self.criterion,
             window=max(1, round(max(_WINDOW, self.duration / 5000.0) / period)),
@@ -92,7 +108,9 @@ class Situation:
         """Return the run of one joint."""
         return setup_of(self.with_values(values), self.controller, seed, 0.0, None, scenario)[0]
 
-    def _drawn(self, values: dict[str, float], scenario: _core.Scenario) -> _core.DrawnJoint:
+    def _drawn(
+        self, values: dict[str, float], scenario: _core.Scenario, believed: bool
+    ) -> _core.DrawnJoint:
         names = self.asked.names
         setup = self.setup(values, scenario)
         scale = np.array([self.ranges.scale(name, values[name]) for name in names])
@@ -116,7 +134,7 @@ class Situation:
             scale=scale,
             weight=np.array([float(name in self.asked.wanted) for name in names]),
             # What was told of given joints is in `known`; a range tells that much.
-            known=self.known if self.ranges.drawn else self.known + own,
+            known=self.known + own if believed and not self.ranges.drawn else self.known,
             inertia=inertia,
             viscous=max(setup.joint.viscous_positive, setup.joint.viscous_negative),
         )
@@ -161,7 +179,7 @@ class Situation:
         return _core.MotionFamily(
             sines=SINES,
             duration=self.duration,
-            fade=min(_FADE, 0.05 * self.duration),
+            fade=fade_of(self.duration),
             slowest=slowest,
             fastest=max(fastest, 4.0 * slowest),
             bounds=_core.MotionBounds(

@@ -39,7 +39,18 @@ class Ranges:
     def scale(self, name: str, value: float) -> float:
         """Return what an error of a parameter counts in: its value, or a part of its range."""
         low, high = self.ranges[name]
-        return max(abs(value), _SMALL * (high - low))
+        return max(abs(value), _SMALL * (high - low)) or 1.0
+
+    def corners(self, count: int, seed: int) -> list[dict[str, float]]:
+        """Return values of `count` joints at the ends of all ranges."""
+        if self.drawn:
+            return []
+        high = np.random.default_rng(seed).random((count, len(self.ranges))) < 0.5
+        ends = list(self.ranges.items())
+        return [
+            {name: ends_[int(up)] for (name, ends_), up in zip(ends, row, strict=True)}
+            for row in high.tolist()
+        ]
 
     def joints(self, count: int, seed: int) -> list[dict[str, float]]:
         """Return values of `count` joints, the nominal one first; the others fill the ranges evenly.
@@ -49,7 +60,7 @@ class Ranges:
         A Latin hypercube: each parameter has one joint in each of its equal shares, at its middle.
         """
         if self.drawn:
-            return [dict(self.drawn[i % len(self.drawn)]) for i in range(max(1, count))]
+            return [dict(each) for each in self.drawn[: max(1, count)]]
         others = max(0, count - 1)
         random = np.random.default_rng(seed)
         found = [dict(self.nominal) for _ in range(count)]
@@ -90,7 +101,7 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
             value = None
         elif bounds[0] is not None and bounds[1] is not None:
             ranges[name] = (bounds[0], bounds[1])
-        elif value is not None:
+        elif value:  # 30 % around 0 is no range
             around = sorted((value * (1.0 - _AROUND), value * (1.0 + _AROUND)))
             ranges[name] = (
                 around[0] if bounds[0] is None else max(around[0], bounds[0]),
