@@ -125,7 +125,7 @@ def _sought(design: argparse.ArgumentParser) -> None:
         default="worst",
         help="worst (default): the largest relative error; determinant: all errors together",
     )
-    design.add_argument("--evaluations", type=whole, help="motions to try (default 2000)")
+    design.add_argument("--evaluations", type=whole, help="motions to try (default 3000)")
     design.add_argument(
         "--draws", type=whole, help="joints drawn from what is believed (default 4)"
     )

@@ -17,7 +17,7 @@ class DesignSearch:
     Parameters
     ----------
     evaluations : int
-        Motions that are tried, about. Default 2000: a few seconds for 12 s of motion.
+        Motions that are tried, about. Default 3000: a few seconds for 12 s of motion.
     joints : int
         How many joints of the prior each motion is judged with. Default 4.
     rehearsals : int
@@ -37,7 +37,7 @@ class DesignSearch:
     >>> search = DesignSearch(evaluations=500, seed=1)
     """
 
-    evaluations: int = 2000
+    evaluations: int = 3000
     joints: int = 4
     rehearsals: int = 320
     seed: int = 0

@@ -38,6 +38,7 @@ _ALIKE = 0.05  # how much errors may differ by that
 _FIRST = 48  # motions drawn at random, from which follows what can be asked of which joint
 _DETERMINED = 0.15  # relative error that one of them must reach
 _TRIED = 0.2  # of the rehearsals, to tell the motions found apart
+_CONTRADICTED = 1.25  # times the error that the information tells
 _STIFF = 80.0  # 1/s: of a controller that is chosen here
 
 
@@ -162,7 +163,9 @@ class _Designing:
             rehearse(situation, each, self._values[0], tried, threads=settings.threads)
             for each in motions
         ]
-        worth = [self._worth(each) for each in rehearsals]
+        worth = [
+            self._worth(motion, each) for motion, each in zip(motions, rehearsals, strict=True)
+        ]
         chosen = motions[int(np.argmin(worth))]
         trajectory, peaks, problem = held_by_all(situation, chosen, settings.seed, settings.threads)
         rehearsal = rehearse(
@@ -198,11 +201,22 @@ class _Designing:
         )
         return replace(made, limited_by=what_limits(made, situation, judgements[0]))
 
-    def _worth(self, rehearsal: Rehearsal) -> float:
-        """Return what the search minimises, by the errors counted in a rehearsal."""
+    def _worth(self, motion: Trajectory, rehearsal: Rehearsal) -> float:
+        """Return what the search minimises, for the nominal joint.
+
+        The information's errors scatter less than those of few rehearsals, which count where they
+        contradict it.
+        """
         situation, counted = self._situation, rehearsal.rms()
-        values = self._values[0]
-        shares = [counted[n] / situation.ranges.scale(n, values[n]) for n in situation.asked.wanted]
+        values, names = self._values[0], situation.asked.names
+        told = self._fine.judge(motion.core)[0].errors
+        shares = [
+            max(
+                float(told[names.index(name)]),
+                counted[name] / situation.ranges.scale(name, values[name]) / _CONTRADICTED,
+            )
+            for name in situation.asked.wanted
+        ]
         if situation.criterion == "worst":
             return max(shares)
         return float(np.mean(np.log(np.maximum(shares, 1e-12))))

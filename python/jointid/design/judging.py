@@ -21,7 +21,7 @@ from jointid.simulation.batch import setup_of
 
 Array = NDArray[np.float64]
 
-SINES = 5
+SINES = 8
 _FADE = 0.5  # s, of a motion of 10 s or more
 _WINDOW = 0.01  # s
 _MARGIN = 0.01  # of each limit, that the reference leaves to the joint
