@@ -132,7 +132,7 @@ def _sought(design: argparse.ArgumentParser) -> None:
     design.add_argument(
         "--rehearsals",
         type=whole,
-        help="simulated recordings from which the errors are counted (default 160)",
+        help="simulated recordings from which the errors are counted (default 256)",
     )
     design.add_argument("--seed", type=whole_seed, default=0, help="seed of the search (default 0)")
     design.add_argument(

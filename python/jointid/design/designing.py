@@ -244,7 +244,7 @@ class _Designing:
         counted = self._shares(rehearsal)
         shares = [max(told[name], counted[name] / _CONTRADICTED) for name in self._counted]
         if self._situation.criterion == "worst":
-            return max(shares)
+            return float(max(shares))
         return float(np.mean(np.log(np.maximum(shares, 1e-12))))
 
     def _judge_of_the_search(self) -> _core.Excitation:

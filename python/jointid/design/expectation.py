@@ -16,6 +16,8 @@ from jointid.design.rehearsal import Rehearsal
 Array = NDArray[np.float64]
 
 _REACHED = 0.95  # of a limit
+_LARGE = 0.3  # relative error of what is hardly determined
+_WEAKEST = 1e-13  # eigenvalue of a correlation matrix
 _TOGETHER = 0.8  # correlation of errors that hang together
 
 
@@ -36,8 +38,7 @@ def expected_errors(
     counted = rehearsal.rms()
     alone = _alone(judgements[0].information)
     factors = [
-        max(1.0, counted[name] / float(alone[place])) if alone[place] > 0.0 else 1.0
-        for place, name in enumerate(asked.names)
+        max(1.0, counted[name] / float(alone[place])) for place, name in enumerate(asked.names)
     ]
     known = bool(np.any(situation.known))
     if known:
@@ -71,6 +72,8 @@ def expected_errors(
 def what_limits(design: Design, situation: Situation, judgement: _core.MotionJudgement) -> str:
     """Return one sentence: limits that are reached, what the error hangs together with, noise and duration."""
     reasons = []
+    if not design.parameters[design.weakest].relative < _LARGE:
+        reasons.append("no motion within the limits was found that determines it")
     reached = [name.replace("_", " ") for name, share in design.shares.items() if share >= _REACHED]
     if reached:
         reasons.append(f"the limit of {' and '.join(reached)}")
@@ -91,10 +94,12 @@ def _partner(situation: Situation, judgement: _core.MotionJudgement, weakest: st
 
 
 def _alone(information: Array) -> Array:
-    """Standard errors of this motion alone."""
-    scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
-    inverse = np.linalg.pinv(information / np.outer(scale, scale), hermitian=True)
-    return np.asarray(np.sqrt(np.maximum(np.diag(inverse), 0.0)) / scale)
+    """Standard errors by an information matrix alone; infinite where it tells nothing."""
+    told = np.sqrt(np.maximum(np.diag(information), 0.0))
+    size = np.where(told > 0.0, told, 1.0)
+    strength, directions = np.linalg.eigh(information / np.outer(size, size))
+    errors = np.sqrt(directions**2 @ (1.0 / np.maximum(strength, _WEAKEST))) / size
+    return np.where(told > 0.0, errors, np.inf)
 
 
 def _units(situation: Situation) -> dict[str, str]:

@@ -120,6 +120,7 @@ class MotionLimits:
                 raise InputError(
                     "it is needed, and the joint's limits state none", argument=name, place=_OWNER
                 )
+        _within(limits, joint)
         if limits.get("sensor_range") is not None and not joint.sensor:
             raise InputError(
                 "the joint has no torque sensor",
@@ -133,6 +134,30 @@ class MotionLimits:
         """Return the limits that are stated, by name."""
         values = {item.name: getattr(self, item.name) for item in fields(self)}
         return {name: value for name, value in values.items() if value is not None}
+
+
+def _within(limits: Mapping[str, Any], joint: Joint) -> None:
+    """Refuse limits beyond the joint's own."""
+    known, window = joint.limits, limits["position"]
+    own = {"velocity": known.velocity, "torque": torque_limit(joint)}
+    for name, most in own.items():
+        if most is not None and isinstance(limits[name], int | float) and limits[name] > most:
+            raise InputError(
+                f"it is beyond the joint's own limit of {most:g}",
+                argument=name,
+                value=limits[name],
+                place=_OWNER,
+            )
+    numbers = isinstance(window, list | tuple) and all(isinstance(v, int | float) for v in window)
+    if known.position is not None and numbers and len(window) == 2:
+        low, high = known.position
+        if min(window) < low or max(window) > high:
+            raise InputError(
+                f"it reaches beyond the joint's own window, {low:g} to {high:g}",
+                argument="position",
+                value=list(window),
+                place=_OWNER,
+            )
 
 
 def _own(joint: Joint) -> dict[str, Any]:

@@ -19,7 +19,8 @@ from jointid.design.told import joint_of, sensors_of, told_by
 from jointid.estimate.estimate import Estimate
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller
-from jointid.simulation.plant import control_estimates
+
+_HELD = 48  # joints that have to keep the limits
 
 
 def motion_after(
@@ -70,12 +71,12 @@ def motion_after(
         believed,
         limits,
         duration,
-        controller=believing(believed) if controller is None else controller,
+        controller=controller,
         sensors=sensors_of(estimate) if sensors is None else sensors,
         parameters=wanted,
         search=settings,
         known=told.known,
-        prior=told.joints(settings.joints, settings.seed) if prior is None else prior,
+        prior=told.joints(max(_HELD, settings.joints), settings.seed) if prior is None else prior,
         **options,
     )
     before = told.known.stderr()
@@ -84,11 +85,3 @@ def motion_after(
         for name, row in design.parameters.items()
     }
     return replace(design, parameters=rows)
-
-
-def believing(joint: Joint) -> Controller | None:
-    """Return the controller that believes a joint's values; None where none compensates its friction."""
-    try:
-        return _core.AdaptiveRobust(**control_estimates(joint))
-    except InputError:
-        return None

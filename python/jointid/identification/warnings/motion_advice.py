@@ -53,7 +53,7 @@ def other_motion(
         limits["position"] = ... if wider else [_short(low), _short(high)]
     if stated.velocity is None:
         peak = max(float(np.quantile(np.abs(run.velocity), _PEAK)) for run in runs)
-        limits["velocity"] = ... if faster else _short(peak)
+        limits["velocity"] = ... if faster or wider else _short(peak)
     by_current = None not in (stated.current, (joint or Joint()).torque_constant)
     if gentler or not (by_current or stated.torque is not None):
         limits["torque"] = _recorded_torque(evidence, _GENTLER if gentler else 1.0)
