@@ -139,15 +139,14 @@ class MotionLimits:
 def _within(limits: Mapping[str, Any], joint: Joint) -> None:
     """Refuse limits beyond the joint's own."""
     known, window = joint.limits, limits["position"]
-    own = {"velocity": known.velocity, "torque": torque_limit(joint)}
-    for name, most in own.items():
-        if most is not None and isinstance(limits[name], int | float) and limits[name] > most:
-            raise InputError(
-                f"it is beyond the joint's own limit of {most:g}",
-                argument=name,
-                value=limits[name],
-                place=_OWNER,
-            )
+    fastest, velocity = known.velocity, limits["velocity"]
+    if fastest is not None and isinstance(velocity, int | float) and velocity > fastest:
+        raise InputError(
+            f"it is beyond the joint's own limit of {fastest:g}",
+            argument="velocity",
+            value=velocity,
+            place=_OWNER,
+        )
     numbers = isinstance(window, list | tuple) and all(isinstance(v, int | float) for v in window)
     if known.position is not None and numbers and len(window) == 2:
         low, high = known.position
