@@ -176,18 +176,26 @@ def others() -> list[Case]:
 def observed(
     case: Case, trajectory: jid.Trajectory, runs: int, first: int = 5000
 ) -> dict[str, Any]:
-    """Errors of identifications from simulated recordings, relative, and what the joint reached."""
-    true = case.joint.with_parameters(case.truth)
+    """Relative errors of identifications from simulated recordings, and what the joints reached.
+
+    The joints lie within half a per cent of the truth: an encoder's steps are then noise, not one draw of it.
+    """
     errors, warned = [], 0
     low, high, speed, torque = math.inf, -math.inf, 0.0, 0.0
     for begin in range(0, runs, 20):
         seeds = list(range(first + begin, first + min(begin + 20, runs)))
+        truths = [nearby(case.truth, seed) for seed in seeds]
         batch = jid.simulate_batch(
-            true, case.controller, trajectory, seeds=seeds, sensors=case.sensors, recordings=True
+            [case.joint.with_parameters(each) for each in truths],
+            case.controller,
+            trajectory,
+            seeds=seeds,
+            sensors=case.sensors,
+            recordings=True,
         )
-        for run in batch.recordings:
+        for run, truth in zip(batch.recordings, truths, strict=True):
             found = jid.identify(run, case.joint, search="separable")
-            errors.append([found.parameters[n].value / v - 1.0 for n, v in case.truth.items()])
+            errors.append([found.parameters[n].value / v - 1.0 for n, v in truth.items()])
             warned += bool(found.warnings)
             signals = run.truth.signals
             low = min(low, float(signals["position"].min()))
@@ -202,6 +210,18 @@ def observed(
         "warned": warned,
         "reached": [low, high, speed, torque],
     }
+
+
+def nearby(truth: Values, seed: int) -> dict[str, float]:
+    """A joint within half a per cent of this one, and within the bounds of the thesis's joint."""
+    steps = np.random.default_rng(seed + 10**6).uniform(-0.005, 0.005, len(truth))
+    bounds = jid.thesis_joint().parameters
+    found = {}
+    for (name, value), step in zip(truth.items(), steps.tolist(), strict=True):
+        own = bounds.get(name)
+        low, high = (-math.inf, math.inf) if own is None else (own.min or 0.0, own.max or 0.0)
+        found[name] = min(max(value * (1.0 + step), low), high)
+    return found
 
 
 def worst(rms: Values) -> tuple[float, str]:

@@ -16,6 +16,7 @@ from jointid.cli.command_line import main
 from jointid.cli.parser import command_parser
 from jointid.cli.wording import Wording
 from jointid.design import next_motion
+from jointid.design.designing import default_controller
 
 THESIS = jid.thesis_joint()
 TRUE = {"coulomb": 25.0, "static": 20.0, "stribeck": 100.0, "viscous": 20.0}
@@ -83,7 +84,7 @@ def test_a_file_of_the_estimate_gives_the_same_motion(
 
 
 def test_the_controller_believes_the_estimate(poor: jid.Estimate, design: jid.Design) -> None:
-    assert design.controller == jid.AdaptiveRobust(**jid.control_estimates(poor.joint))
+    assert design.controller == default_controller(poor.joint, design.limits.torque or 0.0)
     assert design.sensors.torque_noise == pytest.approx(0.2, rel=0.15)
     assert design.limits.torque == pytest.approx(160.0, rel=1e-3)  # the joint's
 
@@ -120,7 +121,7 @@ def test_what_is_known_and_possible_is_handed_over(
         poor.next_motion(LIMITS, search=search, control_period=0.002)
     assert handed["duration"] == 12.0
     assert handed["control_period"] == 0.002
-    assert len(handed["prior"]) == 5
+    assert len(handed["prior"]) == 48  # as many have to keep the limits
     assert handed["prior"][0] == {n: poor.parameters[n].value for n in handed["known"].names}
     assert set(handed["parameters"]) == set(TRUE)
     assert handed["known"].stderr()["sensor_gain"] == pytest.approx(0.0199, abs=0.001)
@@ -135,15 +136,6 @@ def test_what_is_given_is_not_overruled(poor: jid.Estimate, handed: dict[str, An
     assert handed["controller"] is controller
     assert handed["sensors"] is sensors
     assert handed["prior"] is prior
-
-
-def test_what_no_controller_compensates_is_left_to_the_design(
-    first: jid.Recording, handed: dict[str, Any]
-) -> None:
-    general = jid.identify(first, THESIS, model="stribeck_general")
-    with pytest.raises(CalledError):
-        general.next_motion(LIMITS)
-    assert handed["controller"] is None
 
 
 def test_what_cannot_be_asked_for(poor: jid.Estimate, first: jid.Recording) -> None:
@@ -172,7 +164,8 @@ def test_advice_is_obeyed(poor: jid.Estimate, handed: dict[str, Any]) -> None:
     """The arguments of the finding, with what only the user knows filled in."""
     (finding,) = [each for each in poor.findings if each.code == "undetermined"]
     (action,) = [each for each in finding.advice if each.designs]
-    limits = {**action.arguments["limits"], "position": (-1.0, 1.0)}
+    assert action.arguments["limits"] == {"position": ..., "velocity": ...}
+    limits = {"position": (-1.0, 1.0), "velocity": 1.12}
     with pytest.raises(CalledError):
         poor.next_motion(**{**action.arguments, "limits": limits})
     assert handed["duration"] == 6.0
@@ -188,14 +181,18 @@ def test_the_command_does_what_the_finding_says(
     wording = Wording("identify", joint_file="joint.toml", saved="first.json")
     (finding,) = [each for each in poor.findings if each.code == "undetermined"]
     words = wording.of_action(finding.advice[0])
-    command = shlex.split(words.partition("designed by jointid ")[2].replace("LOW,HIGH", "-1,1"))
+    command = shlex.split(
+        words.partition("designed by jointid ")[2]
+        .replace("LOW,HIGH", "-1,1")
+        .replace("SPEED", "1.12")
+    )
     quick = ["--evaluations", "100", "--draws", "2", "--seed", "4", "--quiet"]
     assert main([*command, *quick]) == 0
     design = jid.load_design("motion.toml")
     assert design.duration == pytest.approx(6.0)
     assert design.limits.velocity == 1.12
     assert all(row.before is not None for row in design.parameters.values())
-    assert design.controller == jid.AdaptiveRobust(**jid.control_estimates(poor.joint))
+    assert design.controller == default_controller(poor.joint, design.limits.torque or 0.0)
     search = jid.DesignSearch(evaluations=100, joints=2, seed=4)
     limits = {"position": (-1.0, 1.0), "velocity": 1.12}
     assert poor.next_motion(limits, 6.0, search=search).trajectory == design.trajectory
