@@ -31,6 +31,7 @@ ROOMS: dict[str, set[str]] = {
         *("base", "model", "search"),
         *("identify/recording", "identify/balance", "identify/penalty"),
     },
+    "design": {"base", "model", "simulate", "search", "identify/balance"},
     "signals": {"base"},
     "diagnose": {
         *("base", "signals"),
@@ -105,6 +106,7 @@ FOLDERS: dict[str, Folder] = {
     "online": Folder(may_use={*_SOUGHT, "identification/inference"}, packages={"numpy"}),
     "simulation": Folder(may_use=_DATA, packages={"numpy"}),
     "study": Folder(may_use={*_SOUGHT, "simulation"}, packages={"numpy", "pandas", "pyarrow"}),
+    "design": Folder(may_use={*_SOUGHT, "simulation", "plot"}, packages={"numpy", "matplotlib"}),
     "robot": Folder(
         may_use={
             *("base", "recording", "recording/wide", "joint", "problem", "estimate", "joints"),
@@ -166,6 +168,7 @@ FOLDERS: dict[str, Folder] = {
                 "robot",
                 "simulation",
                 "study",
+                "design",
                 "plot",
                 "report",
                 "exports",
@@ -180,7 +183,7 @@ FOLDERS: dict[str, Folder] = {
         may_use={
             *(_SOUGHT - {"problem"}),
             *("recording/readers", "recording/wide", "comparison", "joints", "online", "robot"),
-            *("simulation", "study"),
+            *("simulation", "study", "design"),
             *("plot", "exports", "hardware", "commissioning", "cli"),
         },
     ),

@@ -50,6 +50,8 @@ ALLOWED: list[tuple[str, str, str]] = [
     ("coulomb", "python/jointid/simulation/scenario.py", "a controller with friction estimates"),
     ("coulomb", "python/jointid/cli/", "a controller with friction estimates; the demo's values"),
     ("viscous", "python/jointid/cli/", "the demo's values"),
+    ("*", "python/jointid/design/unseen.py", "whether the data support static friction"),
+    ("viscous", "cpp/bind/design.cpp", "what the torque limit has to leave for friction"),
     ("coulomb", "python/jointid/hardware/bench/", "a controller with friction estimates"),
     ("coulomb", "python/jointid/commissioning/", "a controller with friction estimates"),
     ("*", "python/jointid/hardware/session/moving_joint.py", "what a moving joint brakes by"),

@@ -29,7 +29,7 @@ _VERBS = {
     "compare_models": "compare",
     "sweep": "sweep",
 }
-_VERBS |= {"simulate": "simulate", "export": "export"}
+_VERBS |= {"simulate": "simulate", "export": "export", "design_excitation": "design"}
 
 
 def words_of_action(action: Action, command: str, model: str = "") -> str:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.cli.arguments import fixed_values, joints_wanted, load_all, refinements, with_terms
+from jointid.cli.designs import design
 from jointid.cli.exports import export
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
 from jointid.cli.parser import BAD_USAGE
@@ -336,6 +337,7 @@ COMMANDS: dict[str, Callable[[argparse.Namespace], int | None]] = {
     "compare": compare,
     "simulate": simulate,
     "sweep": sweep,
+    "design": design,
     "run": run,
     "emulate": emulate,
     "check": check,

@@ -19,6 +19,7 @@ from jointid.cli.arguments import (
     whole_seed,
     windows,
 )
+from jointid.cli.designs import add_design
 from jointid.cli.exports import add_export
 from jointid.cli.proof import add_check, add_first_motion
 from jointid.cli.session import add_emulate, add_run
@@ -83,7 +84,7 @@ def command_parser() -> argparse.ArgumentParser:
     main_parser.add_argument("--version", action="store_true", help="print the version and exit")
     commands = main_parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=_Parser)
     for add in (
-        *(_add_demo, _add_identify, _add_compare, add_simulate, add_sweep),
+        *(_add_demo, _add_identify, _add_compare, add_simulate, add_sweep, add_design),
         *(add_check, add_first_motion, add_run, add_emulate, _add_report, add_export, _add_info),
     ):
         add(commands)
