@@ -61,7 +61,7 @@ def least_speeds(
 
 
 def duration_of(windows: float | None, motions: Sequence[Motion], total: float) -> float:
-    """Return the duration of the windows [s]: as given, a whole number is how many; else what the velocities' noise asks.
+    """Return the duration of the windows [s]: as given, or so that there are as many, or as the velocities' noise asks.
 
     Of a long recording, `total` seconds, windows may be longer than that: there are enough of them.
     """
