@@ -118,6 +118,12 @@ def test_pieces_of_a_long_recording_are_joined(
     assert set(parts.joints["elbow"].windows.recording) == {0}
 
 
+def test_a_whole_number_of_windows_is_how_many(path: Path, run: jid.RobotRecording) -> None:
+    found = jid.identify_robot(run, jid.Robot.from_urdf(path), windows=150)
+    assert found.settings["window_duration"] == pytest.approx(12.0 / 150, rel=1e-3)
+    assert found.joints["elbow"].residuals.windows <= 150
+
+
 def test_swapped_joints_are_named(path: Path) -> None:
     swapped = recording(path, names=("elbow", "shoulder"))
     found = jid.identify_robot(swapped, jid.Robot.from_urdf(path))
@@ -187,6 +193,7 @@ def test_options_that_nobody_knows_are_refused(path: Path, run: jid.RobotRecordi
     for options, argument in (
         ({"inertia": "all"}, "inertia"),
         ({"windows": 0.0}, "windows"),
+        ({"windows": "cumulative"}, "windows"),
         ({"min_speed": -1.0}, "min_speed"),
         ({"min_speed": {"wrist": 1.0}}, "min_speed"),
     ):

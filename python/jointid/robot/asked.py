@@ -61,10 +61,12 @@ def least_speeds(
 
 
 def duration_of(windows: float | None, motions: Sequence[Motion], total: float) -> float:
-    """Return the duration of the windows: as given, else what the velocities' noise asks for [s].
+    """Return the duration of the windows [s]: as given, or so that there are as many, or as the velocities' noise asks.
 
     Of a long recording, `total` seconds, windows may be longer than that: there are enough of them.
     """
+    if isinstance(windows, int) and not isinstance(windows, bool) and windows > 0:
+        windows = total / windows
     if windows is not None:
         number = isinstance(windows, int | float) and not isinstance(windows, bool)
         shortest = min(4.0 * float(np.median(np.diff(motion.time))) for motion in motions)

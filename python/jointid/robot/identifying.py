@@ -66,8 +66,9 @@ def identify_robot(
     model : Model, str or mapping, optional
         Friction of the joints: "coulomb_viscous", "stribeck", or "auto" (default): each joint has static friction if
         that predicts its held-out torque better. A mapping from joints' names to models says it for some of them.
-    windows : float, optional
-        Duration of the windows [s]. Default: what the velocities' noise asks for, at most 0.1 s.
+    windows : float or int, optional
+        Duration of the windows [s]; a whole number is how many. Default: what the velocities' noise asks for, at most
+        0.1 s; of recordings longer than some minutes towards 0.1 s, because there are enough of them.
     min_speed : float, sequence or mapping of float, optional
         Speed below which a joint's balance is left out [rad/s or m/s]; one for all, one a joint, or by name.
         Default 0.
