@@ -20,9 +20,9 @@ def sections(
 ) -> dict[str, tuple[str, Callable[[], Iterator[str]]]]:
     """Title and lines of each section."""
     tables: dict[str, tuple[str, Callable[[], Iterator[str]]]] = {
-        "runs": (f"{runs} simulated arms", lambda: seven_tables.accuracy(range(runs))),
+        "runs": (f"Simulated arms: {runs}", lambda: seven_tables.accuracy(range(runs))),
         "noise": (
-            "Noise that drowns accelerations",
+            f"Noise that drowns accelerations, arms: {min(runs, 3)}",
             lambda: seven_tables.noise(range(min(runs, 3))),
         ),
         "heavier": (
@@ -31,7 +31,7 @@ def sections(
         ),
         "facts": ("Facts that are wrong", lambda: seven_tables.wrong_facts(0)),
         "wrong": (
-            "What else may be wrong",
+            f"What else may be wrong, arms: {min(runs, 2)}",
             lambda: mismatches.table(range(min(runs, 2))),
         ),
         "speed": ("Time and memory", lambda: speed_tables.tables(0, 5, hour)),

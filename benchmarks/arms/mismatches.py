@@ -148,12 +148,13 @@ def table(seeds: range) -> Iterator[str]:
 
 def _row(name: str, inertia: str, runs: list[tuple[Arm, jid.RobotRecording]]) -> str:
     worst = {"coulomb": 0.0, "viscous": 0.0}
-    residual, silent, codes = 0.0, 0, []
+    residual, silent, refused, codes = 0.0, 0, 0, []
     for arm, recording in runs:
         try:
             found = jid.identify_robot(recording, jid.Robot.from_urdf(URDF), inertia=inertia)
         except jid.InputError as error:
             codes.append(f"refused: {error}")
+            refused += 1
             continue
         errors = Errors.of([(arm, *of_estimate(found))])
         for kind in worst:
@@ -162,11 +163,11 @@ def _row(name: str, inertia: str, runs: list[tuple[Arm, jid.RobotRecording]]) ->
         codes += [f"`{code}`" for code in {each.code for each in found.warnings}]
         silent += not found.warnings and errors.within(FAR) == 0
     counted = ", ".join(f"{code} {codes.count(code)}" for code in sorted(set(codes)))
+    shown = [percent(each, sign=False) for each in (*worst.values(), residual)]
     cells = (
         name,
         inertia,
-        *(percent(each, sign=False) for each in worst.values()),
-        percent(residual, sign=False),
+        *(shown if refused < len(runs) else ["–"] * len(shown)),
         counted or "none",
         f"**{silent}** of {len(runs)}" if silent else "0",
     )

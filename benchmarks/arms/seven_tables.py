@@ -131,7 +131,7 @@ def wrong_facts(seed: int) -> Iterator[str]:
         ("that motor 7 turns with joint 7 alone", np.eye(JOINTS)),
         ("the coupling's sign", np.where(np.eye(JOINTS) > 0, right, -right)),
     ):
-        robot = jid.Robot.from_urdf(URDF, gear_ratios=ratios, couplings=couplings)
+        robot = jid.Robot.from_urdf(URDF, gear_ratios=ratios.tolist(), couplings=couplings)
         cases.append((name, motors, robot))
     for name, each, robot in cases:
         estimate = jid.identify_robot(each, robot)

@@ -63,7 +63,7 @@ class Log:
         ratios = np.array(tx40.GEAR_RATIOS)
         return jid.Robot.from_urdf(
             self.folder / "tx40.urdf",
-            gear_ratios=ratios,
+            gear_ratios=tx40.GEAR_RATIOS,
             couplings=tx40.COUPLINGS / ratios[:, None],
             zero_offsets=tx40.ZEROS,
         )

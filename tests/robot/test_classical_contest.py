@@ -8,11 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import jointid as jid
-
 pytest.importorskip("pinocchio")
-if not hasattr(jid, "identify_robot"):
-    pytest.skip("no identify_robot", allow_module_level=True)
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
 from arms import classical, tx40, tx40_tables

@@ -21,8 +21,6 @@ from simulated_arm import (
 import jointid as jid
 
 pytest.importorskip("pinocchio")
-if not hasattr(jid, "identify_robot"):
-    pytest.skip("no identify_robot", allow_module_level=True)
 
 SEED = 2
 NAMES = [f"joint_{number}" for number in range(1, JOINTS + 1)]
