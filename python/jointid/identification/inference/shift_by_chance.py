@@ -3,6 +3,9 @@
 A derived velocity that is measured once more is smoothed once more, and loses some of the noise that it had. That
 moves the parameters by chance, in every draw alike, and the standard errors know of it already. But each segment of
 the motion then moves them its own way, while a bias moves them the same way in all.
+
+That holds of what is linear in the velocity. Friction that is curved at low speed is biased at each reversal, and by
+more at one than at another: there the spread over segments is no chance, and nothing is taken off.
 """
 
 from __future__ import annotations
@@ -43,7 +46,7 @@ def variance_over_segments(
     Returns
     -------
     ndarray, shape (p,)
-        To first order; 0 for what is not free.
+        To first order; 0 for what is not free, and for friction that is not linear in the velocity.
 
     Raises
     ------
@@ -73,7 +76,13 @@ def variance_over_segments(
         moved = -np.einsum("sp,pq->sq", sums[1] - sums[0], inverse)
         count = len(moved)
         row[chosen] = np.var(moved, axis=0) * count**2 / max(1, count - 1)
-    return np.asarray(found.mean(axis=0))
+    return np.asarray(np.where(_is_curved(penalty), 0.0, found.mean(axis=0)))
+
+
+def _is_curved(penalty: _core.Penalty) -> NDArray[np.bool_]:
+    """Which parameters belong to friction of a shape: its coefficients and the shape itself."""
+    curved = [bool(term.friction and term.shapes) for term in penalty.terms]
+    return np.array(curved + [True] * (len(penalty.names) - len(curved)))
 
 
 def _scores(penalty: _core.Penalty, best: Array, free: list[int]) -> tuple[Array, Array]:
