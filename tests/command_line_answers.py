@@ -18,7 +18,7 @@ PYTHON = re.compile(
 KEYWORD = re.compile(r"(?:^|[\s(])([a-z_]+)=(?=[\w'\"({\[.,;)]|$)")
 OPTION = re.compile(r"(--[a-z][a-z-]+)((?: (?!--|or\b|and\b|with\b)(?:[^\s;,:)(]|[:,](?=\S))+)?)")
 # In these options values of the form name=value stand.
-NAMED = re.compile(r"--(?:column|unit|scale|where|set|gain|sensor|grid|trajectory|model) \S+")
+NAMED = re.compile(r"--(?:column|unit|scale|where|set|gain|sensor|grid|trajectory|model|prior) \S+")
 
 
 def answer(line: list[str], capsys: pytest.CaptureFixture[str]) -> tuple[int, str]:
@@ -60,6 +60,8 @@ def advised(sentence: str, line: list[str], fill: dict[str, str]) -> list[list[s
     """The alternatives that a sentence advises, each as the options to add."""
     alternatives = []
     for part in re.split(r" or |; |, ", sentence):
+        if "designed by jointid" in part:  # a command of its own
+            continue
         options: list[str] = []
         for option, text in OPTION.findall(part):
             value = text.strip()

@@ -31,6 +31,7 @@ ROOMS: dict[str, set[str]] = {
         *("base", "model", "search"),
         *("identify/recording", "identify/balance", "identify/penalty"),
     },
+    "design": {"base", "model", "simulate", "search", "identify/balance"},
     "signals": {"base"},
     "diagnose": {
         *("base", "signals"),
@@ -105,16 +106,24 @@ FOLDERS: dict[str, Folder] = {
     "online": Folder(may_use={*_SOUGHT, "identification/inference"}, packages={"numpy"}),
     "simulation": Folder(may_use=_DATA, packages={"numpy"}),
     "study": Folder(may_use={*_SOUGHT, "simulation"}, packages={"numpy", "pandas", "pyarrow"}),
+    "design": Folder(may_use={*_SOUGHT, "simulation", "plot"}, packages={"numpy", "matplotlib"}),
+    "robot": Folder(
+        may_use={
+            *("base", "recording", "recording/wide", "joint", "problem", "estimate", "joints"),
+            *("identification/inference", "identification/search"),
+        },
+        packages={"numpy", "scipy", "pinocchio"},
+    ),
     "plot": Folder(
         may_use={*_DATA, "simulation", "estimate", "study"},
         packages={"numpy", "matplotlib"},
     ),
     "report": Folder(
-        may_use={"base", "estimate", "joints", "plot", "identification/warnings"},
+        may_use={"base", "estimate", "joints", "robot", "plot", "identification/warnings"},
         packages={"numpy", "matplotlib"},
     ),
     "exports": Folder(
-        may_use={"base", "joint", "estimate", "simulation", "identification", "problem"},
+        may_use={"base", "joint", "estimate", "simulation", "identification", "problem", "robot"},
         packages={"numpy", "scipy"},
     ),
     "hardware/session": Folder(may_use={*_DATA, "simulation"}, packages={"numpy"}),
@@ -156,8 +165,10 @@ FOLDERS: dict[str, Folder] = {
                 "recording/readers",
                 "comparison",
                 "joints",
+                "robot",
                 "simulation",
                 "study",
+                "design",
                 "plot",
                 "report",
                 "exports",
@@ -171,8 +182,8 @@ FOLDERS: dict[str, Folder] = {
     "": Folder(
         may_use={
             *(_SOUGHT - {"problem"}),
-            *("recording/readers", "recording/wide", "comparison", "joints", "online"),
-            *("simulation", "study"),
+            *("recording/readers", "recording/wide", "comparison", "joints", "online", "robot"),
+            *("simulation", "study", "design"),
             *("plot", "exports", "hardware", "commissioning", "cli"),
         },
     ),
@@ -184,7 +195,7 @@ ASKED_FOR = {"hardware", "commissioning"}
 NAMED_ON_PURPOSE = {"hardware.bench.drive_types"}
 MEDIAN = 130  # lines of a Python file, at most
 # Slow to load, or of use to few: imported inside the function that needs it (hardware aside).
-HEAVY = {"scipy", "pandas", "pyarrow", "matplotlib", "can", "canopen", "tomlkit"}
+HEAVY = {"scipy", "pandas", "pyarrow", "matplotlib", "can", "canopen", "tomlkit", "pinocchio"}
 
 FORBIDDEN_WORDS = {
     *("data", "manager", "managers", "helper", "helpers", "util", "utils"),

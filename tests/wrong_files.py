@@ -90,10 +90,22 @@ def _joint_files(folder: Path) -> None:
         "bounds.toml": "schema = 1\n[parameters]\nviscous = { value = 1.0, min = 2.0 }\n",
         "sensor.toml": "schema = 1\n[sensor]\npresent = true\n",
         "bench.toml": text,
+        "moved.toml": _taking(text, "nowhere.toml"),
+        "far.toml": _taking(text, "far_motion.toml"),
+        "far_motion.toml": (
+            '[trajectory]\nform = "thesis"\n'
+            "[peaks]\nposition = [-1.5, 1.5]\nvelocity = 1\nacceleration = 1\ntorque = 1\n"
+        ),
         "drive.toml": text.replace("counts_per_turn = 8000", "counts_per_turn = -8000"),
     }
     for name, content in texts.items():
         (folder / name).write_text(content, encoding="utf-8")
+
+
+def _taking(bench: str, motion: str) -> str:
+    """A bench file's text with its motion in a file."""
+    begin, end = bench.index('form = "thesis"'), bench.index("[session.controller]")
+    return f'{bench[:begin]}file = "{motion}"\n\n{bench[end:]}'
 
 
 def _others(folder: Path) -> None:

@@ -158,5 +158,6 @@ void bind_diagnose(py::module_& m);
 void bind_signals(py::module_& m);
 void bind_regression(py::module_& m);
 void bind_simulate(py::module_& m);
+void bind_design(py::module_& m);
 
 }  // namespace jointid::bind

@@ -13,4 +13,5 @@ PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
   jointid::bind::bind_diagnose(m);
   jointid::bind::bind_regression(m);
   jointid::bind::bind_simulate(m);
+  jointid::bind::bind_design(m);
 }

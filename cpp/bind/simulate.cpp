@@ -34,7 +34,8 @@ py::dict signals_of(const Outcome& outcome) {
 void bind_trajectory(py::module_& m) {
   py::class_<Trajectory>(m, "Trajectory", "A desired motion; use it through jointid.Trajectory.")
       .def_static("multisine", &Trajectory::multisine, py::kw_only(), py::arg("amplitude"),
-                  py::arg("frequency"), py::arg("phase"), py::arg("offset"), py::arg("duration"))
+                  py::arg("frequency"), py::arg("phase"), py::arg("offset"), py::arg("duration"),
+                  py::arg("fade") = 0.0)
       .def_static("sigmoid", &Trajectory::sigmoid, py::kw_only(), py::arg("distance"),
                   py::arg("rise"), py::arg("duration"))
       .def_static("step", &Trajectory::step, py::kw_only(), py::arg("distance"), py::arg("time"),

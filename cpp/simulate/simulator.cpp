@@ -13,9 +13,10 @@ namespace jointid::simulate {
 
 namespace {
 
-using Wide = base::Lanes<4>;
-constexpr double kOutOfBounds = 1e12;  // radians: no motion, a loop that diverges
-constexpr std::size_t kBlock = 64;     // control periods between looks at the cancel flag
+using Wide = base::Lanes<kSideBySide / 2>;
+using Narrow = base::Lanes<kSideBySide / 4>;  ///< no lane is idle where half as many run
+constexpr double kOutOfBounds = 1e12;         // radians: no motion, a loop that diverges
+constexpr std::size_t kBlock = 64;            // control periods between looks at the cancel flag
 
 std::int64_t rounded(double value) {
   return static_cast<std::int64_t>(std::floor(value + 0.5));
@@ -40,14 +41,6 @@ JointOf<Number> joined(std::span<const Setup> setups) {
   return joint;
 }
 
-void reserve(Signals& s, std::size_t samples) {
-  for (auto* signal :
-       {&s.position, &s.velocity, &s.torque, &s.reading, &s.reference, &s.true_position,
-        &s.true_velocity, &s.true_acceleration, &s.friction, &s.link_torque}) {
-    signal->reserve(samples);
-  }
-}
-
 /// One run's part of the loop: what is sampled, commanded and kept at a control instant.
 class Loop {
  public:
@@ -59,7 +52,8 @@ class Loop {
         signals_(signals) {
     if (signals_) {
       const auto every = static_cast<std::size_t>(scenario.sample_every);
-      reserve(outcome.signals, (scenario.instants() + every - 1) / every);
+      const std::size_t samples = (scenario.instants() + every - 1) / every;
+      outcome.signals.each([&](std::vector<double>& signal) { signal.reserve(samples); });
     }
   }
 
@@ -117,8 +111,9 @@ class Loop {
 };
 
 /// As many runs as Number has lanes, or fewer: the last is then repeated and thrown away.
-template <class Number>
-void run(const Scenario& scenario, const Trajectory& trajectory, std::span<const Setup> setups,
+/// `reference(k)` is what is wanted at control instant k.
+template <class Number, class Wanted>
+void run(const Scenario& scenario, const Wanted& reference, std::span<const Setup> setups,
          std::span<Outcome> outcomes, bool signals, const base::Cancel& cancel) {
   const JointOf<Number> joint = joined<Number>(setups);
   std::vector<Loop> loops;
@@ -139,7 +134,7 @@ void run(const Scenario& scenario, const Trajectory& trajectory, std::span<const
   for (std::size_t k = 0; k < instants; ++k) {
     if (k % kBlock == 0) cancel.check();
     const double time = static_cast<double>(k) * scenario.control_period;
-    const Reference wanted = trajectory.at(time);
+    const Reference wanted = reference(k);
     const auto acting = dynamics(joint, motion, torque);
     for (std::size_t i = 0; i < loops.size(); ++i) {
       const Dynamics<double> own{base::lane(acting.acceleration, i), base::lane(acting.friction, i),
@@ -155,8 +150,20 @@ void run(const Scenario& scenario, const Trajectory& trajectory, std::span<const
   for (auto& loop : loops) loop.finish();
 }
 
+template <class Wanted>
+void run_group(const Scenario& scenario, const Wanted& reference, std::span<const Setup> setups,
+               std::span<Outcome> outcomes, bool signals, const base::Cancel& cancel) {
+  if (setups.size() == 1) {
+    run<double>(scenario, reference, setups, outcomes, signals, cancel);
+  } else if (setups.size() <= Narrow::width) {
+    run<Narrow>(scenario, reference, setups, outcomes, signals, cancel);
+  } else {
+    run<Wide>(scenario, reference, setups, outcomes, signals, cancel);
+  }
+}
+
 /// Neighbours of one structure, at most as many as there are lanes.
-std::vector<std::span<const Setup>> groups(const std::vector<Setup>& setups) {
+std::vector<std::span<const Setup>> groups(std::span<const Setup> setups) {
   std::vector<std::span<const Setup>> result;
   for (std::size_t begin = 0; begin < setups.size();) {
     std::size_t end = begin + 1;
@@ -217,18 +224,27 @@ std::vector<Outcome> simulate(const Scenario& scenario, const Trajectory& trajec
   for (const auto& setup : setups) setup.validate();
   std::vector<Outcome> outcomes(setups.size());
   const auto parts = groups(setups);
+  const auto reference = [&](std::size_t k) {
+    return trajectory.at(static_cast<double>(k) * scenario.control_period);
+  };
   pool.for_each(parts.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto first = static_cast<std::size_t>(parts[i].data() - setups.data());
       const std::span<Outcome> own(outcomes.data() + first, parts[i].size());
-      if (parts[i].size() == 1) {
-        run<double>(scenario, trajectory, parts[i], own, signals, pool.cancel());
-      } else {
-        run<Wide>(scenario, trajectory, parts[i], own, signals, pool.cancel());
-      }
+      run_group(scenario, reference, parts[i], own, signals, pool.cancel());
     }
   });
   return outcomes;
+}
+
+void simulate_on_this_thread(const Scenario& scenario, std::span<const Reference> wanted,
+                             std::span<const Setup> setups, std::span<Outcome> outcomes,
+                             bool signals, const base::Cancel& cancel) {
+  const auto reference = [&](std::size_t k) { return wanted[k]; };
+  for (const auto& part : groups(setups)) {
+    const auto first = static_cast<std::size_t>(part.data() - setups.data());
+    run_group(scenario, reference, part, outcomes.subspan(first, part.size()), signals, cancel);
+  }
 }
 
 }  // namespace jointid::simulate

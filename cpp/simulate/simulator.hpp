@@ -4,6 +4,7 @@
 // the bits of a run depend on neither.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/pool.hpp"
@@ -46,6 +47,19 @@ struct Setup {
 struct Signals {
   std::vector<double> position, velocity, torque, reading, reference;
   std::vector<double> true_position, true_velocity, true_acceleration, friction, link_torque;
+
+  /// Calls visit(signal) for each.
+  template <class Visit>
+  void each(Visit visit) {
+    for (auto* signal : {&position, &velocity, &torque, &reading, &reference, &true_position,
+                         &true_velocity, &true_acceleration, &friction, &link_torque}) {
+      visit(*signal);
+    }
+  }
+  /// Without values; the memory is kept.
+  void clear() {
+    each([](std::vector<double>& signal) { signal.clear(); });
+  }
 };
 
 struct Outcome {
@@ -54,6 +68,15 @@ struct Outcome {
   double peak_error = 0.0;
   std::int64_t saturations = 0;
 };
+
+/// Most runs that advance side by side.
+inline constexpr std::size_t kSideBySide = 8;
+
+/// The same runs on the calling thread, along references that are known at each control instant.
+/// Scenario and setups are taken as valid.
+void simulate_on_this_thread(const Scenario& scenario, std::span<const Reference> wanted,
+                             std::span<const Setup> setups, std::span<Outcome> outcomes,
+                             bool signals, const base::Cancel& cancel);
 
 /// One Outcome a setup, in order. Throws base::InputError when a motion leaves all bounds.
 std::vector<Outcome> simulate(const Scenario& scenario, const Trajectory& trajectory,

@@ -33,6 +33,24 @@ Eigen::VectorXd curvatures(const Eigen::VectorXd& time, const Eigen::VectorXd& p
   return curvature;
 }
 
+/// How much of the sines is left, with two derivatives: 0 before the start and after the end.
+Reference envelope(double duration, double fade, double time) {
+  const double left = duration - time;
+  const bool ending = left < time;
+  const double x = std::clamp((ending ? left : time) / fade, 0.0, 1.0);
+  const double y = 1.0 - x;
+  const double rate = (ending ? -1.0 : 1.0) / fade;
+  return {x * x * x * (10.0 - x * (15.0 - 6.0 * x)), rate * 30.0 * x * x * y * y,
+          60.0 * x * y * (y - x) / (fade * fade)};
+}
+
+Reference faded(const Reference& sines, const Reference& share) {
+  return {share.position * sines.position,
+          share.velocity * sines.position + share.position * sines.velocity,
+          share.acceleration * sines.position + 2.0 * share.velocity * sines.velocity +
+              share.position * sines.acceleration};
+}
+
 }  // namespace
 
 Trajectory::Trajectory(Form form, double duration) : form_(std::move(form)), duration_(duration) {
@@ -40,7 +58,8 @@ Trajectory::Trajectory(Form form, double duration) : form_(std::move(form)), dur
 }
 
 Trajectory Trajectory::multisine(Eigen::VectorXd amplitude, Eigen::VectorXd frequency,
-                                 Eigen::VectorXd phase, double offset, double duration) {
+                                 Eigen::VectorXd phase, double offset, double duration,
+                                 double fade) {
   if (amplitude.size() == 0 || amplitude.size() != frequency.size() ||
       amplitude.size() != phase.size()) {
     throw base::InputError(
@@ -56,7 +75,10 @@ Trajectory Trajectory::multisine(Eigen::VectorXd amplitude, Eigen::VectorXd freq
     require.finite("phase", phase[i]);
   }
   require.finite("offset", offset);
-  return {Multisine{std::move(amplitude), std::move(frequency), std::move(phase), offset},
+  require.that(fade >= 0.0 && 2.0 * fade <= duration, "fade", fade,
+               "at least 0 and at most half the duration");
+  return {Multisine{std::move(amplitude), std::move(frequency), std::move(phase), offset, duration,
+                    fade},
           duration};
 }
 
@@ -123,7 +145,7 @@ Reference Trajectory::at(double time) const {
 }
 
 Reference Trajectory::value(const Multisine& form, double time) {
-  Reference wanted{form.offset, 0.0, 0.0};
+  Reference wanted{form.fade > 0.0 ? 0.0 : form.offset, 0.0, 0.0};
   for (Eigen::Index i = 0; i < form.amplitude.size(); ++i) {
     const double rate = form.frequency[i];
     const double angle = rate * time + form.phase[i];
@@ -131,6 +153,10 @@ Reference Trajectory::value(const Multisine& form, double time) {
     wanted.position += sine;
     wanted.velocity += form.amplitude[i] * rate * base::cos(angle);
     wanted.acceleration -= rate * rate * sine;
+  }
+  if (form.fade > 0.0) {
+    wanted = faded(wanted, envelope(form.duration, form.fade, time));
+    wanted.position += form.offset;
   }
   return wanted;
 }

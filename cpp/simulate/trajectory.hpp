@@ -16,9 +16,12 @@ struct Reference {
 
 class Trajectory {
  public:
-  /// offset + sum of amplitude · sin(frequency · t + phase); frequencies in rad/s.
+  /// offset + sum of amplitude · sin(frequency · t + phase); frequencies in rad/s. With a fade the
+  /// sum grows from nothing over so many seconds, and ends so: it starts and ends at rest at
+  /// offset.
   static Trajectory multisine(Eigen::VectorXd amplitude, Eigen::VectorXd frequency,
-                              Eigen::VectorXd phase, double offset, double duration);
+                              Eigen::VectorXd phase, double offset, double duration,
+                              double fade = 0.0);
   /// From 0 to `distance` in `rise`, half a cosine; then rest.
   static Trajectory sigmoid(double distance, double rise, double duration);
   /// `distance` from `time` on.
@@ -40,6 +43,8 @@ class Trajectory {
     Eigen::VectorXd frequency;
     Eigen::VectorXd phase;
     double offset;
+    double duration;
+    double fade;
   };
   struct Sigmoid {
     double distance;

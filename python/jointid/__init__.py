@@ -40,6 +40,13 @@ from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.comparison.comparison import compare_models
 from jointid.comparison.result import Comparison
+from jointid.design.design import Design
+from jointid.design.design_file import load_design
+from jointid.design.design_search import DesignProgress, DesignSearch
+from jointid.design.designing import design_excitation
+from jointid.design.known import Known
+from jointid.design.motion_limits import MotionLimits
+from jointid.design.next_motion import motion_after
 from jointid.estimate.bootstrap import Bootstrap
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.selection import Selection
@@ -60,6 +67,9 @@ from jointid.recording.readers.loading import load, load_runs
 from jointid.recording.readers.loading_robot import load_robot
 from jointid.recording.recording import Recording
 from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.identifying import identify_robot
+from jointid.robot.result import RobotEstimate
+from jointid.robot.robot import Robot
 from jointid.simulation.batch import SimulatedBatch, simulate_batch
 from jointid.simulation.plant import Bristle, control_estimates
 from jointid.simulation.scenario import Scenario
@@ -75,6 +85,10 @@ if TYPE_CHECKING:
 
 __version__ = _core.__version__
 
+Estimate._design = (
+    motion_after  # a method: the rooms stand one above the other, and here all is seen
+)
+
 __all__ = [
     "Action",
     "AdaptiveRobust",
@@ -82,16 +96,21 @@ __all__ = [
     "Bristle",
     "Comparison",
     "CompensatedPid",
+    "Design",
+    "DesignProgress",
+    "DesignSearch",
     "Estimate",
     "GaOptions",
     "Generation",
     "InputError",
     "Joint",
     "JointEstimates",
+    "Known",
     "Limits",
     "Link",
     "LugreObserver",
     "Model",
+    "MotionLimits",
     "OnlineEstimate",
     "OnlineIdentifier",
     "OpenLoop",
@@ -99,6 +118,8 @@ __all__ = [
     "Pd",
     "Pid",
     "Recording",
+    "Robot",
+    "RobotEstimate",
     "RobotRecording",
     "Scenario",
     "Search",
@@ -118,11 +139,14 @@ __all__ = [
     "commissioning",
     "compare_models",
     "control_estimates",
+    "design_excitation",
     "export",
     "hardware",
     "identify",
     "identify_joints",
+    "identify_robot",
     "load",
+    "load_design",
     "load_robot",
     "load_runs",
     "plot",

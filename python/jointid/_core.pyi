@@ -13,21 +13,29 @@ import typing
 __all__: list[str] = [
     "AdaptiveRobust",
     "Agreement",
+    "BalanceColumn",
+    "BalanceNoise",
     "CompensatedPid",
     "CompressedPenalty",
     "Control",
     "ControlRun",
+    "DrawnJoint",
+    "Excitation",
     "FirstStage",
     "GaOptions",
     "GaResult",
     "GaState",
     "Generation",
+    "HeldLimits",
     "Hold",
     "Inspection",
     "Limit",
     "LocalVelocity",
     "LugreObserver",
     "Model",
+    "MotionBounds",
+    "MotionFamily",
+    "MotionJudgement",
     "MotionScale",
     "Observation",
     "OpenLoop",
@@ -1326,6 +1334,7 @@ class Trajectory:
         phase: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
         offset: typing.SupportsFloat | typing.SupportsIndex,
         duration: typing.SupportsFloat | typing.SupportsIndex,
+        fade: typing.SupportsFloat | typing.SupportsIndex = 0.0,
     ) -> Trajectory: ...
     @staticmethod
     def samples(
@@ -2780,6 +2789,492 @@ class SteppedJoint:
         """
         [rad/s]
         """
+
+class MotionBounds:
+    """
+    What the reference of a designed motion is held within.
+
+    Parameters
+    ----------
+    lowest : default -1.0
+        Position [rad].
+    highest : default 1.0
+        Position [rad].
+    velocity : default 1.0
+        [rad/s]
+    acceleration : default 1.0
+        [rad/s²]
+    torque : default 1e+300
+        Of the drive [N·m].
+    inertia : default 0.0
+        Largest that the prior allows [kg·m²].
+    viscous : default 0.0
+        The same [N·m·s/rad].
+    dry : default 0.0
+        The same, dry friction and load [N·m].
+    """
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> dict[str, typing.Any]: ...
+    def __hash__(self) -> int: ...
+    def __init__(
+        self,
+        *,
+        lowest: float = -1.0,
+        highest: float = 1.0,
+        velocity: float = 1.0,
+        acceleration: float = 1.0,
+        torque: float = 1e300,
+        inertia: float = 0.0,
+        viscous: float = 0.0,
+        dry: float = 0.0,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
+    def asdict(self) -> dict[str, typing.Any]:
+        """
+        The fields as a dictionary.
+        """
+    def replace(
+        self,
+        *,
+        lowest: float = ...,
+        highest: float = ...,
+        velocity: float = ...,
+        acceleration: float = ...,
+        torque: float = ...,
+        inertia: float = ...,
+        viscous: float = ...,
+        dry: float = ...,
+    ) -> MotionBounds:
+        """
+        A copy with the given fields changed.
+        """
+    @property
+    def acceleration(self) -> float:
+        """
+        [rad/s²]
+        """
+    @property
+    def dry(self) -> float:
+        """
+        The same, dry friction and load [N·m].
+        """
+    @property
+    def highest(self) -> float:
+        """
+        Position [rad].
+        """
+    @property
+    def inertia(self) -> float:
+        """
+        Largest that the prior allows [kg·m²].
+        """
+    @property
+    def lowest(self) -> float:
+        """
+        Position [rad].
+        """
+    @property
+    def torque(self) -> float:
+        """
+        Of the drive [N·m].
+        """
+    @property
+    def velocity(self) -> float:
+        """
+        [rad/s]
+        """
+    @property
+    def viscous(self) -> float:
+        """
+        The same [N·m·s/rad].
+        """
+
+class MotionFamily:
+    """
+    Sums of sines that start and end at rest.
+
+    Parameters
+    ----------
+    sines : default 5
+        How many.
+    duration : default 12.0
+        [s]
+    fade : default 0.5
+        Time over which they grow and shrink [s].
+    slowest : default 0.1
+        Frequency [rad/s].
+    fastest : default 20.0
+        Frequency [rad/s].
+    bounds : default MotionBounds(lowest=-1.0, highest=1.0, velocity=1.0, acceleration=1.0, torque=1e+300, inertia=0.0, viscous=0.0, dry=0.0)
+        What the reference is held within.
+    """
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> dict[str, typing.Any]: ...
+    def __hash__(self) -> int: ...
+    def __init__(
+        self,
+        *,
+        sines: int = 5,
+        duration: float = 12.0,
+        fade: float = 0.5,
+        slowest: float = 0.1,
+        fastest: float = 20.0,
+        bounds: MotionBounds = ...,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
+    def asdict(self) -> dict[str, typing.Any]:
+        """
+        The fields as a dictionary.
+        """
+    def replace(
+        self,
+        *,
+        sines: int = ...,
+        duration: float = ...,
+        fade: float = ...,
+        slowest: float = ...,
+        fastest: float = ...,
+        bounds: MotionBounds = ...,
+    ) -> MotionFamily:
+        """
+        A copy with the given fields changed.
+        """
+    @property
+    def bounds(self) -> MotionBounds:
+        """
+        What the reference is held within.
+        """
+    @property
+    def duration(self) -> float:
+        """
+        [s]
+        """
+    @property
+    def fade(self) -> float:
+        """
+        Time over which they grow and shrink [s].
+        """
+    @property
+    def fastest(self) -> float:
+        """
+        Frequency [rad/s].
+        """
+    @property
+    def genes(self) -> int:
+        """
+        How many numbers make a motion.
+        """
+    @property
+    def sines(self) -> int:
+        """
+        How many.
+        """
+    @property
+    def slowest(self) -> float:
+        """
+        Frequency [rad/s].
+        """
+
+class HeldLimits:
+    """
+    What the joints themselves are held within.
+
+    Parameters
+    ----------
+    lowest : default -1e+300
+        Position [rad].
+    highest : default 1e+300
+        Position [rad].
+    velocity : default 1e+300
+        [rad/s]
+    acceleration : default 1e+300
+        [rad/s²]
+    torque : default 1e+300
+        Of the drive [N·m].
+    link_torque : default 1e+300
+        At the torque sensor [N·m].
+    """
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> dict[str, typing.Any]: ...
+    def __hash__(self) -> int: ...
+    def __init__(
+        self,
+        *,
+        lowest: float = -1e300,
+        highest: float = 1e300,
+        velocity: float = 1e300,
+        acceleration: float = 1e300,
+        torque: float = 1e300,
+        link_torque: float = 1e300,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
+    def asdict(self) -> dict[str, typing.Any]:
+        """
+        The fields as a dictionary.
+        """
+    def replace(
+        self,
+        *,
+        lowest: float = ...,
+        highest: float = ...,
+        velocity: float = ...,
+        acceleration: float = ...,
+        torque: float = ...,
+        link_torque: float = ...,
+    ) -> HeldLimits:
+        """
+        A copy with the given fields changed.
+        """
+    @property
+    def acceleration(self) -> float:
+        """
+        [rad/s²]
+        """
+    @property
+    def highest(self) -> float:
+        """
+        Position [rad].
+        """
+    @property
+    def link_torque(self) -> float:
+        """
+        At the torque sensor [N·m].
+        """
+    @property
+    def lowest(self) -> float:
+        """
+        Position [rad].
+        """
+    @property
+    def torque(self) -> float:
+        """
+        Of the drive [N·m].
+        """
+    @property
+    def velocity(self) -> float:
+        """
+        [rad/s]
+        """
+
+class BalanceNoise:
+    """
+    Noise of the torque balance, and what an identification leaves out.
+
+    Parameters
+    ----------
+    torque : default 1.0
+        Of a sample, white [N·m].
+    position : default 0.0
+        At a window's end [rad].
+    velocity : default 0.0
+        At a window's end [rad/s].
+    slowest : default 0.0
+        Slower samples tell nothing [rad/s].
+    reversal : default 0.0
+        Of a window with a change of sign [N·m·s].
+    """
+    def __eq__(self, arg0: typing.Any) -> bool: ...
+    def __getstate__(self) -> dict[str, typing.Any]: ...
+    def __hash__(self) -> int: ...
+    def __init__(
+        self,
+        *,
+        torque: float = 1.0,
+        position: float = 0.0,
+        velocity: float = 0.0,
+        slowest: float = 0.0,
+        reversal: float = 0.0,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
+    def asdict(self) -> dict[str, typing.Any]:
+        """
+        The fields as a dictionary.
+        """
+    def replace(
+        self,
+        *,
+        torque: float = ...,
+        position: float = ...,
+        velocity: float = ...,
+        slowest: float = ...,
+        reversal: float = ...,
+    ) -> BalanceNoise:
+        """
+        A copy with the given fields changed.
+        """
+    @property
+    def position(self) -> float:
+        """
+        At a window's end [rad].
+        """
+    @property
+    def reversal(self) -> float:
+        """
+        Of a window with a change of sign [N·m·s].
+        """
+    @property
+    def slowest(self) -> float:
+        """
+        Slower samples tell nothing [rad/s].
+        """
+    @property
+    def torque(self) -> float:
+        """
+        Of a sample, white [N·m].
+        """
+    @property
+    def velocity(self) -> float:
+        """
+        At a window's end [rad/s].
+        """
+
+class BalanceColumn:
+    """
+    What a free parameter does to the torque balance.
+    """
+    def __init__(
+        self,
+        *,
+        key: str,
+        shape: typing.SupportsInt | typing.SupportsIndex = -1,
+        coefficient: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        frequency: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        shapes: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex] = [],
+    ) -> None: ...
+
+class DrawnJoint:
+    """
+    A joint that the prior allows.
+    """
+    def __init__(
+        self,
+        *,
+        setup: Setup,
+        columns: collections.abc.Sequence[BalanceColumn],
+        noise: BalanceNoise,
+        scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        known: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        inertia: typing.SupportsFloat | typing.SupportsIndex,
+        viscous: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+    @property
+    def weight(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        1: asked for, 0: not.
+        """
+
+class MotionJudgement:
+    """
+    What a motion is worth for one joint.
+    """
+    @property
+    def acceleration(self) -> float:
+        """
+        [rad/s²]
+        """
+    @property
+    def errors(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Expected standard errors over their scales.
+        """
+    @property
+    def excess(self) -> float:
+        """
+        Largest share by which a limit is exceeded; 0: none.
+        """
+    @property
+    def highest(self) -> float:
+        """
+        Position that the joint reaches [rad].
+        """
+    @property
+    def information(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        Of this motion alone.
+        """
+    @property
+    def link_torque(self) -> float:
+        """
+        At the sensor [N·m].
+        """
+    @property
+    def lowest(self) -> float:
+        """
+        Position that the joint reaches [rad].
+        """
+    @property
+    def torque(self) -> float:
+        """
+        Of the drive [N·m].
+        """
+    @property
+    def velocity(self) -> float:
+        """
+        [rad/s]
+        """
+
+class Excitation:
+    """
+    Judges motions, and searches for the best.
+    """
+    def __init__(
+        self,
+        *,
+        family: MotionFamily,
+        scenario: Scenario,
+        joints: collections.abc.Sequence[DrawnJoint],
+        held: HeldLimits,
+        criterion: str,
+        window: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    def cost(self, judgements: collections.abc.Sequence[MotionJudgement]) -> float:
+        """
+        The logarithm of what the search minimises.
+        """
+    def judge(self, trajectory: Trajectory) -> list[MotionJudgement]:
+        """
+        One judgement a joint.
+        """
+    def leave_out(
+        self,
+        candidates: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        *,
+        largest: typing.SupportsFloat | typing.SupportsIndex,
+        threads: typing.SupportsInt | typing.SupportsIndex = 0,
+    ) -> None:
+        """
+        Leave out, for each joint, what none of these motions determines to within `largest`.
+        """
+    def motion(
+        self, genes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> dict[str, typing.Any]:
+        """
+        Arguments of Trajectory.multisine.
+        """
+    def search(
+        self,
+        *,
+        options: GaOptions,
+        seed: typing.SupportsInt | typing.SupportsIndex = 0,
+        trial: typing.SupportsInt | typing.SupportsIndex = 0,
+        threads: typing.SupportsInt | typing.SupportsIndex = 0,
+        callback: collections.abc.Callable[..., typing.Any] | None = None,
+    ) -> GaResult:
+        """
+        Genetic search for the motion of the smallest cost.
+        """
+    @property
+    def genes(self) -> int:
+        """
+        How many numbers make a motion.
+        """
+    @property
+    def joints(self) -> list[DrawnJoint]: ...
 
 def friction_basis(
     key: str,

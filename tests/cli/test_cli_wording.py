@@ -252,6 +252,34 @@ def test_an_error_in_the_model_shows_it_as_it_was_typed(error: InputError, text:
 
 
 @pytest.mark.parametrize(
+    ("wording", "arguments", "text"),
+    [
+        (
+            Wording("identify"),
+            {"limits": {"position": ..., "velocity": 1.1}, "duration": 6.0, "joint": ...},
+            "jointid design JOINT --after ESTIMATE --position=LOW,HIGH --velocity=1.1 --duration 6",
+        ),
+        (
+            Wording("identify", joint_file="my joint.toml", saved="first.json"),
+            {"limits": {"position": [-0.35, 0.3], "torque": 77.0}, "duration": 12.0},
+            "jointid design 'my joint.toml' --after first.json --position=-0.35,0.3 --torque=77 --duration 12",
+        ),
+        (
+            Wording("report"),
+            {"limits": {"velocity": "...", "sensor_range": 9.5, "acceleration": ...}},
+            "jointid design JOINT --after ESTIMATE --velocity=SPEED --sensor-range=9.5 --acceleration=ACCELERATION",
+        ),
+    ],
+)
+def test_other_motion_names_the_command_that_designs_it(
+    wording: Wording, arguments: dict[str, object], text: str
+) -> None:
+    action = Action("record", arguments, "slow motion", "next_motion")
+    expected = f"record slow motion, designed by {text} --output motion.toml"
+    assert wording.of_action(action) == expected
+
+
+@pytest.mark.parametrize(
     ("command", "error", "text"),
     [
         ("identify", InputError("x", argument="viscos", place="parameters"), "--set viscos: x"),

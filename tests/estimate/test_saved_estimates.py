@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
@@ -192,6 +193,16 @@ def test_the_path_is_named() -> None:
 def test_fields_that_contradict_each_other(path: Path_, junk: str, reason: str) -> None:
     with pytest.raises(jid.InputError, match=reason):
         jid.Estimate.from_json(damaged(path, junk))
+
+
+def test_the_information_is_saved() -> None:
+    estimate = jid.Estimate.from_json(text_of(3))
+    assert estimate.information is not None
+    product = estimate.information @ estimate.covariance
+    assert abs(product - np.eye(len(estimate.free))).max() < 1e-9
+    changed = json.dumps(document() | {"information": [[1.0]]})
+    with pytest.raises(jid.InputError, match=r"information: \d rows of"):
+        jid.Estimate.from_json(changed)
 
 
 def test_an_estimate_saved_before_is_still_read() -> None:

@@ -15,6 +15,7 @@ from jointid.hardware.elmo.drive import ElmoDrive
 from jointid.hardware.elmo.torque_source import AnalogInput, SyncedConverter
 from jointid.hardware.emulated.bus import EmulatedBus
 from jointid.hardware.session.options import SessionOptions
+from jointid.simulation.peaks import Peaks
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "hardware" / "joint.toml"
 TEXT = EXAMPLE.read_text(encoding="utf-8")
@@ -242,3 +243,76 @@ def test_too_many_cycles_are_refused_before_the_motor_is_on(
         with pytest.raises(jid.InputError, match=wording):
             session.run()
     assert not enabled
+
+
+MOTION = """[trajectory]
+form = "sines"
+amplitude = [0.5, 0.1]
+frequency = [1.0, 2.5]
+phase = [0.0, 0.7]
+fade = 1.0
+duration = 8.0
+"""
+PEAKS = "[peaks]\nposition = [-0.6, 0.6]\nvelocity = 1.0\nacceleration = 2.0\ntorque = 90.0\n"
+OWN = TEXT[TEXT.index('form = "thesis"') : TEXT.index("[session.controller]")]
+
+
+def with_motion(folder: Path, motion: str, more: str = "") -> Path:
+    """The example, whose session takes its motion from a file beside it."""
+    (folder / "motions").mkdir(exist_ok=True)
+    (folder / "motions" / "motion.toml").write_text(motion, encoding="utf-8")
+    return written(folder, OWN, f'file = "motions/motion.toml"\n{more}\n')
+
+
+def test_a_session_takes_its_motion_from_a_file_beside_the_bench(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = with_motion(tmp_path, MOTION + PEAKS)
+    monkeypatch.chdir("/")  # the name is that of the bench's folder, not of the program's
+    assert Bench.load(path).trajectory == jid.Trajectory.sines(
+        amplitude=(0.5, 0.1), frequency=(1.0, 2.5), phase=(0.0, 0.7), fade=1.0, duration=8.0
+    )
+
+
+@pytest.mark.parametrize(
+    ("motion", "more", "wording"),
+    [
+        (MOTION, "duration = 3.0", "duration: the motion is that of the file"),
+        ("", "", r"motion\.toml: trajectory: this is missing"),
+        (MOTION.replace("duration = 8.0", "duration = 1e5"), "", "at most 10000 s is expected"),
+        (
+            MOTION + PEAKS.replace("[-0.6, 0.6]", "[-0.6, 1.5]"),
+            "",
+            r"joints go from -0\.6000 to 1\.5000 rad, outside the session's -1\.4000 to 1\.4000 rad",
+        ),
+        (
+            MOTION + PEAKS.replace("velocity = 1.0", "velocity = 4.1"),
+            "",
+            r"go up to 4\.1 rad/s, more than the session's velocity of 4 rad/s$",
+        ),
+        (
+            MOTION + PEAKS.replace("torque = 90.0", "torque = 170.0"),
+            "",
+            r"go up to 170 N·m, more than the session's torque of 160 N·m$",
+        ),
+    ],
+)
+def test_a_motion_that_the_session_cannot_take_is_refused_in_one_sentence(
+    tmp_path: Path, motion: str, more: str, wording: str
+) -> None:
+    path = with_motion(tmp_path, motion, more)
+    with pytest.raises(jid.InputError, match=rf"joint\.toml: \[session\.trajectory\]: .*{wording}"):
+        Bench.load(path)
+
+
+def test_a_motions_file_is_a_name(tmp_path: Path) -> None:
+    path = written(tmp_path, OWN, "file = 3\n")
+    with pytest.raises(jid.InputError, match="file is 3: the name of a motion's file is expected"):
+        Bench.load(path)
+
+
+def test_a_motions_torque_at_the_limit_is_allowed() -> None:
+    peaks = Peaks(position=(-1.4, 1.4), velocity=4.0, acceleration=9.0, torque=160.0 + 1e-9)
+    limits = replace(Bench.load(EXAMPLE).limits, torque=160.0)
+    assert limits.passed_by(peaks) == ""
+    assert limits.passed_by(replace(peaks, torque=160.1)) != ""

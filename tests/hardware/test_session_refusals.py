@@ -65,10 +65,22 @@ def open_loop(bench: EmulatedSession) -> None:
     bench.trajectory = jid.Trajectory.sine(170.0, 0.5, duration=2.0)
 
 
+def fast_at_the_edge(bench: EmulatedSession) -> None:
+    """It brakes harder, just inside of the window, than any torque of this drive can."""
+    limited(position=(-0.5, 0.5))(bench)
+    bench.trajectory = jid.Trajectory.trapezoid(
+        0.49, velocity=5.0, acceleration=200.0, duration=1.0
+    )
+
+
 CASES: dict[str, tuple[Prepare, str]] = {
     "not homed": (with_elmo(slipped_counts=-(10**6)), "is it homed"),
     "trajectory outside": (limited(position=(-0.2, 0.6)), "outside -0.2000 to 0.6000 rad"),
     "trajectory too fast": (limited(velocity=1.0), "rad/s fast, more than 1 rad/s"),
+    "too fast at the edge": (
+        fast_at_the_edge,
+        r"too fast to the edge: .* would stop at .* outside -0\.5000 to 0\.5000 rad",
+    ),
     "torque beyond": (open_loop, "asks for 170 N·m, more than 160 N·m"),
     "peak current": (strong, r"PL\[1\] is 9 A, the session allows 8 A"),
     "unit mode": (with_elmo(fixed_unit_mode=5), "is in unit mode 5, not in torque mode"),

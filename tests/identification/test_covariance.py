@@ -1,5 +1,7 @@
 """Standard errors: right for white residuals, wide enough for drifting ones, infinite where nothing is known."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -151,3 +153,45 @@ def test_parameters_go_together_as_segments_say() -> None:
         assert np.linalg.eigvalsh(spread.matrix).min() > 0.0
     assert np.mean(found) == pytest.approx(wanted, abs=0.05)
     assert abs(np.mean(classical) - wanted) > 0.08
+
+
+@pytest.mark.parametrize("memory", [0.0, 0.9])
+def test_information_is_the_inverse_of_the_covariance(memory: float) -> None:
+    rng = np.random.default_rng(8)
+    design = _design(rng) * [1e-3, 1.0, 1e4]
+    residual = _noise(rng, memory)
+    residual -= design @ np.linalg.lstsq(design, residual, rcond=None)[0]
+    spread = parameter_covariance(design, residual, None)
+    np.testing.assert_allclose(spread.information @ spread.matrix, np.eye(3), atol=1e-6)
+
+
+def test_information_knows_the_sum_of_what_nothing_divides() -> None:
+    """Two equal columns: their errors are infinite, and that of their sum is the column's own."""
+    rng = np.random.default_rng(9)
+    one, other = rng.normal(size=(2, ROWS))
+    residual = rng.normal(size=ROWS)
+    both = parameter_covariance(np.column_stack([one, one, other]), residual, None)
+    alone = parameter_covariance(np.column_stack([one, other]), residual, None)
+    assert np.isinf(np.diag(both.matrix)[:2]).all()
+    np.testing.assert_allclose(both.information @ [1.0, -1.0, 0.0], 0.0, atol=1e-9 * ROWS)
+    np.testing.assert_allclose(both.information[1:, 1:], alone.information, rtol=0.02)
+
+
+def test_without_a_degree_of_freedom_there_is_no_information() -> None:
+    spread = parameter_covariance(np.eye(3), np.zeros(3), None)
+    assert not spread.information.any()
+
+
+def test_no_information_along_what_no_motion_divides(shared_data: Path) -> None:
+    """An offset and the difference of the two directions' Coulomb frictions."""
+    run = jid.load(shared_data / "simulated" / "poorly_excited.csv.gz")
+    estimate = jid.identify(run, model="stribeck:asymmetric")
+    change = {"sensor_offset": -1.0, "coulomb_positive": 1.0, "coulomb_negative": -1.0}
+    along = np.array([change.get(name, 0.0) for name in estimate.free])
+    assert estimate.information is not None
+    size = np.sqrt(np.diag(estimate.information))
+    assert (np.abs(estimate.information @ along) < 1e-9 * size * size.max()).all()
+    given = [place for place, name in enumerate(estimate.free) if name != "sensor_offset"]
+    block = np.ix_(given, given)
+    product = estimate.information[block] @ estimate.covariance[block]
+    np.testing.assert_allclose(product, np.eye(len(given)), atol=1e-6)

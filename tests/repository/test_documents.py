@@ -14,6 +14,7 @@ from moving_joints import recorded, sines, torques
 import jointid as jid
 from jointid.cli import main
 from jointid.cli.demo import data_folder
+from jointid.cli.parser import command_parser
 
 PAGES = ["README.md", "CONTRIBUTING.md", "examples/README.md"]
 PAGES += [f"docs/{path.name}" for path in (ROOT / "docs").glob("*.md")]
@@ -46,6 +47,16 @@ def test_the_page_about_own_terms_runs(tmp_path: Path, monkeypatch: pytest.Monke
 def test_the_page_on_exports_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run_python_blocks(read("docs/exports.md"), tmp_path, monkeypatch)
     assert 'frictionloss="' in (tmp_path / "arm.xml").read_text(encoding="utf-8")
+
+
+def test_the_page_on_the_next_motion_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = run_python_blocks(read("docs/next_motion.md"), tmp_path, monkeypatch)
+    assert "designed by estimate.next_motion(" in str(names["estimate"].warnings[0])
+    for name, true in names["true"].parameters.items():
+        assert names["both"].parameters[name].value == pytest.approx(true.value, rel=0.02), name
+    (commands,) = blocks(read("docs/next_motion.md"), "sh")
+    for line in commands.splitlines():
+        assert command_parser().parse_args(shlex.split(line)[1:]).joint == Path("joint.toml")
 
 
 def test_the_joint_file_in_the_guide_loads(tmp_path: Path) -> None:

@@ -17,7 +17,8 @@ class Action:
     Parameters
     ----------
     kind : {"call", "record", "inspect"}
-        "call": call again with other arguments, which a program can do. "record": record other motion.
+        "call": call again with other arguments, which a program can do. "record": record other motion; one with
+        a function is designed by it.
         "inspect": look at the hardware, the logger or the file.
     arguments : mapping of str to object
         Of a call: the arguments to change, by name, e.g. ``{"model": "stribeck"}``,
@@ -29,8 +30,10 @@ class Action:
         Of "record" and "inspect": what, in a phrase without the syntax of any face. Of a call: what for,
         if that needs to be said. Default: nothing.
     function : str
-        Of a call: which one: "identify" (default), "load", "compare_models", "sweep", "simulate" or
-        "Joint" (arguments are then fields of the joint).
+        Of a call: which one: "identify" (default), "load", "compare_models", "sweep", "simulate",
+        "design_excitation" or "Joint" (arguments are then fields of the joint). Of "record":
+        "next_motion", the method of the estimate that designs the motion, with these arguments; or
+        "identify", which designs none.
 
     Examples
     --------
@@ -38,6 +41,8 @@ class Action:
     "load with columns={'velocity': None}"
     >>> str(Action("record", text="slow motion through zero speed"))
     'record slow motion through zero speed'
+    >>> str(Action("record", {"duration": 6.0}, "slow motion", "next_motion"))
+    'record slow motion, designed by estimate.next_motion(duration=6.0)'
     """
 
     kind: Kind
@@ -52,11 +57,17 @@ class Action:
             raise ValueError("an action of kind 'call' needs arguments")
         object.__setattr__(self, "arguments", MappingProxyType(dict(self.arguments)))
 
+    @property
+    def designs(self) -> bool:
+        """Whether a motion is to be recorded that the estimate can design."""
+        return self.kind == "record" and self.function == "next_motion"
+
     def __str__(self) -> str:
         """The action as a person at a Python prompt would write it."""
-        if self.kind != "call":
-            return f"{self.kind} {self.text}".rstrip()
         shown = ", ".join(f"{name}={_written(value)}" for name, value in self.arguments.items())
+        if self.kind != "call":
+            by = f", designed by estimate.next_motion({shown})" * self.designs
+            return f"{self.kind} {self.text}{by}".rstrip()
         purpose = f" ({self.text})" if self.text else ""
         return f"{_VERB.get(self.function, self.function)} with {shown}{purpose}"
 

@@ -78,13 +78,25 @@ def read_json(text: str) -> Any:
         raise InputError(f"not JSON: line {error.lineno}, column {error.colno}") from None
     except ValueError:  # an integer of 5000 digits
         raise InputError("not JSON of ours: a number has too many digits") from None
+    check_depth(value, "not JSON of ours")
+    return value
+
+
+def check_depth(value: Any, what: str) -> None:
+    """Check that lists and tables are not deeper inside each other than in any file of ours.
+
+    Raises
+    ------
+    InputError
+        Deeper; begins with `what`.
+    """
     level: list[Any] = [value]
     for _ in range(DEEPEST + 1):
         inside = [_items(each) for each in level if isinstance(each, list | dict)]
         if not inside:
-            return value
+            return
         level = [each for items in inside for each in items]
-    raise InputError("not JSON of ours: nested too deeply")
+    raise InputError(f"{what}: nested too deeply")
 
 
 def _items(value: list[Any] | dict[str, Any]) -> Iterable[Any]:

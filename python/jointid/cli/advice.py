@@ -22,8 +22,14 @@ _TABLES = {
     ),
     "sensor": "sensor",
 }
-_VERBS = {"load": "load", "identify": "identify", "compare_models": "compare", "sweep": "sweep"}
-_VERBS |= {"simulate": "simulate", "export": "export"}
+_VERBS = {
+    "load": "load",
+    "identify": "identify",
+    "identify_robot": "identify",
+    "compare_models": "compare",
+    "sweep": "sweep",
+}
+_VERBS |= {"simulate": "simulate", "export": "export", "design_excitation": "design"}
 
 
 def words_of_action(action: Action, command: str, model: str = "") -> str:
@@ -41,6 +47,10 @@ def words_of_action(action: Action, command: str, model: str = "") -> str:
         return str(action)
     if action.function in ("load", "load_robot", "identify_joints"):
         action = _of_reading(action)
+    if action.function == "Robot.from_urdf":
+        facts = ", ".join(f"{name} = {_fact(value)}" for name, value in action.arguments.items())
+        purpose = f" ({action.text})" if action.text else ""
+        return f"write {facts} in the file of --facts{purpose}"
     if action.function == "Joint":
         options: list[str] = []
         joint_file = list(_joint_fields(action.arguments))
@@ -59,6 +69,11 @@ def words_of_action(action: Action, command: str, model: str = "") -> str:
     parts += [_in_joint_file(joint_file)] * bool(joint_file)
     purpose = f" ({action.text})" if action.text and parts else ""
     return " and ".join(parts) + purpose
+
+
+def _fact(value: Any) -> str:
+    """A fact of a robot as a facts file has it."""
+    return "..." if value is ... else str(value)
 
 
 def _of_reading(action: Action) -> Action:

@@ -127,7 +127,7 @@ def in_force(joint_file: Path, bench: Bench) -> InForce:
             *_limits(
                 bench.limits, {**({"torque": 0} if "current" in joint else {}), **joint, **own}
             ),
-            *_trajectory(trajectory),
+            *_trajectory(trajectory, bench.trajectory.duration),
             Setting("controller", "law", law, "law" in session.get("controller", {})),
             *(
                 Setting("session", name, getattr(bench.options, name), name in session)
@@ -149,9 +149,13 @@ def _limits(limits: SessionLimits, stated: Mapping[str, Any]) -> Iterator[Settin
         yield Setting("limits", field.name, _plain(value), field.name in stated)
 
 
-def _trajectory(stated: Mapping[str, Any]) -> Iterator[Setting]:
+def _trajectory(stated: Mapping[str, Any], duration: float) -> Iterator[Setting]:
     from jointid.simulation.trajectory import Trajectory
 
+    if "file" in stated:
+        yield Setting("trajectory", "file", stated["file"], stated=True)
+        yield Setting("trajectory", "duration", duration, stated=True)
+        return
     form = stated.get("form", "thesis")
     yield Setting("trajectory", "form", form, "form" in stated)
     for name, parameter in inspect.signature(getattr(Trajectory, form)).parameters.items():

@@ -1,4 +1,4 @@
-"""The command line: `jointid demo | identify | compare | simulate | sweep | run | emulate | report | info`."""
+"""The command line: `jointid demo | identify | compare | simulate | sweep | design | run | emulate | report | info`."""
 
 from __future__ import annotations
 

@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
+from jointid.base.errors import InputError
 from jointid.cli.arguments import fixed_values, joints_wanted, load_all, refinements, with_terms
+from jointid.cli.designs import design
 from jointid.cli.exports import export
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
 from jointid.cli.parser import BAD_USAGE
@@ -63,6 +65,13 @@ def identify(arguments: argparse.Namespace) -> int:
     from jointid.identification import identification
     from jointid.identification.search.search import Search
 
+    if arguments.robot is not None:
+        from jointid.cli.robot import identify_whole_robot
+
+        return identify_whole_robot(arguments)
+    for name in ("facts", "inertia"):
+        if getattr(arguments, name) is not None:
+            raise InputError("this is for a robot; name its URDF with --robot", argument=name)
     several = joints_wanted(arguments)
     if several is not None and len(several) != 1:
         from jointid.cli.joints import identify_several
@@ -328,6 +337,7 @@ COMMANDS: dict[str, Callable[[argparse.Namespace], int | None]] = {
     "compare": compare,
     "simulate": simulate,
     "sweep": sweep,
+    "design": design,
     "run": run,
     "emulate": emulate,
     "check": check,

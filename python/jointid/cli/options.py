@@ -55,6 +55,10 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "checkpoint": "--checkpoint",
         "resume": "--resume",
         "n": "--bootstrap",
+        "robot": "--robot",
+        "path": "--robot",
+        "facts": "--facts",
+        "inertia": "--inertia",
     },
     "compare": {**_IDENTIFICATION, **_ESTIMATE, "models": "--model", "folds": "--folds"},
     "simulate": {**_SCENARIO, "seed": "--seed", "output": "--output"},
@@ -77,6 +81,25 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "output": "--output",
         "resume": "--resume",
         "table": "--table",
+        "plot": "--plot",
+    },
+    "design": {
+        **{name: option for name, option in _SCENARIO.items() if name != "trajectory"},
+        "after": "--after",
+        "position": "--position",
+        "velocity": "--velocity",
+        "acceleration": "--acceleration",
+        "torque": "--torque",
+        "sensor_range": "--sensor-range",
+        "prior": "--prior",
+        "parameters": "--parameter",
+        "criterion": "--criterion",
+        "evaluations": "--evaluations",
+        "joints": "--draws",
+        "rehearsals": "--rehearsals",
+        "seed": "--seed",
+        "threads": "--threads",
+        "output": "--output",
         "plot": "--plot",
     },
     "run": {
@@ -130,11 +153,13 @@ PLACEHOLDERS: Mapping[str, str] = {
     "--gain": "VALUE",
     "--sensor": "VALUE",
     "--grid": "VALUE",
+    "--prior": "LOW,HIGH",
 }
 """Options of the form NAME=VALUE, and what stands for a value that the user has to choose."""
 
 FILES: Mapping[str, str] = {
     **dict.fromkeys(("--joint", "--believe", "--simulate"), "JOINT"),
+    "--after": "ESTIMATE",
     **dict.fromkeys(
         (
             *("--output", "--save", "--report", "--table", "--plot", "--checkpoint", "--resume"),
@@ -202,7 +227,7 @@ def option_of(command: str, argument: str) -> tuple[str, str]:
     if argument in table:
         return table[argument], ""
     root, _, key = argument.replace("['", ".").replace("']", "").partition(".")
-    if root in ("search", "Search") and key:
+    if root in ("search", "Search", "Scenario") and key:
         return option_of(command, key)
     root = _CLASSES.get(root, root)
     for name in (f"{root}.{key}" if key else root, f"ga.{root}"):

@@ -19,6 +19,7 @@ from jointid.cli.arguments import (
     whole_seed,
     windows,
 )
+from jointid.cli.designs import add_design
 from jointid.cli.exports import add_export
 from jointid.cli.proof import add_check, add_first_motion
 from jointid.cli.session import add_emulate, add_run
@@ -83,7 +84,7 @@ def command_parser() -> argparse.ArgumentParser:
     main_parser.add_argument("--version", action="store_true", help="print the version and exit")
     commands = main_parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=_Parser)
     for add in (
-        *(_add_demo, _add_identify, _add_compare, add_simulate, add_sweep),
+        *(_add_demo, _add_identify, _add_compare, add_simulate, add_sweep, add_design),
         *(add_check, add_first_motion, add_run, add_emulate, _add_report, add_export, _add_info),
     ):
         add(commands)
@@ -113,7 +114,8 @@ def _add_identify(commands: Any) -> None:
             "  jointid identify run.csv --joint joint.toml --set viscous=12 --report report.html --save joint.toml\n"
             "  jointid identify log.csv --column position=enc1_rad --unit position=deg --windows 0.05s --json\n"
             "  jointid identify monday.csv tuesday.csv --joint joint.toml   (one fit, shared parameters)\n"
-            "  jointid identify arm.csv --joints all --gear-ratio 32,32,45,-48,45,32 --report arm.html"
+            "  jointid identify arm.csv --joints all --gear-ratio 32,32,45,-48,45,32 --report arm.html\n"
+            "  jointid identify arm.csv --robot arm.urdf --facts robot.toml --report arm.html   (all joints together)"
         ),
         formatter_class=TEXT,
     )
@@ -127,6 +129,23 @@ def _add_identify(commands: Any) -> None:
             "the first two, with or without gravity, that predicts held-out torque; with options: "
             "stribeck:asymmetric:ripple=2,4"
         ),
+    )
+    identify.add_argument(
+        "--robot",
+        type=Path,
+        metavar="URDF",
+        help="identify all joints together with the links of this URDF; see docs/robots.md",
+    )
+    identify.add_argument(
+        "--facts",
+        type=Path,
+        metavar="TOML",
+        help="with --robot: joints, gear_ratios, couplings, rotor_inertias, zero_offsets, side, gravity",
+    )
+    identify.add_argument(
+        "--inertia",
+        metavar="MODE",
+        help="with --robot: urdf (default), scaled, or free: whether the links' inertias are identified",
     )
     identify.add_argument(
         "--selftest",

@@ -11,6 +11,7 @@ from jointid._core import GaOptions, Generation
 
 if TYPE_CHECKING:
     from jointid.comparison.comparison import ComparisonStep
+    from jointid.design.design_search import DesignProgress
     from jointid.study.sweeping import StudyStep
 
 _WIDTH = 24
@@ -105,6 +106,24 @@ class ComparisonProgress(_Bar):
     def __call__(self, step: ComparisonStep) -> None:
         """Show a fit."""
         self._draw(step.number / step.total, f"fit {step.number}/{step.total}, {step.model}")
+
+
+class MotionProgress(_Bar):
+    """A callback for `design_excitation` that draws a bar on a terminal, and nothing elsewhere.
+
+    Parameters
+    ----------
+    enabled : bool
+    stream : text file, optional
+        Default: standard error.
+    """
+
+    def __call__(self, step: DesignProgress) -> None:
+        """Show how many motions were tried."""
+        self._draw(
+            step.number / step.total,
+            f"motion {step.number}/{step.total}, error {100.0 * step.best:.2g} %",
+        )
 
 
 class StudyProgress(_Bar):

@@ -11,20 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
 from jointid.cli.arguments import by_name, decimal, number_or_text, pair
+from jointid.simulation.arguments import LAWS
 
 if TYPE_CHECKING:
+    from jointid._core import Sensors
     from jointid.simulation.arguments import Controller
     from jointid.simulation.scenario import Scenario
     from jointid.simulation.trajectory import Trajectory
 
-CONTROLLERS = {
-    "adaptive_robust": "AdaptiveRobust",
-    "compensated_pid": "CompensatedPid",
-    "lugre_observer": "LugreObserver",
-    "pid": "Pid",
-    "pd": "Pd",
-    "open_loop": "OpenLoop",
-}
 TRAJECTORIES = ("thesis", "sine", "multisine", "sigmoid", "step", "trapezoid")
 
 
@@ -33,7 +27,7 @@ def scenario_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--controller",
         default="adaptive_robust",
-        help=f"{', '.join(CONTROLLERS)} (default: adaptive_robust)",
+        help=f"{', '.join(LAWS)} (default: adaptive_robust)",
     )
     command.add_argument(
         "--believe",
@@ -45,7 +39,8 @@ def scenario_arguments(command: argparse.ArgumentParser) -> None:
         "--trajectory",
         default="thesis",
         metavar="NAME[:OPTION=VALUE,…]",
-        help=f"{', '.join(TRAJECTORIES)}, or a recording to follow; angles in rad, or as 60deg",
+        help=f"{', '.join(TRAJECTORIES)}, a motion of `jointid design` (.toml), or a recording to follow; "
+        "angles in rad, or as 60deg",
     )
     for name, shown, explanation in (
         ("--gain", "NAME=VALUE", "a setting of the controller; may be repeated"),
@@ -77,17 +72,15 @@ def scenario_of(joint_file: Path, arguments: argparse.Namespace) -> Scenario:
     InputError
         Something that cannot be used.
     """
-    from jointid._core import Sensors
     from jointid.joint.joint import Joint
     from jointid.simulation.scenario import Scenario
 
     joint = Joint.load(joint_file)
-    sensors = _checked("sensors", arguments.sensor, Sensors().asdict())
     scenario = Scenario(
         joint,
-        _controller(arguments.controller, arguments.gain),
+        controller_of(arguments.controller, arguments.gain),
         trajectory_of(arguments.trajectory),
-        Sensors(**sensors),
+        sensors_of(arguments.sensor),
         control_period=arguments.control_period,
         duration=arguments.duration,
     )
@@ -107,15 +100,21 @@ def scenario_of(joint_file: Path, arguments: argparse.Namespace) -> Scenario:
     return scenario.changed(estimates)
 
 
-def _controller(name: str, gains: Sequence[tuple[str, str]]) -> Controller:
-    from jointid import _core
+def controller_of(name: str, gains: Sequence[tuple[str, str]]) -> Controller:
+    """A controller from its name and the texts of its gains.
+
+    Raises
+    ------
+    InputError
+        No such controller or gain, or one that it needs is missing.
+    """
     from jointid.joint.checks import suggestion
 
-    if name not in CONTROLLERS:
-        raise InputError(suggestion(name, [*CONTROLLERS]), argument="controller", value=name)
-    kind = getattr(_core, CONTROLLERS[name])
+    if name not in LAWS:
+        raise InputError(suggestion(name, [*LAWS]), argument="controller", value=name)
+    kind = LAWS[name]
     usual = kind().asdict()
-    chosen = _checked("gain", gains, usual)
+    chosen = checked_values("gain", gains, usual)
     if "stiffness" in usual and not chosen.get("stiffness"):
         raise InputError(
             "it needs a stiffness [N·m/rad], and usually damping",
@@ -127,8 +126,21 @@ def _controller(name: str, gains: Sequence[tuple[str, str]]) -> Controller:
     return controller
 
 
+def sensors_of(pairs: Sequence[tuple[str, str]]) -> Sensors:
+    """Sensors from the texts of their properties.
+
+    Raises
+    ------
+    InputError
+        No such property, or a value that it cannot have.
+    """
+    from jointid._core import Sensors
+
+    return Sensors(**checked_values("sensors", pairs, Sensors().asdict()))
+
+
 def trajectory_of(text: str) -> Trajectory:
-    """A trajectory from its name and options, or from a recording's file.
+    """A trajectory from its name and options, or from the file of a motion or a recording.
 
     Raises
     ------
@@ -136,10 +148,13 @@ def trajectory_of(text: str) -> Trajectory:
         No such trajectory, option or file.
     """
     from jointid.recording.readers.loading import load
+    from jointid.simulation.motion_file import load_motion
     from jointid.simulation.trajectory import Trajectory
 
     name, _, options = text.partition(":")
     if name not in TRAJECTORIES:
+        if Path(text).suffix.lower() == ".toml":
+            return load_motion(text).trajectory
         if Path(text).exists():
             return Trajectory.from_recording(load(text))
         raise InputError(
@@ -188,7 +203,7 @@ def _check_names(argument: str, chosen: Mapping[str, Any], known: Collection[str
             )
 
 
-def _checked(
+def checked_values(
     argument: str, pairs: Sequence[tuple[str, str]], usual: Mapping[str, Any]
 ) -> dict[str, Any]:
     """Values of the same kinds as the default ones."""
@@ -208,11 +223,15 @@ def _checked(
 
 def _values(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str, Any]:
     """Numbers, angles such as 60deg, true and false, texts."""
-    values: dict[str, Any] = {}
-    for name, text in by_name(argument, pairs).items():
-        degrees = number_or_text(text.removesuffix("deg"))
-        if text.endswith("deg") and not isinstance(degrees, str):
-            values[name] = math.radians(degrees)
-        else:
-            values[name] = {"true": True, "false": False}.get(text, number_or_text(text))
-    return values
+    return {
+        name: {"true": True, "false": False}.get(text, number_or_angle(text))
+        for name, text in by_name(argument, pairs).items()
+    }
+
+
+def number_or_angle(text: str) -> Any:
+    """An int, a float, an angle such as 60deg in [rad], else the text."""
+    degrees = number_or_text(text.removesuffix("deg"))
+    if text.endswith("deg") and not isinstance(degrees, str):
+        return math.radians(degrees)
+    return number_or_text(text)

@@ -179,6 +179,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     _check(arguments)
     bench = Bench.load(arguments.joint)
+    _check_motion(arguments)
     as_json, output = arguments.json, arguments.output
     if arguments.dry_run and not as_json:
         print(in_force(arguments.joint, bench).text())
@@ -294,6 +295,23 @@ def _check(arguments: argparse.Namespace) -> None:
                 value=output,
                 remedy="give another name",
             )
+
+
+def _check_motion(arguments: argparse.Namespace) -> None:
+    """Refuse to copy a bench file to where the file of its motion is not."""
+    from jointid.joint.joint_file import read_document
+
+    save = arguments.save
+    if save is None or save.exists() or save.resolve().parent == arguments.joint.resolve().parent:
+        return
+    motion = read_document(arguments.joint)["session"]["trajectory"].get("file", "/")
+    if not Path(motion).is_absolute():
+        raise InputError(
+            f"its session would look for {motion}, the motion, in another folder than {arguments.joint}",
+            argument="save",
+            value=save,
+            remedy="give a name in the same folder",
+        )
 
 
 def _observers(arguments: argparse.Namespace) -> Observers:

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 from jointid.base.advice import Action
 from jointid.base.errors import NOT_GIVEN, InputError
 from jointid.cli.advice import option_with_value, words_of_action
+from jointid.cli.next_motion import words_of_next_motion
 from jointid.cli.options import FLAGS, OPTIONS, PLACEHOLDERS, option_of
-from jointid.cli.values import as_typed, in_sentence
+from jointid.cli.values import as_typed, behind_option, in_sentence
 
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
@@ -33,22 +34,27 @@ class Wording:
         Settings that ``--grid`` names. Default: none.
     joint_file : str
         The joint file that the command reads. Default: it reads none.
+    saved : str
+        The .json file that the command saves its estimate to. Default: it saves none.
     """
 
     command: str
     model: str = ""
     grid: frozenset[str] = frozenset()
     joint_file: str = "the joint file"
+    saved: str = "ESTIMATE"
 
     @classmethod
     def of(cls, arguments: argparse.Namespace) -> Wording:
         """The wording for a command line that was read."""
+        saved = str(getattr(arguments, "save", None))
         models = getattr(arguments, "models", None) or [getattr(arguments, "model", None)]
         return cls(
             arguments.command,
             models[0] if len(models) == 1 and models[0] else "",
             frozenset(name for name, _ in getattr(arguments, "grid", ())),
             str(getattr(arguments, "joint", None) or "the joint file"),
+            saved if saved.endswith(".json") else "ESTIMATE",
         )
 
     def of_error(self, error: InputError) -> str:
@@ -63,6 +69,11 @@ class Wording:
 
     def of_action(self, action: Action) -> str:
         """What to do, with the command's options; empty if the command line cannot do it."""
+        if action.designs:
+            joint = (
+                "JOINT" if self.joint_file == "the joint file" else behind_option(self.joint_file)
+            )
+            return words_of_next_motion(action, joint, behind_option(self.saved))
         words = words_of_action(action, self.command, self.model)
         return words.replace("the joint file", self.joint_file)
 

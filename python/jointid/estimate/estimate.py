@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from jointid.base.argument_checks import require_kind, require_path, whole_number
+from jointid.base.argument_checks import require_kind, require_path
 from jointid.base.errors import InputError
 from jointid.estimate.delays import Delay
 from jointid.estimate.findings import Finding
+from jointid.estimate.questions import Questions
 from jointid.estimate.selection import Selection
 from jointid.estimate.slow_motion import SlowMotion
 from jointid.estimate.statistics import (
@@ -25,11 +26,8 @@ from jointid.estimate.statistics import (
 from jointid.problem.window_table import Prediction, WindowTable
 
 if TYPE_CHECKING:
-    from jointid.estimate.bootstrap import Bootstrap
-    from jointid.estimate.causes import Causes
     from jointid.estimate.derived import DerivedValue
     from jointid.estimate.follow_up import FollowUp
-    from jointid.estimate.self_test import SelfTest
     from jointid.joint.joint import Joint
     from jointid.recording.recording import Recording
 
@@ -37,7 +35,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Estimate:
+class Estimate(Questions):
     """The result of `identify`: values, their uncertainty, and findings.
 
     Attributes
@@ -60,6 +58,9 @@ class Estimate:
     covariance : ndarray, shape (p, p)
         Of the free parameters. Where nothing divides an offset from the difference of two directions' Coulomb
         friction, the offset has an infinite variance and the others have theirs at a given offset.
+    information : ndarray, shape (p, p), or None
+        Inverse of the covariance, of chance alone; zero along a direction that the recordings do not determine.
+        None in an estimate that was saved before there was one.
     residuals : ResidualStatistics
     windows : WindowTable
     convergence : Convergence or None
@@ -108,6 +109,7 @@ class Estimate:
     delays: Mapping[str, Delay] = field(default_factory=dict)
     slow_motion: SlowMotion | None = None
     selection: Selection | None = field(default=None, repr=False)
+    information: Array | None = field(default=None, repr=False)
     follow_up: FollowUp | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:
@@ -180,119 +182,6 @@ class Estimate:
         from jointid.estimate.prediction import predict
 
         return predict(self, recording)
-
-    def selftest(self, trials: int = 3, seed: int = 0) -> SelfTest:
-        """Test whether known parameters come back from the recorded motion with the noise of the recordings.
-
-        Each trial keeps the recorded motion, without its noise, and computes the torque and the sensor's
-        reading that known parameters need there. Noise as in the recordings is added: the quantum and the
-        white noise of position, velocity and sensor, and the residuals of the estimate as a disturbance
-        torque, in blocks in another order and with other signs. Then the parameters are identified with the
-        same settings. The first trial injects the estimate itself, the others parameters from its intervals.
-
-        What comes back can be identified from such a motion *if the joint is as modelled*; what does not,
-        cannot.
-
-        Parameters
-        ----------
-        trials : int
-            1 to 1000. Default 3.
-        seed : int
-            The same seed gives the same bits, on any number of threads. Default 0.
-
-        Returns
-        -------
-        SelfTest
-
-        Raises
-        ------
-        InputError
-            The estimate was read from a file, which does not hold the recordings; or another number.
-        KeyboardInterrupt
-            Ctrl-C; it is raised within 0.1 s.
-
-        Examples
-        --------
-        >>> estimate.selftest().lost  # doctest: +SKIP
-        ('sensor_gain', 'sensor_offset')
-        """
-        trials = whole_number("trials", trials, 1, 1000)
-        seed = whole_number("seed", seed, 0, 2**64 - 1)
-        return self._with_recordings("selftest").selftest(self, trials, seed)
-
-    def bootstrap(self, n: int = 1000, seed: int = 0) -> Bootstrap:
-        """Draw stretches of the recordings anew, and refit the parameters to each draw (block bootstrap).
-
-        A check of the standard errors that does not rest on their formula. The blocks are as long as a segment
-        of motion: an eighth of the motion, between 0.25 and 1 s, and longer on recordings over 10 min. A draw is
-        refitted inside the bounds of the search, with the torque balance linearised at the estimate.
-
-        Parameters
-        ----------
-        n : int
-            Draws, 20 to 1,000,000. Default 1000.
-        seed : int
-            The same seed gives the same bits, on any number of threads. Default 0.
-
-        Returns
-        -------
-        Bootstrap
-
-        Raises
-        ------
-        InputError
-            The estimate was read from a file, which does not hold the recordings; or another number.
-        KeyboardInterrupt
-            Ctrl-C; it is raised within 0.1 s.
-
-        Examples
-        --------
-        >>> estimate.bootstrap().parameters["coulomb"].ratio  # doctest: +SKIP
-        1.04
-        """
-        n = whole_number("n", n, 20, 1_000_000)
-        seed = whole_number("seed", seed, 0, 2**64 - 1)
-        return self._with_recordings("bootstrap").bootstrap(self, n, seed)
-
-    def causes(self, signals: Mapping[str, ArrayLike] | None = None) -> Causes:
-        """Say why the model does not fit: causes by name, what they explain, what they move, what to do.
-
-        Each candidate is fitted together with the model to part of the recording and judged on the rest,
-        at windows of 1, 4, 16 and 64 times the length used. `identify` does so by itself where the
-        residuals are more than noise, and reports the causes as findings.
-
-        Parameters
-        ----------
-        signals : mapping of str to array_like, optional
-            Further signals of the recording that may act on the joint, by name, one value a sample:
-            another joint's velocity, a temperature. Default: none.
-
-        Returns
-        -------
-        Causes
-
-        Raises
-        ------
-        InputError
-            The estimate was read from a file, which does not hold the recordings; or a signal that does
-            not fit the recording.
-
-        Examples
-        --------
-        >>> [cause.name for cause in estimate.causes().found]  # doctest: +SKIP
-        ['drift']
-        """
-        return self._with_recordings("causes").causes(self, signals or {})
-
-    def _with_recordings(self, question: str) -> FollowUp:
-        """Return what answers questions that need the recordings."""
-        if self.follow_up is None:
-            raise InputError(
-                "this estimate was read from a file, which does not hold the recordings",
-                argument=question,
-                remedy="identify again, and ask the new estimate",
-            )
-        return self.follow_up
 
     def report(self) -> str:
         """Return the estimate as text: parameters, quality of the fit, findings."""

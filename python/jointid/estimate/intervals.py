@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_NORMAL = 1.959964
+NORMAL = 1.959964
+"""Standard errors in half of a 95 % interval."""
+
 _TINY = 1e-100  # a file may hold any number
 
 
@@ -28,7 +30,7 @@ def interval_part(p: ParameterEstimate) -> float:
 
 def quantile_of(estimate: Estimate) -> float:
     """Return the largest quantile of the parameters' intervals, in standard errors; at least the normal one."""
-    found = [_NORMAL]
+    found = [NORMAL]
     for p in estimate.parameters.values():
         if p.interval is not None and p.stderr is not None and _TINY < p.stderr < np.inf:
             error = math.hypot(p.stderr, interval_part(p))
@@ -36,13 +38,12 @@ def quantile_of(estimate: Estimate) -> float:
     return max(found)
 
 
-def squared_half_widths(estimate: Estimate) -> Array:
-    """Return the covariance of the free parameters, scaled so that its diagonal holds squared half widths.
+def half_widths(estimate: Estimate) -> Array:
+    """Return half of each free parameter's interval, in its standard errors by chance: the normal quantile or more.
 
-    Each parameter's interval has its own quantile and its own systematic part; the correlations are those of the
-    covariance.
+    Each parameter's interval has its own quantile and its own systematic part.
     """
-    scale = np.full(len(estimate.free), _NORMAL)
+    scale = np.full(len(estimate.free), NORMAL)
     quantile = quantile_of(estimate)
     for i, name in enumerate(estimate.free):
         p = estimate.parameters[name]
@@ -53,4 +54,13 @@ def squared_half_widths(estimate: Estimate) -> Array:
             chance = float(np.sqrt(max(estimate.covariance[i, i], 0.0)))
             if _TINY < chance < np.inf:
                 scale[i] = quantile * np.hypot(chance, interval_part(p)) / chance
+    return scale
+
+
+def squared_half_widths(estimate: Estimate) -> Array:
+    """Return the covariance of the free parameters, scaled so that its diagonal holds squared half widths.
+
+    The correlations are those of the covariance.
+    """
+    scale = half_widths(estimate)
     return np.asarray(estimate.covariance * np.outer(scale, scale))

@@ -83,6 +83,7 @@ def _estimate(d: Mapping[str, Any]) -> Estimate:
         condition=d["condition"],
         weakest=tuple(d["weakest"]),
         covariance=_matrix(d["covariance"]),
+        information=None if d.get("information") is None else _matrix(d["information"]),
         residuals=ResidualStatistics(**d["residuals"]),
         windows=WindowTable(**_arrays(d["windows"])),
         convergence=None if history is None else Convergence(**_arrays(history)),
@@ -114,8 +115,9 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         for j, action in enumerate(found["advice"]):
             if action["kind"] == "call" and not action["arguments"]:
                 yield f"findings[{i}].advice[{j}].arguments", "a call needs arguments"
-    for field in ("correlation", "covariance"):
-        if any(len(row) != len(free) for row in (d[field], *d[field])):
+    for field in ("correlation", "covariance", "information"):
+        matrix = d.get(field)
+        if matrix is not None and any(len(row) != len(free) for row in (matrix, *matrix)):
             yield field, f"{len(free)} rows of {len(free)} are expected, as many as free parameters"
     for field in ("windows", "convergence"):
         if d[field] is not None and len({len(column) for column in d[field].values()}) > 1:

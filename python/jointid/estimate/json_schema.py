@@ -128,6 +128,7 @@ ESTIMATE: dict[int, Kind] = {
         {**_FIELDS, "findings": ListOf(_FINDING)},
         {
             "derived": Plain(),
+            "information": OrNull(ListOf(ListOf(_VALUE))),
             "selection": OrNull(SELECTION),
             "selftest": Plain(),
             "bootstrap": Plain(),

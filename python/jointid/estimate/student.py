@@ -6,7 +6,7 @@ _FAR = 8.0  # standard errors: the other tail is nothing
 _ONE_SIDED = 1.6448536269514722
 
 
-def quantile(probability: float, freedom: int) -> float:
+def quantile(probability: float, freedom: float) -> float:
     """Quantile of Student's t with `freedom` degrees of freedom."""
     from scipy.special import stdtrit
 

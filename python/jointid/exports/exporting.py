@@ -13,6 +13,7 @@ from jointid.base.files import write_whole
 from jointid.estimate.estimate import Estimate
 from jointid.joint.checks import check_flag, positive_number
 from jointid.joint.joint import Joint
+from jointid.robot.result import RobotEstimate
 
 if TYPE_CHECKING:
     from jointid.exports.target import Existing, Target
@@ -21,7 +22,7 @@ _LARGEST = 64 * 2**20  # bytes of a file that is edited
 
 
 def export(
-    source: Estimate | Joint,
+    source: Estimate | Joint | RobotEstimate,
     path: str | os.PathLike[str],
     *,
     target: str | None = None,
@@ -38,8 +39,9 @@ def export(
 
     Parameters
     ----------
-    source : Estimate or Joint
-        A joint needs values for the parameters of its model; their uncertainty is not known then.
+    source : Estimate, Joint or RobotEstimate
+        A joint needs values for the parameters of its model; their uncertainty is not known then. A whole robot is
+        written into its URDF, which `into` names: damping and friction of every joint.
     path : path-like
         Its ending chooses the target: ``.xml`` (MuJoCo), ``.urdf``, ``.h`` (C99), ``.st`` (IEC 61131-3 Structured
         Text), ``.mat`` (Simulink).
@@ -92,6 +94,8 @@ def export(
             argument="source",
             remedy=f"choose one of them with [{names[0]!r}]" if names else (),
         )
+    if isinstance(source, RobotEstimate):
+        return _export_robot(source, path, target, into, joint_name, approximate)
     require_kind("source", source, Estimate, Joint)
     place = require_path("path", path)
     if target is not None:
@@ -114,6 +118,38 @@ def export(
             value=joint_name,
         )
     write_whole(place, chosen.write(subject, order))
+    return place
+
+
+def _export_robot(
+    source: RobotEstimate,
+    path: str | os.PathLike[str],
+    target: str | None,
+    into: str | os.PathLike[str] | None,
+    joint_name: str | None,
+    approximate: bool,
+) -> Path:
+    from jointid.exports.registry import target_of
+    from jointid.exports.robot_urdf import robot_in_urdf
+
+    place = require_path("path", path)
+    chosen = target_of(place, target)
+    if chosen.name != "urdf" or into is None:
+        raise InputError(
+            "a whole robot is written into its URDF",
+            argument="into" if chosen.name == "urdf" else "path",
+            value=str(into or place.name),
+            remedy="name the URDF with into, and a path that ends in .urdf",
+        )
+    if joint_name is not None:
+        raise InputError(
+            "all joints of the robot are written", argument="joint_name", value=joint_name
+        )
+    check_flag("", "approximate", approximate)
+    existing = _existing(chosen, into, source.robot.names[0])
+    assert existing is not None
+    content = robot_in_urdf(source, existing.content, existing.place, approximate=approximate)
+    write_whole(place, content)
     return place
 
 

@@ -52,7 +52,7 @@ def _notes(subject: Subject, nearest: Nearest) -> list[str]:
 
 def _edited(subject: Subject, nearest: Nearest, into: Existing) -> bytes:
     found = elements(into.content, into.place)
-    joint = only(found, into.joint, _is_joint, into.place, suggestion)
+    joint = only(found, into.joint, is_joint, into.place, suggestion)
     number = found.index(joint)
     children = [each for each in found if each.parent == number]
     changes = {"damping": repr(nearest.slope), "friction": repr(nearest.constant)}
@@ -76,18 +76,19 @@ def _edited(subject: Subject, nearest: Nearest, into: Existing) -> bytes:
             edits.append((limits[0], missing))
     elif {"effort", "velocity"} <= known.keys():
         added.append(("limit", {name: known[name] for name in ("effort", "velocity")}))
-    content = _with_children(content, joint, children, added)
+    content = with_children(content, joint, children, added)
     for element, values in sorted(edits, key=lambda edit: -edit[0].start):
         content = with_attributes(content, element, values)
     return with_comment(content, joint, statements(subject, notes=notes))
 
 
-def _is_joint(element: Element) -> bool:
+def is_joint(element: Element) -> bool:
+    """Whether an element is a joint of the robot."""
     # Transmissions and controllers name joints, too; only the robot's own have a type.
     return element.tag == "joint" and "type" in element.attributes
 
 
-def _with_children(
+def with_children(
     content: bytes, joint: Element, children: list[Element], added: list[tuple[str, dict[str, str]]]
 ) -> bytes:
     """Put elements before the joint's end tag, laid out as its other children."""

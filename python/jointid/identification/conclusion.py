@@ -214,6 +214,7 @@ def infer(
         condition=spread.condition,
         weakest=weakest,
         covariance=spread.matrix,
+        information=spread.information,
         residuals=statistics,
         windows=table,
         convergence=convergence,

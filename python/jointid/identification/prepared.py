@@ -229,6 +229,7 @@ def prepare(
     threads: int = 0,
     choose: bool = False,
     unfit: Mapping[str, str] | None = None,
+    on_time: bool = False,
 ) -> Prepared:
     """Return an identification ready to search; parameters as in `identify`.
 
@@ -239,6 +240,9 @@ def prepare(
         and the name "auto" is refused.
     unfit : mapping of str to str, optional
         Models that are not chosen, and why. Default: none.
+    on_time : bool
+        Whether it is known that no signal is late, as in a simulation; else delays are looked for.
+        Default False.
 
     Raises
     ------
@@ -279,6 +283,8 @@ def prepare(
             problem, delays, selection = chosen_without_delays(
                 problem, request, parameters, windows, shift, unfit or {}
             )
+        elif on_time:
+            delays = {}
         else:
             problem, delays = without_delays(problem, shift)
         problem, penalty, slow_motion = without_creep(problem, windows, speed)

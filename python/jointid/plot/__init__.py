@@ -1,6 +1,7 @@
 """Plots of recordings, estimates and studies: one style, units on the axes, Matplotlib axes in and out."""
 
 from jointid.plot.appearance import line_style, style
+from jointid.plot.design import designed_motion
 from jointid.plot.estimate import convergence, friction_map, residuals, window_means
 from jointid.plot.friction import friction_curves, sensitivity, torque_over_velocity
 from jointid.plot.motion import signal, tracking_error, trajectory
@@ -10,6 +11,7 @@ from jointid.plot.study import sweep
 __all__ = [
     "adaptation",
     "convergence",
+    "designed_motion",
     "friction_curves",
     "friction_map",
     "line_style",

@@ -96,7 +96,7 @@ def _pictures(estimate: Estimate) -> list[Html]:
     if estimate.convergence is not None:
         parts += [
             element("h2", "Convergence", id="convergence"),
-            _picture(
+            picture(
                 "The genetic search, generation by generation; dashed: the penalty after the local polish.",
                 lambda axes: plot.convergence(estimate, axes[0]),
             ),
@@ -106,7 +106,7 @@ def _pictures(estimate: Estimate) -> list[Html]:
 
 def friction_picture(estimate: Estimate) -> Html:
     """The friction map, with what it shows."""
-    return _picture(
+    return picture(
         "Friction map: a grey point is the friction that the recording shows over one window, the line is the "
         "identified model with its 95 % band.",
         lambda axes: plot.friction_map(None, estimate, axes[0]),
@@ -115,7 +115,7 @@ def friction_picture(estimate: Estimate) -> Html:
 
 def windows_picture(estimate: Estimate) -> Html:
     """Measured and fitted windows above their residuals."""
-    return _picture(
+    return picture(
         "Above: measured and fitted mean over each window. Below: the residual. Windows "
         "in which the joint stands still are left out.",
         lambda axes: (
@@ -155,7 +155,8 @@ def save_report(
     return target
 
 
-def _picture(caption: str, draw: Callable[[list[Axes]], object], rows: int = 1) -> Html:
+def picture(caption: str, draw: Callable[[list[Axes]], object], rows: int = 1) -> Html:
+    """A picture of one or several axes below each other, with its caption."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 

@@ -19,7 +19,7 @@ from jointid.report.html import STYLE, friction_picture, shown_by, windows_pictu
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
 
-_WIDE = """
+WIDE = """
 body { max-width: 76rem; } p, ul { max-width: 56rem; }
 table { font-size: .92rem; } .wide { overflow-x: auto; }
 table.joints td { white-space: nowrap; }
@@ -59,7 +59,7 @@ def joints_report(result: JointEstimates, action: Callable[[Action], str] = str)
         body.append(element("div", html_shares(result), class_="wide"))
     for each in result.results.values():
         body += _section(each, action)
-    return page(title, f"{STYLE}{_WIDE}", *body)
+    return page(title, f"{STYLE}{WIDE}", *body)
 
 
 def save_joints_report(
@@ -72,7 +72,7 @@ def save_joints_report(
 
 
 def _section(result: JointResult, action: Callable[[Action], str]) -> list[Html | str]:
-    heading = element("h2", f"Joint {result.name}", id=f"joint-{_slug(result.name)}")
+    heading = element("h2", f"Joint {result.name}", id=f"joint-{slug(result.name)}")
     estimate = result.estimate
     if estimate is None:
         return [heading, element("p", f"This joint failed: {result.error}")]
@@ -95,9 +95,10 @@ def _index(result: JointEstimates) -> Html:
     """Links to the joints' sections."""
     links: list[Html | str] = ["Joints: "]
     for name in result.results:
-        links += [element("a", name, href=f"#joint-{_slug(name)}"), " "]
+        links += [element("a", name, href=f"#joint-{slug(name)}"), " "]
     return element("p", *links, class_="index")
 
 
-def _slug(name: str) -> str:
+def slug(name: str) -> str:
+    """A joint's name as part of a link."""
     return "".join(letter if letter.isalnum() else "-" for letter in name)

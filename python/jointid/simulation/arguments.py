@@ -1,6 +1,6 @@
 """Checks of a simulation's arguments; single values are repeated to one list length."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, get_args
 
 import numpy as np
@@ -18,6 +18,21 @@ Controller = (
     | _core.AdaptiveRobust
     | _core.LugreObserver
 )
+
+LAWS: Mapping[str, Callable[..., Controller]] = {
+    "adaptive_robust": _core.AdaptiveRobust,
+    "compensated_pid": _core.CompensatedPid,
+    "lugre_observer": _core.LugreObserver,
+    "pid": _core.Pid,
+    "pd": _core.Pd,
+    "open_loop": _core.OpenLoop,
+}
+"""Controllers by the name that files and the command line use."""
+
+
+def law_name(controller: Controller) -> str:
+    """Return the name that files and the command line use for a controller."""
+    return next(name for name, law in LAWS.items() if type(controller) is law)
 
 
 def side_by_side(

@@ -130,7 +130,7 @@ bristle, position, velocity, name
     )
     setups, truths = [], []
     for joint, controller, seed in zip(joint_list, controller_list, seed_list, strict=True):
-        setup, truth = _setup(joint, controller, seed, payload, bristle, scenario)
+        setup, truth = setup_of(joint, controller, seed, payload, bristle, scenario)
         start = trajectory.core.at(0.0)[0] if not isinstance(controller, _core.OpenLoop) else 0.0
         setups.append(
             setup.replace(
@@ -156,7 +156,7 @@ bristle, position, velocity, name
     )
 
 
-def _setup(
+def setup_of(
     joint: Joint,
     controller: Controller,
     seed: int,
@@ -164,6 +164,7 @@ def _setup(
     bristle: Bristle | None,
     scenario: _core.Scenario,
 ) -> tuple[_core.Setup, dict[str, float]]:
+    """Return one run as the core takes it, and the true parameters."""
     values = Values(joint)
     plant = simulated_joint(joint, values, payload, bristle)
     setup = _core.Setup(

@@ -142,6 +142,49 @@ class Trajectory:
         )
 
     @classmethod
+    def sines(
+        cls,
+        *,
+        amplitude: Sequence[float],
+        frequency: Sequence[float],
+        phase: Sequence[float],
+        offset: float = 0.0,
+        fade: float = 0.0,
+        duration: float,
+    ) -> Self:
+        """Return offset + fade(t) · Σ amplitude · sin(frequency · t + phase).
+
+        Parameters
+        ----------
+        amplitude : sequence of float
+            Of each sine [rad].
+        frequency : sequence of float
+            [rad/s]
+        phase : sequence of float
+            [rad]
+        offset : float
+            [rad]. Default 0.
+        fade : float
+            Time over which the sines grow at the start and shrink at the end, smooth to the second
+            derivative: the motion starts and ends at rest at `offset` [s]. Default 0: they do not.
+        duration : float
+            [s]
+
+        Examples
+        --------
+        >>> motion = Trajectory.sines(
+        ...     amplitude=(0.5, 0.2), frequency=(2.0, 5.0), phase=(0.0, 1.0), fade=0.5, duration=12.0
+        ... )
+        >>> [abs(float(value[0])) for value in motion.sample([12.0])]
+        [0.0, 0.0, 0.0]
+        """
+        groups = {"amplitude": amplitude, "frequency": frequency, "phase": phase}
+        given = {name: _samples(name, values) for name, values in groups.items()}
+        for value in given["amplitude"]:
+            _extent("amplitude", value)
+        return cls._made("multisine", **given, offset=offset, duration=duration, fade=fade)
+
+    @classmethod
     def sigmoid(cls, distance: float, *, rise: float, duration: float) -> Self:
         """Return a move by `distance` in the time `rise`: half a cosine, then rest.
 

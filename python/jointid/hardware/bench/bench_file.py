@@ -19,7 +19,8 @@ from jointid.joint.angles import ANGLE_EXPECTED, text_in
 from jointid.joint.checks import suggestion
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_from_document, read_document
-from jointid.simulation.arguments import Controller
+from jointid.simulation.arguments import LAWS, Controller
+from jointid.simulation.motion_file import Motion, load_motion
 from jointid.simulation.scenario import believing
 from jointid.simulation.stepped import stepped_joint
 from jointid.simulation.trajectory import Trajectory
@@ -40,13 +41,7 @@ _REQUIRED = {
 }
 _TRAJECTORIES = ("thesis", "sine", "multisine", "sigmoid", "step", "trapezoid")
 _ANGLES = ("amplitude", "offset", "distance")  # of a trajectory
-_LAWS = {
-    "adaptive_robust": _core.AdaptiveRobust,
-    "compensated_pid": _core.CompensatedPid,
-    "lugre_observer": _core.LugreObserver,
-    "pid": _core.Pid,
-    "pd": _core.Pd,
-}
+_LAWS = {name: law for name, law in LAWS.items() if law is not _core.OpenLoop}
 # Attributes of the emulated sensor that belong to the drive's encoder and converter.
 _NOT_EMULATED = {"encoder_counts", "velocity", "velocity_counts", "velocity_time"}
 _NOT_EMULATED |= {"converter_bits", "converter_range", "converter_noise", "converter_samples"}
@@ -54,8 +49,15 @@ _NOT_EMULATED |= {"converter_bits", "converter_range", "converter_noise", "conve
 _EMULATED = ("integration_step", "position")
 
 
-def load_bench(path: str | Path) -> Bench:
-    """Read a bench file: see `Bench.load`."""
+def load_bench(path: str | Path, *, with_motion: bool = True) -> Bench:
+    """Read a bench file: see `Bench.load`.
+
+    Parameters
+    ----------
+    path : path
+    with_motion : bool
+        False: its motion is not read, and any stands in its place; for who makes the motion. Default True.
+    """
     source = str(path)
     document = read_document(path)
     joint = joint_from_document(document, source)
@@ -72,27 +74,32 @@ def load_bench(path: str | Path) -> Bench:
         if isinstance(value, dict) and key not in tables:
             session.refuse(key, f"unknown table; {suggestion(key, tables)}")
     for key, meaning in _REQUIRED.items():
-        if key not in session.entries:
+        if key not in session.entries and (with_motion or key != "trajectory"):
             raise InputError(f"there is no table [session.{key}], {meaning}", place=source)
     if "gear_ratio" not in document.get("drive", {}):
         raise InputError(
             "missing; 1 where there is no gear", argument="gear_ratio", place=f"{source}: [drive]"
         )
     bus = session.table("bus").make(BusOptions)
-    trajectory = _trajectory(session.table("trajectory"))
+    motion = Motion(trajectory=Trajectory.thesis())
+    if with_motion:
+        motion = _motion(session.table("trajectory"), Path(path).parent)
+    trajectory = motion.trajectory
     options = session.without(*tables).make(SessionOptions, resolution=None)
     try:
         check_cycles("duration", trajectory.duration, options.period)
     except InputError as error:
         raise error.at(session.table("trajectory").place) from error
+    limits = session.table("limits").call(
+        lambda **given: SessionLimits.of(joint, **given), types_of(SessionLimits)
+    )
+    _check_peaks(session.table("trajectory"), motion, limits)
     return Bench(
         joint=joint,
         controller=_controller(session.table("controller"), joint),
         trajectory=trajectory,
         drive=adapter.options(session, bus),
-        limits=session.table("limits").call(
-            lambda **given: SessionLimits.of(joint, **given), types_of(SessionLimits)
-        ),
+        limits=limits,
         options=options,
         bus=bus,
         real_time=session.table("real_time").make(RealTimeOptions),
@@ -102,6 +109,31 @@ def load_bench(path: str | Path) -> Bench:
         drive_type=name,
         first_motion=session.table("first_motion").make(FirstMotionOptions),
     )
+
+
+def _motion(table: Table, folder: Path) -> Motion:
+    """The motion of a file, named from the bench file's folder, or of the table's own keys."""
+    if "file" not in table.entries:
+        return Motion(trajectory=_trajectory(table))
+    name = table.entries["file"]
+    if not isinstance(name, str):
+        table.refuse("file", "the name of a motion's file is expected", name)
+    for other in table.entries:
+        if other != "file":
+            table.refuse(other, "the motion is that of the file, and needs no other key")
+    try:
+        return load_motion(folder / name)
+    except InputError as error:
+        raise error.at(table.place) from error
+
+
+def _check_peaks(table: Table, motion: Motion, limits: SessionLimits) -> None:
+    """Refuse a designed motion in which joints go beyond what the session allows."""
+    if motion.peaks is None:
+        return
+    beyond = limits.passed_by(motion.peaks)
+    if beyond:
+        table.refuse("file", f"in this motion joints go {beyond}", table.entries["file"])
 
 
 def _trajectory(table: Table) -> Trajectory:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections import deque
+from typing import Any
+
+import numpy as np
 
 from jointid.hardware.session.drive import Drive
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.moving_joint import MovingJoint
 from jointid.hardware.session.options import SessionOptions
 from jointid.hardware.session.stop import LimitError
+from jointid.simulation.trajectory import FloatArray
 
 # From the sample that shows the need until braking acts: the next cycle's command, and its way.
 _REACTION = 2.0  # periods
@@ -63,6 +67,30 @@ class Foresight:
         self._seen = position, velocity
         self._stops_inside(position, velocity, accepted)
 
+    def whole(self, positions: FloatArray, velocities: FloatArray) -> None:
+        """Check a motion that the joint would follow exactly; where it cannot, it is only stopped the sooner.
+
+        Parameters
+        ----------
+        positions, velocities : ndarray, shape (n,)
+            [rad], [rad/s]
+
+        Raises
+        ------
+        LimitError
+        """
+        if self._braking is None:
+            return
+        stops = positions + np.sign(velocities) * self._way(np.abs(velocities))
+        low, high = self._limits.position
+        for first in np.flatnonzero(((stops < low) | (stops > high)) & (velocities != 0.0))[:1]:
+            self._stops_inside(float(positions[first]), float(velocities[first]), 0.0)
+
+    def _way(self, speed: Any) -> Any:
+        """How far a joint goes that is braked, from a speed [rad/s] or several [rad]."""
+        assert self._braking is not None
+        return speed * self._reaction + speed * speed / (2.0 * self._braking[1])
+
     def unseen(self, age: float, accepted: float) -> None:
         """Check where the joint would stop, in a cycle without a sample.
 
@@ -88,12 +116,10 @@ class Foresight:
     def _stops_inside(self, position: float, velocity: float, accepted: float) -> None:
         if self._braking is None or velocity == 0.0:
             return
-        _, deceleration = self._braking
         direction = 1.0 if velocity > 0.0 else -1.0
         pushed = max(0.0, direction * accepted) / self._joint.inertia
         speed = abs(velocity) + pushed * self._reaction
-        distance = speed * self._reaction + speed * speed / (2.0 * deceleration)
-        stops = position + direction * distance
+        stops = position + direction * self._way(speed)
         low, high = self._limits.position
         if low <= stops <= high:
             return

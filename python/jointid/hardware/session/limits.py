@@ -9,9 +9,11 @@ from dataclasses import dataclass, fields
 from jointid.base.errors import InputError
 from jointid.joint.checks import is_number
 from jointid.joint.joint import Joint
+from jointid.simulation.peaks import Peaks
 from jointid.simulation.plant import torque_limit
 
 _MEASURED_TORQUE, _TORQUE_DIFFERENCE = 1.2, 0.25  # of the commanded limit
+_ROUNDED = 1e-9  # a torque that is cut at the limit may be so much above it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -105,6 +107,30 @@ class SessionLimits:
         """Largest lasting difference between commanded and measured torque [N·m]."""
         given = self.torque_difference
         return _TORQUE_DIFFERENCE * self.torque if given is None else given
+
+    def passed_by(self, peaks: Peaks) -> str:
+        """Return which of position, velocity and torque some joints go beyond in a motion; empty: none.
+
+        Parameters
+        ----------
+        peaks : Peaks
+        """
+        (low, high), (lowest, highest) = self.position, peaks.position
+        sides = {
+            "velocity": (peaks.velocity, self.velocity, "rad/s"),
+            "torque": (peaks.torque, self.torque, "N·m"),
+        }
+        found = []
+        if lowest < low or highest > high:
+            found.append(
+                f"from {lowest:.4f} to {highest:.4f} rad, outside the session's {low:.4f} to {high:.4f} rad"
+            )
+        found += [
+            f"up to {reached:.4g} {unit}, more than the session's {name} of {allowed:.4g} {unit}"
+            for name, (reached, allowed, unit) in sides.items()
+            if reached > allowed * (1.0 + _ROUNDED)
+        ]
+        return ", and ".join(found)
 
     @classmethod
     def of(cls, joint: Joint, **changes: float | tuple[float, float] | None) -> SessionLimits:

@@ -136,7 +136,7 @@ class Session:
         check_cycles("trajectory.duration", self._trajectory.duration, options.period)
         reasons = list(
             problems_on_paper(
-                self._drive, self._controller, self._trajectory, limits, options.period
+                self._drive, self._controller, self._trajectory, limits, options, self._moved
             )
         )
         if reasons:

@@ -10,8 +10,11 @@ import numpy as np
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.hardware.session.drive import Drive, DriveSample
+from jointid.hardware.session.foresight import foresight_of
 from jointid.hardware.session.limits import SessionLimits
+from jointid.hardware.session.moving_joint import MovingJoint
 from jointid.hardware.session.options import MOST_CYCLES, SessionOptions
+from jointid.hardware.session.stop import LimitError
 from jointid.simulation.arguments import Controller
 from jointid.simulation.trajectory import Trajectory
 
@@ -25,9 +28,11 @@ def problems_on_paper(
     controller: Controller,
     trajectory: Trajectory,
     limits: SessionLimits,
-    period: float,
+    options: SessionOptions,
+    joint: MovingJoint | None,
 ) -> Iterator[str]:
     """Problems that are known before the bus is used: its load, the trajectory."""
+    period = options.period
     load = drive.bus_load(period)
     if not load <= FULLEST_BUS:
         yield (
@@ -54,6 +59,12 @@ def problems_on_paper(
     fastest = float(np.abs(speed).max())
     if fastest > limits.velocity:
         yield f"the trajectory is up to {fastest:.3f} rad/s fast, more than {limits.velocity:g} rad/s"
+    watching = foresight_of(joint, drive, limits, options)
+    if watching is not None:
+        try:
+            watching.whole(wanted, speed)
+        except LimitError as error:
+            yield f"the trajectory comes too fast to the edge: {error}"
 
 
 def check_approach(distance: float, options: SessionOptions) -> None:

@@ -12,6 +12,9 @@ from jointid.problem.inner_products import inner
 
 Array = NDArray[np.float64]
 
+_EXACT = 1e-40  # noise of a fit without residuals
+_SINGULAR = 1e-10  # smallest eigenvalue of correlations that are inverted
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Covariance:
@@ -21,6 +24,8 @@ class Covariance:
     ----------
     matrix : ndarray, shape (p, p)
         Covariance of the parameters, in the product of their units.
+    information : ndarray, shape (p, p)
+        Its inverse; where the data do not determine a direction, the information is zero along it.
     stderr : ndarray, shape (p,)
         Standard errors.
     freedom : ndarray, shape (p,)
@@ -37,6 +42,7 @@ class Covariance:
     """
 
     matrix: Array
+    information: Array
     stderr: Array
     freedom: Array
     white: bool
@@ -102,6 +108,7 @@ def parameter_covariance(
         nothing = np.zeros((0, 0))
         return Covariance(
             matrix=nothing,
+            information=nothing,
             stderr=np.zeros(0),
             freedom=np.zeros(0),
             white=True,
@@ -131,6 +138,13 @@ def parameter_covariance(
     unknown = (norms == 0.0) | (np.abs(directions[~known]).max(axis=0, initial=0.0) > 1e-3)
     if rows <= count:  # no degree of freedom is left to estimate the noise
         unknown[:] = True
+    of_all = scale / stretch / max(np.sqrt(inner(residual, residual) / freedom), _EXACT)
+    information = (directions.T * np.where(known, singular, 0.0) ** 2) @ directions
+    information *= np.outer(of_all, of_all)
+    if rows <= count:
+        information[:] = 0.0
+    elif found.correlation is not None and not unknown.any():
+        information = _inverse(matrix)
     matrix[unknown, unknown] = np.inf
 
     centred = triangle.copy()
@@ -148,6 +162,7 @@ def parameter_covariance(
     np.fill_diagonal(correlation, 1.0)
     return Covariance(
         matrix=matrix,
+        information=information,
         stderr=np.sqrt(np.diag(matrix)),
         freedom=found.freedom,
         white=found.white,
@@ -155,3 +170,12 @@ def parameter_covariance(
         condition=float(values[0] / values[-1]) if values[-1] > 0.0 else float("inf"),
         weakest=vectors[-1],
     )
+
+
+def _inverse(covariance: Array) -> Array:
+    """The inverse of a covariance, whatever the units."""
+    scale = np.sqrt(np.diag(covariance))
+    values, vectors = np.linalg.eigh(covariance / np.outer(scale, scale))
+    # Of segments fewer than parameters the correlations are barely a matrix of correlations.
+    inverse: Array = (vectors / np.maximum(values, _SINGULAR)) @ vectors.T / np.outer(scale, scale)
+    return inverse

@@ -35,6 +35,8 @@ def with_undivided(
     places = [free.index(index) for index in kept]
     matrix = np.zeros((count, count))
     matrix[np.ix_(places, places)] = spread.matrix
+    onto = np.zeros((count, len(kept)))
+    onto[places] = np.eye(len(kept))
     correlation = np.eye(count)
     correlation[np.ix_(places, places)] = spread.correlation
     stderr = np.zeros(count)
@@ -47,6 +49,9 @@ def with_undivided(
         signs = np.array(list(each.change.values()))
         dropped = free.index(names.index(each.offset))
         matrix[dropped, dropped] = np.inf
+        for name, sign in each.change.items():  # along the change of all there is no information
+            if name != each.offset and names.index(name) in kept:
+                onto[dropped, kept.index(names.index(name))] = -sign / each.change[each.offset]
         stderr[members] = np.inf
         correlation[members, :] = correlation[:, members] = 0.0
         correlation[np.ix_(members, members)] = np.outer(signs, signs)
@@ -54,6 +59,7 @@ def with_undivided(
     return replace(
         spread,
         matrix=matrix,
+        information=onto @ spread.information @ onto.T,
         stderr=stderr,
         freedom=freedom,
         correlation=correlation,

@@ -11,18 +11,20 @@ from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.inspection import DRIVE
+from jointid.identification.warnings.motion_advice import DESIGNED, other_motion
 
 TORQUE_SATURATED = FindingType(
     code="torque_saturated",
     meaning="the torque rests on its limit in more than 1 % of the samples",
-    advice="record gentler motion, or the torque that the drive applied",
+    advice=f"record gentler motion, or the torque that the drive applied{DESIGNED}",
 )
 SENSOR_CLIPPED = FindingType(
     code="sensor_clipped",
     meaning="the sensor rests on its limit in more than 1 % of the samples",
-    advice="widen the sensor's range, or load the link less",
+    advice=f"widen the sensor's range, or load the link less{DESIGNED}",
 )
 _CLIPPED = 0.01  # share of the samples on a limit
+_INSIDE = 0.9  # of the sensor's range
 
 
 def _on_a_limit(counts: _core.SignalFacts, samples: int) -> float:
@@ -37,6 +39,16 @@ def _on_a_limit(counts: _core.SignalFacts, samples: int) -> float:
     # A signal of few levels (a square wave) rests on its limits by nature.
     changing = counts.changes > 0.3 * (1.0 - share) * (samples - 1)
     return share if changing else 0.0
+
+
+def _sensed(evidence: Evidence, counts: _core.SignalFacts) -> float | None:
+    """The torque at the sensor just inside its range [N·m]; None without a gain."""
+    found = evidence.parameters
+    if "sensor_gain" not in found:
+        return None
+    gain, offset = found["sensor_gain"].value, found["sensor_offset"].value
+    torques = [gain * limit + offset for limit in (counts.lowest, counts.highest)]
+    return _INSIDE * min(abs(torque) for torque in torques)
 
 
 def _find(evidence: Evidence) -> Iterator[Finding]:
@@ -54,7 +66,11 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
                     f"the sensor rests on its limit in {percent(share)} of the samples, so its reading is less than "
                     "the torque",
                     Action("inspect", text="the sensor's range, and widen it"),
-                    Action("record", text="motion in which the link carries less"),
+                    other_motion(
+                        evidence,
+                        "motion in which the link carries less",
+                        sensor_range=_sensed(evidence, signal),
+                    ),
                     evidence={"clipped": Measured(share)},
                     parameters=evidence.sensor_parameters,
                 )
@@ -64,7 +80,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
                 yield TORQUE_SATURATED.finding(
                     f"{name} rests on its limit of {limit:.4g} {unit} in {percent(share)} of the samples; if the "
                     "record was clipped and the torque was not, every value is wrong",
-                    Action("record", text="gentler motion"),
+                    other_motion(evidence, "gentler motion", gentler=True),
                     Action("record", text="the torque that the drive applied"),
                     evidence={"clipped": Measured(share), "limit": Measured(limit, unit)},
                 )

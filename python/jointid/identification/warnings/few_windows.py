@@ -6,11 +6,12 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.motion_advice import DESIGNED, other_motion
 
 FEW_WINDOWS = FindingType(
     code="few_windows",
     meaning="fewer than eight windows for each free parameter: the standard errors are themselves uncertain",
-    advice="record longer, or use shorter windows",
+    advice=f"record longer, or use shorter windows{DESIGNED}",
 )
 _FEW = 8  # windows for each free parameter
 _ADVISED = 12  # some of those asked for are left out
@@ -22,7 +23,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if windows < _FEW * free:
         yield FEW_WINDOWS.finding(
             f"{windows} windows for {free} parameters: the standard errors are themselves uncertain",
-            Action("record", text="for longer"),
+            other_motion(evidence, "for longer"),
             Action("call", {"windows": _ADVISED * free}, text="shorter windows"),
             evidence={"windows": Measured(windows), "free_parameters": Measured(free)},
         )

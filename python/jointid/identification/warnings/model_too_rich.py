@@ -13,13 +13,15 @@ from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.model_advice import simpler_model
+from jointid.identification.warnings.motion_advice import DESIGNED, other_motion
 from jointid.problem.inner_products import inner
 
 MODEL_TOO_RICH = FindingType(
     code="model_too_rich",
     meaning="the static term ended at zero or is not significant, or its shape ended on a bound: the data do not "
     "determine the Stribeck model",
-    advice="record slow motion through zero speed; use the model coulomb_viscous where no static excess shows",
+    advice="use the model coulomb_viscous where no static excess shows; or record slow motion through zero speed"
+    f"{DESIGNED}",
     picture="friction-map",
 )
 
@@ -107,7 +109,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if reason is not None:
         text, measured = reason
         named = (*_COULOMB, *STATIC, *SHAPES)
-        advice = [Action("record", text="slow motion through zero speed")]
+        advice = [other_motion(evidence, "slow motion through zero speed")]
         if not _plain_excess(evidence):
             simpler = Action("call", {"model": simpler_model(evidence)}, _without(evidence))
             advice.insert(0, simpler)

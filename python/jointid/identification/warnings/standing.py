@@ -6,12 +6,13 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
+from jointid.identification.warnings.motion_advice import DESIGNED, other_motion
 from jointid.recording.motion import WIDER, small_motion
 
 STANDING = FindingType(
     code="standing",
     meaning="the joint stands still or sticks in more than 35 % of the samples",
-    advice="record more motion",
+    advice=f"record more motion{DESIGNED}",
 )
 HARDLY_MOVES = FindingType(
     code="hardly_moves",
@@ -43,7 +44,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         yield STANDING.finding(
             f"the joint stands still or sticks in {100.0 * share:.0f} % of the samples, which carry no information "
             "about friction and are left out",
-            Action("record", text="more motion"),
+            other_motion(evidence, "more motion"),
             evidence={"standing": Measured(share)},
         )
 

@@ -13,6 +13,7 @@ from jointid.estimate.wording import percent, two_digits
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.excitation import Excitation, Lack
+from jointid.identification.warnings.motion_advice import DESIGNED, other_motion
 
 UNDETERMINED = FindingType(
     code="undetermined",
@@ -21,7 +22,8 @@ UNDETERMINED = FindingType(
     "of what this parameter needs: a range of speeds, slow motion, reversals, load, acceleration, travel, or time; "
     "or a gain of the other sign that fits as well; or an inertia that is hidden by a noisy velocity. Where the log "
     "has enough, the cause is another: a misfit of the model, which has its own finding",
-    advice="record what is missing (the finding says how much there is), or fix the parameter",
+    advice="fix the parameter, or record what is missing: the finding says how much there is"
+    f"{DESIGNED}",
 )
 
 # A parameter is not well determined where its 95 % interval is wider than this to either side, or when other windows
@@ -185,7 +187,16 @@ def _advice(
 ) -> Iterator[Action]:
     motions = dict.fromkeys(lack.motion for lack in lacks.values())
     if motions:
-        yield Action("record", text="; ".join(motions))
+        text = "; ".join(motions)
+        if set(lacks) == {"velocity_noise"}:  # another log of the same motion would do
+            yield Action("record", text=text)
+        else:
+            yield other_motion(
+                evidence,
+                text,
+                wider=bool({"load_range", "travel"} & set(lacks)),
+                faster="top_speed" in lacks,
+            )
     if "inertia" in map(_kind, reasons):
         text = "the drive's data sheet: an inertia that is known need not be identified"
         yield Action("inspect", text=text)

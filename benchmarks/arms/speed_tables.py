@@ -1,0 +1,72 @@
+"""How long a call takes, and how much memory: each recording in a program of its own."""
+
+from __future__ import annotations
+
+import json
+import statistics
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+import jointid as jid
+from arms.seven import Sensors, recorded, simulated
+
+_PERIOD = 10.0  # of the motion [s]
+
+
+def tables(seed: int, repeats: int, hour: bool) -> Iterator[str]:
+    """20 s, and an hour of the same motion again and again."""
+    ((_, ran),) = simulated([seed])
+    short = recorded(ran, Sensors(), seed)
+    cases = [("20 s", short, inertia, repeats) for inertia in ("urdf", "scaled", "free")]
+    if hour:
+        cases.append(("1 hour", lengthened(short, 360), "free", 1))
+    said = "seconds, median | worst | of the processor | loop of 20 s | ratio to it | signals | memory before | peak"
+    yield f"| recording | inertia | {said} |"
+    yield "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|"
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "recording.npz"
+        for name, recording, inertia, times in cases:
+            recording.save(path)
+            found = measured(path, inertia, times)
+            seconds, loop = found["seconds"], found["reference"][0]
+            busy = statistics.median(found["busy"])
+            cells = (
+                name,
+                inertia,
+                f"{statistics.median(seconds):.2f}",
+                f"{max(seconds):.2f}",
+                f"{busy:.2f}",
+                f"{loop:.2f}",
+                f"{busy / loop:.2f}",
+                f"{found['arrays'][0]:.0f} MB",
+                f"{found['before'][0]:.0f} MB",
+                f"{found['peak'][0]:.0f} MB",
+            )
+            yield f"| {' | '.join(cells)} |"
+
+
+def measured(path: Path, inertia: str, repeats: int) -> dict[str, list[float]]:
+    """What the other program says; single numbers as lists of one."""
+    command = [sys.executable, str(Path(__file__).with_name("timed.py")), str(path), inertia]
+    done = subprocess.run([*command, str(repeats)], capture_output=True, text=True, check=True)
+    found = json.loads(done.stdout)
+    return {name: value if isinstance(value, list) else [value] for name, value in found.items()}
+
+
+def lengthened(recording: jid.RobotRecording, periods: int) -> jid.RobotRecording:
+    """One period of the motion again and again, without the velocities."""
+    part = recording.crop(5.0, 5.0 + _PERIOD - 1e-4)
+    assert part.torque is not None
+    starts = np.repeat(np.arange(periods) * _PERIOD, part.samples)
+    return jid.RobotRecording(
+        time=np.tile(part.time, periods) + starts,
+        position=np.tile(part.position, (periods, 1)),
+        torque=np.tile(part.torque, (periods, 1)),
+        names=part.names,
+        torque_hold=part.torque_hold,
+    )

@@ -1,0 +1,184 @@
+#include "design/excitation.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/elementary.hpp"
+
+namespace jointid::design {
+
+namespace {
+
+constexpr double kExcess = 20.0;   // of the logarithm, for each unit of a limit
+constexpr double kUnstable = 1e3;  // a loop that diverges: worse than any other
+
+double beyond(double reached, double allowed) {
+  return allowed < 1e300 ? reached / allowed - 1.0 : 0.0;
+}
+
+void hold(Judgement& j, const Held& held) {
+  const double range = held.highest - held.lowest;
+  j.excess = std::max({0.0, (j.highest - held.highest) / range, (held.lowest - j.lowest) / range,
+                       beyond(j.velocity, held.velocity), beyond(j.acceleration, held.acceleration),
+                       beyond(j.torque, held.torque), beyond(j.link_torque, held.link_torque)});
+}
+
+}  // namespace
+
+void Held::validate() const {
+  const base::Requirement require("HeldLimits");
+  require.that(highest > lowest, "highest", highest, "above the lowest");
+  require.that(velocity > 0.0, "velocity", velocity, "above 0");
+  require.that(acceleration > 0.0, "acceleration", acceleration, "above 0");
+  require.that(torque > 0.0, "torque", torque, "above 0");
+  require.that(link_torque > 0.0, "link_torque", link_torque, "above 0");
+}
+
+Excitation::Excitation(Family family, simulate::Scenario scenario, std::vector<Drawn> joints,
+                       Held held, Criterion criterion, int window)
+    : family_(family),
+      scenario_(scenario),
+      joints_(std::move(joints)),
+      held_(held),
+      criterion_(criterion),
+      window_(window) {
+  family_.validate();
+  scenario_.validate();
+  const base::Requirement require("design");
+  require.that(!joints_.empty(), "joints", 0.0, "at least one");
+  require.that(window_ >= 1, "window", window_, "at least one sample");
+  for (const auto& joint : joints_) joint.setup.validate();
+}
+
+std::vector<Judgement> Excitation::judge(const simulate::Trajectory& trajectory,
+                                         const base::Cancel& cancel) const {
+  // Kept from one motion to the next: fresh memory would cost as much as the simulation.
+  thread_local std::vector<simulate::Reference> wanted;
+  thread_local std::vector<simulate::Outcome> outcomes;
+  wanted.resize(scenario_.instants());
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    wanted[k] = trajectory.at(static_cast<double>(k) * scenario_.control_period);
+  }
+  std::vector<simulate::Setup> setups;
+  setups.reserve(joints_.size());
+  for (const auto& joint : joints_) {
+    setups.push_back(joint.setup);
+    setups.back().position = wanted.front().position;
+  }
+  outcomes.resize(setups.size());
+  for (auto& outcome : outcomes) outcome.signals.clear();
+  simulate::simulate_on_this_thread(scenario_, wanted, setups, outcomes, true, cancel);
+  std::vector<Judgement> result;
+  result.reserve(outcomes.size());
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    result.push_back(judged(joints_[i], outcomes[i].signals));
+  }
+  return result;
+}
+
+Judgement Excitation::judged(const Drawn& joint, const simulate::Signals& s) const {
+  Judgement j;
+  const auto [low, high] = std::minmax_element(s.true_position.begin(), s.true_position.end());
+  const auto magnitude = [](const std::vector<double>& values) {
+    double most = 0.0;
+    for (const double value : values) most = std::max(most, std::fabs(value));
+    return most;
+  };
+  j.lowest = *low;
+  j.highest = *high;
+  j.velocity = magnitude(s.true_velocity);
+  j.acceleration = magnitude(s.true_acceleration);
+  j.torque = magnitude(s.torque);
+  j.link_torque = magnitude(s.link_torque);
+  hold(j, held_);
+  const double period = scenario_.control_period * scenario_.sample_every;
+  j.information =
+      information(s, joint.columns, joint.noise, joint.inertia, joint.viscous, period, window_);
+  Eigen::MatrixXd scaled = j.information + joint.known;
+  scaled = (joint.scale.asDiagonal() * scaled * joint.scale.asDiagonal()).eval();
+  const Eigen::LLT<Eigen::MatrixXd> factor(scaled);
+  j.errors = Eigen::VectorXd::Constant(joint.scale.size(), 1e6);
+  if (factor.info() == Eigen::Success) {
+    const Eigen::MatrixXd inverse =
+        factor.solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));
+    j.errors = inverse.diagonal().cwiseMax(0.0).cwiseSqrt();
+  }
+  return j;
+}
+
+double Excitation::cost(const std::vector<Judgement>& judgements) const {
+  double sum = 0.0;
+  double counted = 0.0;
+  double excess = 0.0;
+  for (std::size_t i = 0; i < judgements.size(); ++i) {
+    const auto& errors = judgements[i].errors;
+    const auto& weight = joints_[i].weight;
+    excess = std::max(excess, judgements[i].excess);
+    double worst = 0.0;
+    double logarithms = 0.0;
+    double asked = 0.0;
+    for (Eigen::Index p = 0; p < errors.size(); ++p) {
+      if (weight[p] <= 0.0) continue;
+      const double error = std::clamp(weight[p] * errors[p], 1e-12, 1e6);
+      worst = std::max(worst, error);
+      logarithms += base::log(error);
+      asked += 1.0;
+    }
+    if (asked == 0.0) continue;
+    sum += criterion_ == Criterion::worst ? base::log(worst) : logarithms / asked;
+    counted += 1.0;
+  }
+  return (counted > 0.0 ? sum / counted : 0.0) + kExcess * excess;
+}
+
+void Excitation::evaluate(const Eigen::MatrixXd& candidates, Eigen::VectorXd& costs,
+                          base::Pool& pool) const {
+  costs.resize(candidates.cols());
+  pool.for_each(
+      static_cast<std::size_t>(candidates.cols()),
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const auto column = static_cast<Eigen::Index>(i);
+          const Sines sines = motion_of(family_, candidates.col(column));
+          double found = kUnstable;
+          try {
+            found = cost(judge(sines.trajectory(), pool.cancel()));
+          } catch (const base::InputError&) {
+            found = kUnstable;  // a loop that is not stable along this motion
+          }
+          costs[column] = base::exp(std::clamp(found, -kUnstable, 0.5 * kUnstable));
+        }
+      },
+      1);
+}
+
+void Excitation::leave_out(const Eigen::MatrixXd& candidates, double largest, base::Pool& pool) {
+  const auto count = static_cast<std::size_t>(candidates.cols());
+  std::vector<std::vector<Judgement>> all(count);
+  pool.for_each(
+      count,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const Sines sines = motion_of(family_, candidates.col(static_cast<Eigen::Index>(i)));
+          try {
+            all[i] = judge(sines.trajectory(), pool.cancel());
+          } catch (const base::InputError&) {
+            all[i].clear();
+          }
+        }
+      },
+      1);
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    Eigen::VectorXd best = Eigen::VectorXd::Constant(joints_[j].scale.size(), 1e6);
+    for (const auto& one : all) {
+      if (!one.empty()) best = best.cwiseMin(one[j].errors);
+    }
+    for (Eigen::Index p = 0; p < best.size(); ++p) {
+      if (best[p] > largest) joints_[j].weight[p] = 0.0;
+    }
+  }
+}
+
+}  // namespace jointid::design

@@ -1,0 +1,89 @@
+#pragma once
+// What a motion is worth: the errors that an identification from it would have, for several joints
+// that the prior allows, each moved by the controller that will drive it.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "base/pool.hpp"
+#include "design/candidate.hpp"
+#include "design/information.hpp"
+#include "search/population.hpp"
+#include "simulate/simulator.hpp"
+
+namespace jointid::design {
+
+enum class Criterion { worst, determinant };
+
+/// One joint that the prior allows.
+struct Drawn {
+  simulate::Setup setup{};
+  std::vector<Column> columns{};  ///< of the free parameters, the same for all joints
+  Noise noise{};
+  Eigen::VectorXd scale;   ///< what an error counts in
+  Eigen::VectorXd weight;  ///< 1: asked for, 0: not
+  Eigen::MatrixXd known;   ///< information at hand: other recordings, the prior
+  double inertia = 0.0;    ///< that a window's change of velocity counts with
+  double viscous = 0.0;
+};
+
+/// What the joints themselves are held within.
+struct Held {
+  double lowest = -1e300;
+  double highest = 1e300;
+  double velocity = 1e300;
+  double acceleration = 1e300;
+  double torque = 1e300;
+  double link_torque = 1e300;
+
+  void validate() const;
+};
+
+/// Of one motion and one joint.
+struct Judgement {
+  Eigen::VectorXd errors;  ///< expected standard errors over their scales
+  Eigen::MatrixXd information;
+  double lowest = 0.0;  ///< what the joint reaches
+  double highest = 0.0;
+  double velocity = 0.0;
+  double acceleration = 0.0;
+  double torque = 0.0;
+  double link_torque = 0.0;
+  double excess = 0.0;  ///< the largest share by which a limit is exceeded; 0: none
+};
+
+class Excitation {
+ public:
+  Excitation(Family family, simulate::Scenario scenario, std::vector<Drawn> joints, Held held,
+             Criterion criterion, int window);
+
+  [[nodiscard]] const Family& family() const { return family_; }
+  /// One for each joint.
+  [[nodiscard]] std::vector<Judgement> judge(const simulate::Trajectory& trajectory,
+                                             const base::Cancel& cancel) const;
+  /// The logarithm of what is minimised, and more where a limit is exceeded.
+  [[nodiscard]] double cost(const std::vector<Judgement>& judgements) const;
+  /// Costs of candidates' genes, one a column, positive for the search.
+  void evaluate(const Eigen::MatrixXd& candidates, Eigen::VectorXd& costs, base::Pool& pool) const;
+  /// Leaves out, for each joint, what none of these motions determines to within `largest`.
+  void leave_out(const Eigen::MatrixXd& candidates, double largest, base::Pool& pool);
+  [[nodiscard]] const std::vector<Drawn>& joints() const { return joints_; }
+
+ private:
+  [[nodiscard]] Judgement judged(const Drawn& joint, const simulate::Signals& signals) const;
+
+  Family family_;
+  simulate::Scenario scenario_;
+  std::vector<Drawn> joints_;
+  Held held_;
+  Criterion criterion_;
+  int window_;
+};
+
+}  // namespace jointid::design
+
+template <>
+struct jointid::base::Words<jointid::design::Criterion> {
+  static constexpr std::string_view field = "criterion";
+  static constexpr std::array<std::string_view, 2> all{"worst", "determinant"};
+};

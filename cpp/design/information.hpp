@@ -1,0 +1,30 @@
+#pragma once
+// How well a motion determines the free parameters: Fisher's information of the windows of a
+// noise-free run, as a least-squares identification would use them.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "design/regressors.hpp"
+
+namespace jointid::design {
+
+/// Noise of the balance, and what an identification leaves out.
+struct Noise {
+  double torque = 1.0;    ///< of a sample, white [N·m]
+  double position = 0.0;  ///< of the position at a window's end [rad]
+  double velocity = 0.0;  ///< of the velocity there [rad/s]
+  double slowest = 0.0;   ///< slower samples tell nothing [rad/s]
+  /// Of a window in which the velocity changes its sign: when exactly, samples do not tell [N·m·s].
+  double reversal = 0.0;
+
+  void validate() const;
+};
+
+/// Sum over windows of row' row / variance. A window of `samples` ends early where the joint is
+/// slower than `noise.slowest`. `period` is between samples [s].
+Eigen::MatrixXd information(const simulate::Signals& signals, const std::vector<Column>& columns,
+                            const Noise& noise, double inertia, double viscous, double period,
+                            int samples);
+
+}  // namespace jointid::design

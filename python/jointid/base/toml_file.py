@@ -1,0 +1,33 @@
+"""Reading a TOML file of ours."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from jointid.base.errors import InputError
+from jointid.base.schema import check_depth, read_text
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Return the tables of a TOML file; a schema checks them.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, or is not TOML; names the file, and the line where it is known.
+    """
+    text = read_text(path)
+    try:
+        tables = tomllib.loads(text.removeprefix("\ufeff"))  # some editors on Windows write it
+        check_depth(tables, "not TOML of ours")
+    except RecursionError:
+        raise InputError("not TOML: it is nested too deeply", place=str(path)) from None
+    except InputError as error:
+        raise error.at(str(path)) from None
+    except ValueError as error:  # a TOMLDecodeError, or a number with too many digits
+        reason, _, position = str(error).partition(" (at ")
+        where = position.rstrip(")") or "the end of the file"
+        raise InputError(f"not TOML: {reason} ({where})", place=str(path)) from None
+    return tables

@@ -1,0 +1,178 @@
+"""What the options of `design` and its joint file say: limits, controller, what is believed."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointid.base.errors import InputError
+from jointid.cli.arguments import by_name
+from jointid.cli.scenario import checked_values, controller_of, number_or_angle, sensors_of
+from jointid.design.motion_limits import MotionLimits
+from jointid.joint.joint import Joint
+from jointid.joint.link import Limits
+
+if TYPE_CHECKING:
+    from jointid._core import Sensors
+    from jointid.estimate.estimate import Estimate
+    from jointid.hardware.bench.bench import Bench
+    from jointid.hardware.session.limits import SessionLimits
+    from jointid.simulation.arguments import Controller
+
+_LIMITS = ("position", "velocity", "acceleration", "torque", "sensor_range")
+
+
+def joint_and_bench(path: Path) -> tuple[Joint, Bench | None]:
+    """The joint of a file, and its bench if the file has one, whatever motion that names."""
+    from jointid.hardware.bench.bench_file import load_bench
+    from jointid.joint.joint_file import read_document
+
+    if "session" not in read_document(path):
+        return Joint.load(path), None
+    bench = load_bench(path, with_motion=False)
+    return bench.joint, bench
+
+
+def limits_of(arguments: argparse.Namespace, joint: Joint, bench: Bench | None) -> MotionLimits:
+    """The limits of the options; where there is none, the session's, or the joint's."""
+    given: dict[str, Any] = {}
+    for name in _LIMITS:
+        text = getattr(arguments, name)
+        if text is not None:
+            given[name] = (
+                _numbers(name, text, 2) if name == "position" else _numbers(name, text, 1)[0]
+            )
+    if bench is not None:
+        own = bench.limits
+        joint = joint.replace(
+            limits=Limits(
+                position=own.position,
+                velocity=own.velocity,
+                torque=own.torque if math.isfinite(own.torque) else None,
+            )
+        )
+    limits = MotionLimits.of(given, joint)
+    if bench is not None:
+        _check_session(limits, bench.limits)
+    return limits
+
+
+def _check_session(limits: MotionLimits, session: SessionLimits) -> None:
+    """Refuse a limit beyond the one at which the session of the joint file stops."""
+    low, high = session.position
+    if limits.position[0] < low or limits.position[1] > high:
+        raise InputError(
+            f"the joint file's session stops at {low:g} to {high:g}",
+            argument="position",
+            value=limits.position,
+        )
+    for name in ("velocity", "torque"):
+        stated, allowed = getattr(limits, name), getattr(session, name)
+        if stated > allowed:
+            raise InputError(
+                f"the joint file's session stops at {allowed:g}", argument=name, value=stated
+            )
+
+
+def as_option(error: InputError) -> InputError:
+    """An error about a limit: its place is the option, which says it already."""
+    if error.place != "limits":
+        return error
+    return InputError(error.reason, argument=error.argument, value=error.value, remedy=error.remedy)
+
+
+def controller_for(
+    arguments: argparse.Namespace, joint: Joint, bench: Bench | None
+) -> Controller | None:
+    """The controller of the options, or of the session; None: the default one."""
+    from jointid.simulation.arguments import law_name
+    from jointid.simulation.scenario import believing
+
+    gains, name, believe = arguments.gain, arguments.controller, arguments.believe
+    own = None if bench is None else bench.controller
+    if name is None and own is not None:
+        found = own.replace(**checked_values("gain", gains, own.asdict()))
+        if believe is None:
+            return found
+    elif name is None and not gains and believe is None:
+        return None
+    else:
+        found = controller_of("adaptive_robust" if name is None else name, gains)
+    if "coulomb" not in found.asdict():
+        if believe is not None:
+            raise InputError(
+                f"the controller {law_name(found)} compensates no friction", argument="believe"
+            )
+        return found
+    chosen = {key: found.asdict()[key] for key, _ in gains}
+    assumed = believing(found, joint if believe is None else Joint.load(believe))
+    controller: Controller = assumed.replace(**chosen)
+    return controller
+
+
+def sensors_for(
+    pairs: Sequence[tuple[str, str]], limits: MotionLimits, joint: Joint, bench: Bench | None
+) -> Sensors | None:
+    """The sensors of the options, and beside them the session's encoder and velocity; None: the default ones."""
+    from jointid.design.balance_noise import assumed_sensors
+
+    # What a drive's type calls otherwise is not known here, and stays the default.
+    counts = getattr(None if bench is None else bench.drive, "counts_per_turn", None)
+    if bench is None or counts is None or limits.torque is None:
+        return sensors_of(pairs) if pairs else None
+    own = assumed_sensors(joint, limits.torque).replace(
+        encoder_counts=float(counts),
+        velocity="counts",
+        velocity_counts=bench.options.velocity_counts,
+        velocity_time=bench.options.velocity_time,
+    )
+    stated = sensors_of(pairs).asdict()
+    return own.replace(**{name: stated[name] for name, _ in pairs})
+
+
+def controller_after(
+    arguments: argparse.Namespace, estimated: Joint, bench: Bench | None
+) -> Controller | None:
+    """The same, which believes an estimate: what the session's own assumes was believed before."""
+    from jointid.simulation.scenario import believing
+
+    found = controller_for(arguments, estimated, bench)
+    stated = arguments.controller is not None or arguments.believe is not None
+    if found is None or stated or "coulomb" not in found.asdict():
+        return found
+    chosen = {key: found.asdict()[key] for key, _ in arguments.gain}
+    assumed: Controller = believing(found, estimated).replace(**chosen)
+    return assumed
+
+
+def sensors_after(
+    pairs: Sequence[tuple[str, str]], sensors: Sensors | None, estimate: Estimate
+) -> Sensors | None:
+    """The same sensors, with the noise that an estimate's residuals show where no option says it."""
+    from jointid.design.told import sensors_of
+
+    seen = sensors_of(estimate)
+    if sensors is None or seen is None or "torque_noise" in dict(pairs):
+        return sensors
+    return sensors.replace(torque_noise=seen.torque_noise)
+
+
+def prior_of(pairs: Sequence[tuple[str, str]]) -> dict[str, tuple[float, float]] | None:
+    """Where parameters may lie, by name."""
+    found = {}
+    for name, text in by_name("prior", pairs).items():
+        low, high = _numbers(f"prior.{name}", text, 2)
+        found[name] = (low, high)
+    return found or None
+
+
+def _numbers(argument: str, text: str, count: int) -> tuple[float, ...]:
+    """Numbers, or angles such as 60deg, with commas between them."""
+    values = [number_or_angle(part.strip()) for part in text.split(",")]
+    if len(values) != count or any(isinstance(value, str) for value in values):
+        expected = "a number is expected" if count == 1 else "two numbers LOW,HIGH are expected"
+        raise InputError(expected, argument=argument, value=text)
+    return tuple(float(value) for value in values)

@@ -1,0 +1,252 @@
+"""The command `design`: the motion that identifies a joint best within limits."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointid.base.errors import InputError
+from jointid.cli.arguments import TEXT, decimal, pair, whole, whole_seed
+from jointid.cli.outputs import check_folder
+
+if TYPE_CHECKING:
+    from jointid.design.design import Design
+
+_PICTURES = (".png", ".pdf", ".svg")
+
+
+def add_design(commands: Any) -> None:
+    """Add the command's grammar."""
+    design = commands.add_parser(
+        "design",
+        help="find the motion that identifies a joint best within limits",
+        epilog=(
+            "examples:\n"
+            "  jointid design joint.toml --duration 12 --output motion.toml\n"
+            "  jointid design joint.toml --position -60deg,60deg --velocity 3.4 --torque 160 --output motion.toml\n"
+            "  jointid design joint.toml --after estimate.json --duration 6 --output motion.toml\n"
+            "  jointid design joint.toml --parameter sensor_gain --sensor torque_noise=0.5 --plot motion.png\n"
+            "the joint file needs a value or bounds for each parameter; its table [session], if there is one,\n"
+            'says the controller, the period, the encoder and the limits, and takes the motion as file = "motion.toml"'
+        ),
+        formatter_class=TEXT,
+    )
+    # -60deg,60deg is a value, and no option: none of ours begins with a digit.
+    design._negative_number_matcher = re.compile(r"-\.?\d")
+    design.add_argument("joint", type=Path, help="joint file (.toml)")
+    design.add_argument(
+        "--after",
+        type=Path,
+        metavar="ESTIMATE",
+        help="the .json file of an estimate: what to record next, given what its recordings tell",
+    )
+    design.add_argument(
+        "--duration", type=decimal, default=12.0, help="of the motion [s] (default 12)"
+    )
+    for name, shown, explanation in (
+        (
+            "--position",
+            "LOW,HIGH",
+            "window [rad], or as -60deg,60deg; default: nine tenths of the file's",
+        ),
+        (
+            "--velocity",
+            "LIMIT",
+            "largest [rad/s], or as 200deg; default: nine tenths of the file's",
+        ),
+        ("--acceleration", "LIMIT", "largest of the reference [rad/s²]; default: not limited"),
+        ("--torque", "LIMIT", "largest of the drive at the output [N·m]; default: the file's"),
+        (
+            "--sensor-range",
+            "LIMIT",
+            "largest torque at the torque sensor [N·m]; default: not limited",
+        ),
+    ):
+        design.add_argument(name, metavar=shown, help=explanation)
+    _believed(design)
+    _sought(design)
+    design.add_argument("--output", type=Path, help="file for the motion (.toml)")
+    design.add_argument("--plot", type=Path, help="draw the motion: .png, .pdf, .svg")
+    design.add_argument("--json", action="store_true", help="print the design as JSON")
+    design.add_argument("--quiet", action="store_true", help="no progress bar")
+
+
+def _believed(design: argparse.ArgumentParser) -> None:
+    """Add what is known of the joint, its controller and its sensors."""
+    design.add_argument(
+        "--prior",
+        action="append",
+        type=pair,
+        default=[],
+        metavar="NAME=LOW,HIGH",
+        help="where a parameter may lie; default: its bounds in the joint file; may be repeated",
+    )
+    design.add_argument(
+        "--controller",
+        help="as in simulate; default: the one of [session.controller], or adaptive_robust",
+    )
+    design.add_argument(
+        "--believe",
+        type=Path,
+        metavar="JOINT",
+        help="joint file with the parameters the controller assumes; default: this joint's",
+    )
+    for name, explanation in (
+        ("--gain", "a setting of the controller; may be repeated"),
+        (
+            "--sensor",
+            "a sensor's property, such as torque_noise=0.5, encoder_counts=8000 (per motor turn)",
+        ),
+    ):
+        design.add_argument(
+            name, action="append", type=pair, default=[], metavar="NAME=VALUE", help=explanation
+        )
+    design.add_argument(
+        "--control-period",
+        type=decimal,
+        help="time between two commands [s]; default: the session's, or 0.001",
+    )
+
+
+def _sought(design: argparse.ArgumentParser) -> None:
+    """Add what is sought, and how."""
+    design.add_argument(
+        "--parameter",
+        action="append",
+        metavar="NAME",
+        help="a parameter that counts; may be repeated; default: all that are identified",
+    )
+    design.add_argument(
+        "--criterion",
+        default="worst",
+        help="worst (default): the largest relative error; determinant: all errors together",
+    )
+    design.add_argument("--evaluations", type=whole, help="motions to try (default 3000)")
+    design.add_argument(
+        "--draws", type=whole, help="joints drawn from what is believed (default 4)"
+    )
+    design.add_argument(
+        "--rehearsals",
+        type=whole,
+        help="simulated recordings from which the errors are counted (default 160)",
+    )
+    design.add_argument("--seed", type=whole_seed, default=0, help="seed of the search (default 0)")
+    design.add_argument(
+        "--threads", type=whole, default=0, help="threads of the search (default 0: all cores)"
+    )
+
+
+def design(arguments: argparse.Namespace) -> int:
+    """Design a motion, and write it."""
+    from jointid.cli.design_settings import as_option
+
+    _check_outputs(arguments)
+    try:
+        found = _designed(arguments)
+    except InputError as error:
+        raise as_option(error) from None
+    return _say(found, arguments)
+
+
+def _designed(arguments: argparse.Namespace) -> Design:
+    """The design of a command line."""
+    from jointid.cli.design_settings import (
+        controller_after,
+        controller_for,
+        joint_and_bench,
+        limits_of,
+        prior_of,
+        sensors_after,
+        sensors_for,
+    )
+    from jointid.cli.progress import MotionProgress
+    from jointid.design.design_search import DesignSearch
+    from jointid.design.designing import design_excitation
+    from jointid.estimate.estimate import Estimate
+
+    joint, bench = joint_and_bench(arguments.joint)
+    limits = limits_of(arguments, joint, bench)
+    budget = {
+        "evaluations": arguments.evaluations,
+        "joints": arguments.draws,
+        "rehearsals": arguments.rehearsals,
+    }
+    search = DesignSearch(
+        seed=arguments.seed,
+        threads=arguments.threads,
+        **{name: value for name, value in budget.items() if value is not None},
+    )
+    period = arguments.control_period
+    if period is None:
+        period = 1e-3 if bench is None else bench.options.period
+    estimate = None if arguments.after is None else Estimate.load(arguments.after)
+    sensors = sensors_for(arguments.sensor, limits, joint, bench)
+    with MotionProgress(enabled=not arguments.quiet) as progress:
+        settings: dict[str, Any] = {
+            "parameters": arguments.parameter,
+            "criterion": arguments.criterion,
+            "prior": prior_of(arguments.prior),
+            "search": search,
+            "control_period": period,
+            "callback": progress,
+        }
+        if estimate is None:
+            controller = controller_for(arguments, joint, bench)
+            settings |= {"controller": controller, "sensors": sensors}
+            return design_excitation(joint, limits, arguments.duration, **settings)
+        settings["controller"] = controller_after(arguments, estimate.joint, bench)
+        settings["sensors"] = sensors_after(arguments.sensor, sensors, estimate)
+        found: Design = estimate.next_motion(limits, arguments.duration, joint=joint, **settings)
+        return found
+
+
+def _say(found: Design, arguments: argparse.Namespace) -> int:
+    """Write what was asked for, and print the design; a motion that keeps no limits is not written."""
+    from jointid.cli.parser import BAD_USAGE
+    from jointid.design.design import COMPLETE
+
+    usable = found.status == COMPLETE
+    if usable and arguments.output is not None:
+        found.save(arguments.output)
+    if arguments.plot is not None:
+        _draw(found, arguments.plot)
+    if arguments.json:
+        print(json.dumps(found.to_dict(), indent=1, ensure_ascii=False, allow_nan=False))
+    else:
+        print(found.summary())
+        lines = [f"picture: {arguments.plot}"] if arguments.plot is not None else []
+        if usable and arguments.output is not None:
+            lines.append(f"motion: {arguments.output}")
+        if lines:
+            print("", *lines, sep="\n")
+    if usable:
+        return 0
+    unwritten = f"; {arguments.output} was not written" if arguments.output is not None else ""
+    print(f"jointid design: {found.reason or found.status}{unwritten}", file=sys.stderr)
+    return BAD_USAGE
+
+
+def _check_outputs(arguments: argparse.Namespace) -> None:
+    for name, endings, text in (
+        ("output", (".toml",), "a motion is written as .toml"),
+        ("plot", _PICTURES, "a plot is written as .png, .pdf or .svg"),
+    ):
+        path = getattr(arguments, name)
+        if path is not None and path.suffix.lower() not in endings:
+            raise InputError(text, argument=name, value=path)
+        check_folder(name, path)
+
+
+def _draw(found: Design, path: Path) -> None:
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    from matplotlib import pyplot
+
+    figure = found.plot()[0].figure
+    figure.savefig(path, dpi=150)  # type: ignore[union-attr]
+    pyplot.close("all")

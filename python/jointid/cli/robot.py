@@ -1,0 +1,90 @@
+"""`jointid identify --robot`: all joints of a robot together."""
+
+from __future__ import annotations
+
+import argparse
+
+from jointid.base.errors import InputError
+from jointid.cli.arguments import as_given, gear_ratios, how_to_read, joints_wanted, with_terms
+from jointid.cli.outputs import check_folder, check_page
+from jointid.cli.wording import ADVICE, Wording
+
+_OF_ONE_JOINT = (
+    *("joint", "checkpoint", "resume", "selftest", "bootstrap", "causes", "shift", "residual"),
+    *("torque_hold", "population", "generations"),
+)
+
+
+def identify_whole_robot(arguments: argparse.Namespace) -> int:
+    """Identify all joints of a robot from one recording or several."""
+    from jointid.recording.readers.loading_robot import load_robot
+    from jointid.report.robot_page import save_robot_report
+    from jointid.robot.identifying import identify_robot
+    from jointid.robot.robot import Robot
+
+    _check(arguments)
+    model = with_terms(arguments.model, arguments)
+    robot = Robot.from_urdf(
+        arguments.robot, gear_ratios=gear_ratios(arguments), facts=arguments.facts
+    )
+    try:
+        recordings = [
+            load_robot(
+                path,
+                joints_wanted(arguments) or None,
+                gear_ratio=robot.gear_ratios,
+                **how_to_read(arguments, [model]),
+            )
+            for path in arguments.recordings
+        ]
+    except InputError as error:
+        raise as_given(error, arguments) from None
+    found = identify_robot(
+        recordings,
+        robot,
+        inertia=arguments.inertia or "urdf",
+        model=model,
+        windows=arguments.windows,
+        min_speed=arguments.min_speed,
+    )
+    if arguments.report is not None:
+        save_robot_report(found, arguments.report, action=ADVICE.of_action)
+    if arguments.save is not None:
+        found.save(arguments.save)
+    if arguments.json:
+        print(found.to_json())
+    else:
+        from jointid.robot.tables import text_report
+
+        print(text_report(found, action=Wording.of(arguments).of_action))
+        lines = [
+            f"{what}: {path}"
+            for what, path in (("report", arguments.report), ("estimate", arguments.save))
+            if path is not None
+        ]
+        if lines:
+            print("", *lines, sep="\n")
+    return 0
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    """Refuse what holds for one joint only, before the work."""
+    for name in _OF_ONE_JOINT:
+        if getattr(arguments, name) not in (None, False):
+            raise InputError(
+                "this is for one joint, not for a robot",
+                argument={"bootstrap": "n", "population": "ga.population"}.get(
+                    name, "ga.generations" if name == "generations" else name
+                ),
+            )
+    for name in ("set", "drop_copies", "drop_invalid"):
+        if getattr(arguments, name):
+            raise InputError(
+                "this is for one joint, not for a robot",
+                argument="parameters" if name == "set" else name,
+            )
+    save = arguments.save
+    if save is not None and save.suffix != ".json":
+        raise InputError("a robot's estimate is saved as .json", argument="save", value=save)
+    check_folder("save", save)
+    check_page("report", arguments.report)

@@ -1,0 +1,88 @@
+"""The noise that sensors bring into the torque balance."""
+
+from __future__ import annotations
+
+import math
+
+from jointid import _core
+from jointid.joint.joint import Joint
+
+_OWN = 3e-3  # of the torque limit: a sensor's noise where none is stated
+_COUNTS = 8000.0  # of a motor turn: an encoder where none is stated
+_SMOOTHED = 9  # samples from which a velocity is derived
+_LEAST = 1e-6  # of the torque limit: what no balance is better than
+_SLOW = 0.15  # of the speed at which static friction fades: slower, noise decides when the joint breaks away
+_REVERSAL = 0.1  # of a period: how well samples tell when the joint reverses
+_STANDING = 1e-4  # of the largest speed
+
+
+def assumed_sensors(joint: Joint, torque: float) -> _core.Sensors:
+    """Return the sensors of a joint of which nothing is said: a torque sensor with noise, or a coarse encoder."""
+    if joint.sensor:
+        return _core.Sensors(torque_noise=_OWN * torque)
+    return _core.Sensors(encoder_counts=_COUNTS, velocity="difference")
+
+
+def noise_of_balance(
+    joint: Joint,
+    setup: _core.Setup,
+    sensors: _core.Sensors,
+    *,
+    period: float,
+    sampled: float,
+    torque: float,
+    velocity: float,
+) -> _core.BalanceNoise:
+    """Return the noise of the balance of one joint.
+
+    Parameters
+    ----------
+    joint : Joint
+    setup : Setup
+        Of the joint with values.
+    sensors : Sensors
+    period : float
+        Between samples of the simulation [s].
+    sampled : float
+        Between samples of the recording [s].
+    torque, velocity : float
+        The limits [N·m], [rad/s].
+    """
+    variance = (_LEAST * torque) ** 2
+    if joint.sensor:
+        variance += sensors.torque_noise**2
+        if sensors.converter_bits > 0:
+            count = 2.0 * sensors.converter_range / 2.0**sensors.converter_bits
+            spread = sensors.converter_noise**2 / sensors.converter_samples + 1.0 / 12.0
+            variance += (setup.sensor_gain * count) ** 2 * spread
+    position = 0.0
+    if sensors.encoder_counts > 0.0:
+        turn = sensors.encoder_counts * abs(joint.gear_ratio)
+        position = 2.0 * math.pi / turn / math.sqrt(12.0)
+    # Of a straight line through so many positions.
+    derived = position * math.sqrt(12.0 / _SMOOTHED**3) / period
+    slowest = max(_STANDING * velocity, 3.0 * derived, _SLOW * _fading_speed(setup.joint))
+    return _core.BalanceNoise(
+        torque=math.sqrt(variance),
+        position=position,
+        velocity=derived,
+        slowest=min(slowest, 0.05 * velocity),
+        reversal=_REVERSAL * sampled * _dry_step(setup.joint),
+    )
+
+
+def _fading_speed(joint: _core.SimulatedJoint) -> float:
+    """Return the speed at which static friction has faded; 0 without static friction."""
+    if joint.decay == "gaussian" and joint.stribeck > 0.0:
+        return 1.0 / math.sqrt(joint.stribeck)
+    return joint.stribeck_velocity if joint.decay == "general" else 0.0
+
+
+def _dry_step(joint: _core.SimulatedJoint) -> float:
+    """Return by how much dry friction changes at a reversal [N·m]."""
+    return float(
+        joint.coulomb_positive
+        + joint.coulomb_negative
+        + joint.static_positive
+        + joint.static_negative
+    )

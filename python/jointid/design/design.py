@@ -1,0 +1,151 @@
+"""A designed motion: where it goes, what it keeps, and how well it will identify a joint."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from jointid import _core
+from jointid.design.expected_error import ExpectedError
+from jointid.design.motion_limits import MotionLimits
+from jointid.joint.joint import Joint
+from jointid.simulation.arguments import Controller
+from jointid.simulation.peaks import Peaks
+from jointid.simulation.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+COMPLETE = "complete"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Design:
+    """What `design_excitation` found; `load_design` reads it from a file.
+
+    Attributes
+    ----------
+    status : str
+        "complete", or in a few words what is wrong with it.
+    reason : str
+        The same in a sentence. Default: empty.
+    trajectory : Trajectory
+        For `simulate`, a session, files.
+    joint : Joint
+        The nominal one: the middle of what is believed.
+    controller : Controller
+        That drives the joint.
+    sensors : Sensors
+        That are read.
+    limits : MotionLimits
+        What the motion keeps.
+    peaks : Peaks
+        What joints drawn from what is believed reach, with noise.
+    parameters : mapping of str to ExpectedError
+        Of those that the motion was designed for.
+    reference : mapping of str to float
+        Largest relative error of each parameter in the thesis's motion (20 degrees), with the same
+        joints, controller, sensors and duration. Default: not computed.
+    criterion : str
+        "worst" or "determinant".
+    joints : int
+        How many it was judged with.
+    evaluations : int
+        Motions that the search tried.
+    seed : int
+    duration : float
+        [s]
+    control_period : float
+        Of the controller [s]. Default 1 ms.
+    weakest : str
+        The parameter with the largest error.
+    limited_by : str
+        What keeps that error from being smaller: a limit that is reached, the duration, the noise, …
+    """
+
+    status: str
+    trajectory: Trajectory
+    joint: Joint
+    controller: Controller
+    sensors: _core.Sensors
+    limits: MotionLimits
+    peaks: Peaks
+    parameters: Mapping[str, ExpectedError]
+    criterion: str
+    joints: int
+    evaluations: int
+    seed: int
+    duration: float
+    weakest: str
+    limited_by: str
+    reference: Mapping[str, float] = field(default_factory=dict)
+    control_period: float = 1e-3
+    reason: str = ""
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """How much of each limit is used, by the limit's name; 1 is all of it."""
+        limits, peaks = self.limits, self.peaks
+        low, high = limits.position
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        used = {
+            "position": max(abs(peaks.position[0] - middle), abs(peaks.position[1] - middle)) / half
+        }
+        for name, reached in (
+            ("velocity", peaks.velocity),
+            ("acceleration", peaks.acceleration),
+            ("torque", peaks.torque),
+            ("sensor_range", peaks.sensor_torque),
+        ):
+            allowed = getattr(limits, name)
+            if allowed is not None and reached is not None:
+                used[name] = reached / allowed
+        return used
+
+    def summary(self) -> str:
+        """Return the design as text: expected errors, limits, what limits the weakest."""
+        from jointid.design.tables import summary
+
+        return summary(self)
+
+    def plot(self) -> tuple[Axes, Axes, Axes]:
+        """Draw position and velocity over time with their limits, and where friction is sampled.
+
+        Returns
+        -------
+        tuple of Axes
+            As `jointid.plot.designed_motion`.
+        """
+        from jointid.plot.design import designed_motion
+
+        return designed_motion(self)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return what `save` writes, in JSON's types; a number that is not finite is a text."""
+        from jointid.design.design_file import document_of
+
+        return document_of(self)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write a file (.toml) that a session, `simulate` and `load_design` read; a failed write changes none.
+
+        Raises
+        ------
+        InputError
+            Another ending than ``.toml``, or a folder that does not exist.
+        OSError
+            The file cannot be written; an existing one is untouched.
+        """
+        from jointid.design.design_file import save_design
+
+        save_design(self, path)
+
+    def __str__(self) -> str:
+        return self.summary()
+
+    def _repr_html_(self) -> str:
+        from jointid.design.tables import html_summary
+
+        return str(html_summary(self))

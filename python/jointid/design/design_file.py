@@ -1,0 +1,219 @@
+"""A design's file: its motion, what it was designed for, and what to expect of it."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any
+
+from jointid import _core
+from jointid.base.argument_checks import require_path
+from jointid.base.errors import InputError
+from jointid.base.files import write_whole
+from jointid.base.schema import Flag, Kind, ListOf, Number, Plain, Record, TableOf, Text
+from jointid.base.toml_file import read_toml
+from jointid.base.toml_text import toml_of
+from jointid.design.design import Design
+from jointid.design.expected_error import ExpectedError
+from jointid.design.motion_limits import MotionLimits
+from jointid.joint.joint_file import joint_document, joint_from_document
+from jointid.simulation.arguments import LAWS, law_name
+from jointid.simulation.motion_file import COMMENTS, motion_of, motion_table
+
+SCHEMA = 1
+"""Increased when a reader of the earlier format would misread the new one."""
+
+_SIZE, _ERROR = Number(low=0.0), Number(low=0.0, infinite=True)
+_COUNT = Number(low=0, high=2**63 - 1, whole=True)  # as TOML's whole numbers
+_DESIGN = Record(
+    {
+        **dict.fromkeys(("status", "criterion", "weakest", "limited_by"), Text()),
+        **dict.fromkeys(("joints", "evaluations"), _COUNT),
+        "seed": Number(low=0, high=2**64 - 1, whole=True),
+        "control_period": Number(low=1e-6, high=1.0),
+        "jointid": Text(),
+    },
+    {"reason": Text()},
+)
+_LIMITS = Record(
+    {"position": ListOf(Number(), 2, 2), "velocity": _SIZE},
+    dict.fromkeys(("acceleration", "torque", "sensor_range"), _SIZE),
+)
+_EXPECTED = Record(
+    {
+        "unit": Text(longest=100),
+        "value": Number(),
+        **dict.fromkeys(("stderr", "relative", "worst"), _ERROR),
+    },
+    {"before": _ERROR},
+)
+_FILE = Record(
+    {
+        "schema": Number(low=1, whole=True),
+        "design": _DESIGN,
+        "trajectory": Plain(),  # read as any motion's
+        "peaks": Plain(),
+        "limits": _LIMITS,
+        "expected": TableOf(_EXPECTED, 1000),
+        "controller": Plain(),
+        "sensors": Plain(),
+        "joint": Plain(),
+    },
+    {"reference": TableOf(_ERROR, 1000)},
+)
+_SAYS = COMMENTS | {
+    "trajectory": "a sum of sines: amplitude · sin(frequency · t + phase)",
+    "limits": "what the motion keeps",
+    "peaks": "what joints drawn from what is believed reach",
+    "reference": "largest relative errors in the thesis's motion, for comparison",
+    "design.control_period": "s",
+    "controller": "that drives the joint",
+    "joint": "the nominal one",
+}
+
+
+def document_of(design: Design) -> dict[str, Any]:
+    """Return a design as the tables of its file, in JSON's types."""
+    own = {item.name for item in fields(ExpectedError)} - {"name"}
+    return {
+        "schema": SCHEMA,
+        "trajectory": motion_table(design.trajectory),
+        "expected": {
+            name: {
+                key: _plain(value)
+                for key, value in asdict(each).items()
+                if key in own and value is not None
+            }
+            for name, each in design.parameters.items()
+        },
+        **(
+            {"reference": {name: _plain(share) for name, share in design.reference.items()}}
+            if design.reference
+            else {}
+        ),
+        "limits": {
+            name: list(value) if isinstance(value, tuple) else value
+            for name, value in design.limits.asdict().items()
+        },
+        "peaks": {
+            name: value for name, value in design.peaks.to_dict().items() if value is not None
+        },
+        "controller": {"law": law_name(design.controller), **_settings(design.controller)},
+        "sensors": _settings(design.sensors),
+        "joint": joint_document(design.joint),
+        "design": {
+            "status": design.status,
+            **({"reason": design.reason} if design.reason else {}),
+            "criterion": design.criterion,
+            "joints": design.joints,
+            "evaluations": design.evaluations,
+            "seed": design.seed,
+            "control_period": design.control_period,
+            "weakest": design.weakest,
+            "limited_by": design.limited_by,
+            "jointid": _core.__version__,  # the last line: a file that was cut lacks it
+        },
+    }
+
+
+def save_design(design: Design, path: str | os.PathLike[str]) -> None:
+    """Write a design: see `Design.save`."""
+    place = require_path("path", path)
+    if place.suffix.lower() != ".toml" and not place.is_dir():
+        raise InputError("a design is saved as .toml", argument="path", value=place.name)
+    write_whole(place, toml_of(document_of(design), _SAYS).encode())
+
+
+def load_design(path: str | os.PathLike[str]) -> Design:
+    """Return the design that `Design.save` wrote.
+
+    Parameters
+    ----------
+    path : path
+        A motion written by hand, without what a design knows of it, is read by a session and by
+        `jointid simulate --trajectory`, not here.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or is no design; names file and key.
+
+    Examples
+    --------
+    >>> design = jid.load_design("motion.toml")
+    >>> recording = jid.simulate(design.joint, design.controller, design.trajectory)
+    """
+    place = require_path("path", path)
+    document = read_toml(place)
+    try:
+        return _design(document, place)
+    except InputError as error:
+        raise (error if error.place.startswith(str(place)) else error.at(str(place))) from None
+
+
+def _design(document: Mapping[str, Any], place: Path) -> Design:
+    if "design" not in document and "trajectory" in document:
+        raise InputError(
+            "this is a motion without a table [design], which says what to expect of it"
+        )
+    schema = document.get("schema")
+    if isinstance(schema, int) and not isinstance(schema, bool) and schema > SCHEMA:
+        raise InputError(
+            f"this jointid reads up to {SCHEMA}",
+            argument="schema",
+            value=schema,
+            remedy="update jointid",
+        )
+    tables = _FILE.read(dict(document), "")
+    motion = motion_of({name: tables[name] for name in ("trajectory", "peaks")})
+    assert motion.peaks is not None  # the schema asks for it
+    expected = {name: ExpectedError(name=name, **each) for name, each in tables["expected"].items()}
+    about = tables["design"]
+    del about["jointid"]
+    return Design(
+        **about,
+        trajectory=motion.trajectory,
+        duration=motion.trajectory.duration,
+        joint=joint_from_document(tables["joint"], f"{place}: [joint]"),
+        controller=_made(LAWS, tables["controller"], "controller"),
+        sensors=_made({"": _core.Sensors}, tables["sensors"], "sensors"),
+        limits=MotionLimits(**tables["limits"]),
+        peaks=motion.peaks,
+        parameters=expected,
+        reference=tables.get("reference", {}),
+    )
+
+
+def _settings(value: Any) -> dict[str, Any]:
+    """The settings of a controller or of sensors."""
+    return {name: _plain(each) for name, each in value.asdict().items()}
+
+
+def _made(kinds: Mapping[str, Callable[..., Any]], table: Any, place: str) -> Any:
+    """The controller or the sensors that a table describes."""
+    named: dict[str, Kind] = {} if "" in kinds else {"law": Text(known=tuple(kinds))}
+    read = Record(named, other=Plain()).read(table, place)
+    make = kinds[read.pop("law") if named else ""]
+    usual: Mapping[str, Any] = make().asdict()
+    settings = Record({}, {name: _kind(value) for name, value in usual.items()})
+    try:
+        return make(**settings.read(read, place))
+    except InputError as error:
+        raise (error if error.place else error.at(place)) from None
+
+
+def _kind(usual: Any) -> Kind:
+    """What may stand in the place of a default."""
+    if isinstance(usual, bool):
+        return Flag()
+    if isinstance(usual, int):
+        return Number(low=-(2**31), high=2**31 - 1, whole=True)
+    return Number(infinite=True) if isinstance(usual, float) else Text()
+
+
+def _plain(value: Any) -> Any:
+    """A number that is not finite as the text that a schema reads."""
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value

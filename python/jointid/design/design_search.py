@@ -1,0 +1,78 @@
+"""How a motion is searched for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from jointid import _core
+from jointid.base.argument_checks import whole_number
+
+_POPULATION = 32
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DesignSearch:
+    """Settings of the search for a motion.
+
+    Parameters
+    ----------
+    evaluations : int
+        Motions that are tried, about. Default 3000: a few seconds for 12 s of motion.
+    joints : int
+        How many joints of the prior each motion is judged with. Default 4.
+    rehearsals : int
+        Simulated recordings with noise from which the errors of the motion found are counted. Default 320.
+    seed : int
+        Default 0. The same seed gives the same motion, whatever the number of threads.
+    threads : int
+        0 (default): all.
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used.
+
+    Examples
+    --------
+    >>> search = DesignSearch(evaluations=500, seed=1)
+    """
+
+    evaluations: int = 3000
+    joints: int = 4
+    rehearsals: int = 320
+    seed: int = 0
+    threads: int = 0
+
+    def __post_init__(self) -> None:
+        for name, low, high in (
+            ("evaluations", 2 * _POPULATION, 10_000_000),
+            ("joints", 1, 1000),
+            ("rehearsals", 10, 100_000),
+            ("seed", 0, 2**63 - 1),
+            ("threads", 0, 1024),
+        ):
+            whole_number(f"search.{name}", getattr(self, name), low, high)
+
+    def options(self, share: float) -> _core.GaOptions:
+        """Return the genetic algorithm's options for a share of the evaluations."""
+        generations = round(share * self.evaluations / (_POPULATION - _core.GaOptions().elite)) - 1
+        return _core.GaOptions(
+            population=_POPULATION, generations=max(1, generations), polish=False
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DesignProgress:
+    """How far a search for a motion is.
+
+    Attributes
+    ----------
+    number, total : int
+        Motions that were tried, of all.
+    best : float
+        What the search minimises, of the best motion so far: a relative error.
+    """
+
+    number: int
+    total: int
+    best: float

@@ -1,0 +1,351 @@
+"""Design a motion that tells most about a joint."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.base.argument_checks import require_kind
+from jointid.base.errors import InputError
+from jointid.design.asked import free_parameters
+from jointid.design.balance_noise import assumed_sensors
+from jointid.design.design import COMPLETE, Design
+from jointid.design.design_search import DesignProgress, DesignSearch
+from jointid.design.expectation import expected_errors, what_limits
+from jointid.design.holding import held_by_all
+from jointid.design.judging import Situation
+from jointid.design.known import Known
+from jointid.design.motion_limits import MotionLimits
+from jointid.design.prior import Prior, ranges_of
+from jointid.design.rehearsal import Rehearsal, rehearse
+from jointid.joint.joint import Joint
+from jointid.simulation.arguments import Controller, positive
+from jointid.simulation.plant import control_estimates
+from jointid.simulation.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+Callback = Callable[[DesignProgress], object]
+
+_RUNS = 2  # searches, of which the better motion is taken by rehearsing both
+_COARSE = 2  # times the control period, in the search
+_ALIKE = 0.05  # how much errors may differ by that
+_FIRST = 48  # motions drawn at random, from which follows what can be asked of which joint
+_DETERMINED = 0.15  # relative error that one of them must reach
+_TRIED = 0.2  # of the rehearsals, to tell the motions found apart
+_CONTRADICTED = 1.25  # times the error that the information tells
+_STIFF = 80.0  # 1/s: of a controller that is chosen here
+
+
+def design_excitation(
+    joint: Joint,
+    limits: MotionLimits | Mapping[str, Any] | None = None,
+    duration: float = 12.0,
+    *,
+    controller: Controller | None = None,
+    sensors: _core.Sensors | None = None,
+    parameters: Sequence[str] | None = None,
+    criterion: str = "worst",
+    prior: Prior = None,
+    search: DesignSearch | None = None,
+    control_period: float = 1e-3,
+    known: Known | None = None,
+    callback: Callback | None = None,
+) -> Design:
+    """Return the motion from which a joint is identified best, within limits.
+
+    Motions are sums of sines that start and end at rest. Each is judged by the information in a
+    noise-free simulation with the controller that will drive it, for several joints that the prior
+    allows; a genetic algorithm searches; the best are rehearsed: simulated with noise, and identified.
+
+    Parameters
+    ----------
+    joint : Joint
+        Its model's free parameters are what the motion is for.
+    limits : MotionLimits or mapping, optional
+        Position (low, high) [rad], velocity [rad/s], acceleration [rad/s²], torque [N·m] and range of
+        the sensor [N·m] that the joint itself keeps, whichever of the prior it is. Default: the joint's.
+    duration : float
+        [s]. Default 12.
+    controller : controller, optional
+        That will drive the joint. Default: an adaptive-robust law that believes the nominal joint and
+        does not feed the torque sensor back.
+    sensors : Sensors, optional
+        Default: noise of 0.3 % of the torque limit at the torque sensor; without one, an encoder of 8000
+        counts a motor turn.
+    parameters : sequence of str, optional
+        What the motion is for. Default: all free parameters.
+    criterion : {"worst", "determinant"}
+        What is made small: the largest relative error, or the product of all. Default "worst". A value
+        near 0 counts as a tenth of its range.
+    prior : mapping of str to (low, high), or sequence of mappings, optional
+        Ranges of the free parameters, or values of joints of which the first is the nominal one.
+        Default: the joint's bounds; 30 % around a value without bounds.
+    search : DesignSearch, optional
+    control_period : float
+        Of the controller [s]. Default 0.001.
+    known : Known, optional
+        Information about parameters from recordings that are there.
+    callback : callable, optional
+        Called with a `DesignProgress` now and then; True ends the search early.
+
+    Returns
+    -------
+    Design
+
+    Raises
+    ------
+    InputError
+        An argument that cannot be used, a parameter without a range, limits that leave no motion, or a
+        loop that is not stable for some joint of the prior.
+    KeyboardInterrupt
+        Ctrl-C, within 0.1 s.
+
+    Examples
+    --------
+    >>> design = design_excitation(
+    ...     joint, {"position": (-1.0, 1.0), "velocity": 3.4, "torque": 160.0}
+    ... )  # doctest: +SKIP
+    >>> design.save("motion.toml")  # doctest: +SKIP
+    """
+    require_kind("joint", joint, Joint)
+    settings = DesignSearch() if search is None else search
+    require_kind("search", settings, DesignSearch)
+    held = MotionLimits.of(limits, joint)
+    if criterion not in ("worst", "determinant"):
+        raise InputError("known are worst and determinant", argument="criterion", value=criterion)
+    joint = _with_model(joint)
+    asked = free_parameters(joint, parameters)
+    ranges = ranges_of(joint, asked.names, prior)
+    nominal = joint.with_parameters(ranges.nominal)
+    assert held.torque is not None
+    situation = Situation(
+        joint=joint,
+        asked=asked,
+        ranges=ranges,
+        limits=held,
+        controller=_default_controller(nominal) if controller is None else controller,
+        sensors=assumed_sensors(joint, held.torque) if sensors is None else sensors,
+        duration=positive("duration", duration),
+        control_period=positive("control_period", control_period),
+        criterion=criterion,
+        known=_matrix(known, asked.names),
+    )
+    return _Designing(situation, settings, callback).design(nominal)
+
+
+class _Designing:
+    """One design: the judges, the search, the choice among what it finds."""
+
+    def __init__(
+        self, situation: Situation, settings: DesignSearch, callback: Callback | None
+    ) -> None:
+        self._situation = situation
+        self._settings = settings
+        self._callback = callback
+        self._values = situation.ranges.joints(settings.joints, settings.seed)
+        self._fine = situation.judge(self._values)
+        self._genes = self._fine.genes
+        self._evaluations = 0
+
+    def design(self, nominal: Joint) -> Design:
+        """Search, choose, and hold the limits for many joints."""
+        situation, settings = self._situation, self._settings
+        motions = self._searched(self._judge_of_the_search())
+        motions += self._usual()
+        tried = max(8, round(_TRIED * settings.rehearsals))
+        rehearsals = [
+            rehearse(situation, each, self._values[0], tried, threads=settings.threads)
+            for each in motions
+        ]
+        worth = [
+            self._worth(motion, each) for motion, each in zip(motions, rehearsals, strict=True)
+        ]
+        chosen = motions[int(np.argmin(worth))]
+        trajectory, peaks, problem = held_by_all(situation, chosen, settings.seed, settings.threads)
+        rehearsal = rehearse(
+            situation,
+            trajectory,
+            self._values[0],
+            settings.rehearsals,
+            first=1000,
+            threads=settings.threads,
+        )
+        judgements = self._fine.judge(trajectory.core)
+        errors = expected_errors(situation, judgements, self._values, rehearsal)
+        weakest = max(errors, key=lambda name: errors[name].relative)
+        made = Design(
+            status=COMPLETE if not problem else "limits exceeded",
+            reason=problem,
+            trajectory=trajectory,
+            joint=nominal,
+            controller=situation.controller,
+            sensors=situation.sensors,
+            limits=situation.limits,
+            peaks=peaks,
+            parameters=errors,
+            reference=self._reference(),
+            criterion=situation.criterion,
+            joints=len(self._values),
+            evaluations=self._evaluations,
+            seed=settings.seed,
+            duration=situation.duration,
+            control_period=situation.control_period,
+            weakest=weakest,
+            limited_by="",
+        )
+        return replace(made, limited_by=what_limits(made, situation, judgements[0]))
+
+    def _worth(self, motion: Trajectory, rehearsal: Rehearsal) -> float:
+        """Return what the search minimises, for the nominal joint.
+
+        The information's errors scatter less than those of few rehearsals, which count where they
+        contradict it.
+        """
+        situation, counted = self._situation, rehearsal.rms()
+        values, names = self._values[0], situation.asked.names
+        told = self._fine.judge(motion.core)[0].errors
+        shares = [
+            max(
+                float(told[names.index(name)]),
+                counted[name] / situation.ranges.scale(name, values[name]) / _CONTRADICTED,
+            )
+            for name in situation.asked.wanted
+        ]
+        if situation.criterion == "worst":
+            return max(shares)
+        return float(np.mean(np.log(np.maximum(shares, 1e-12))))
+
+    def _judge_of_the_search(self) -> _core.Excitation:
+        """Return a judge with a longer control period where that says the same of some motions."""
+        random = np.random.default_rng(self._settings.seed)
+        first = random.random((self._genes, _FIRST))
+        judge = self._situation.judge(self._values, coarse=_COARSE)
+        for column in range(3):
+            motion = _trajectory(self._fine, first[:, column])
+            if not _alike(_judged(self._fine, motion), _judged(judge, motion)):
+                judge = self._fine
+                break
+        judge.leave_out(first, largest=_DETERMINED, threads=self._settings.threads)
+        if not any(np.any(each.weight > 0.0) for each in judge.joints):
+            judge = self._situation.judge(self._values, coarse=1)
+        return judge
+
+    def _searched(self, judge: _core.Excitation) -> list[Trajectory]:
+        """Return the best motion of each search."""
+        options = self._settings.options(1.0 / _RUNS)
+        total = _RUNS * options.population * (options.generations + 1)
+        motions = []
+        for run in range(_RUNS):
+            done = self._evaluations
+
+            def observe(generation: _core.Generation, done: int = done) -> bool:
+                if self._callback is None:
+                    return False
+                step = DesignProgress(
+                    number=min(done + generation.evaluations, total),
+                    total=total,
+                    best=generation.best,
+                )
+                return self._callback(step) is True
+
+            found = judge.search(
+                options=options,
+                seed=self._settings.seed,
+                trial=run,
+                threads=self._settings.threads,
+                callback=observe,
+            )
+            self._evaluations += found.evaluations
+            if found.penalty >= _UNSTABLE:
+                raise InputError(
+                    "along none of the motions tried is the loop stable for all joints of the prior",
+                    argument="controller",
+                    remedy="narrow the prior, or give the controller that will drive the joint",
+                )
+            motions.append(_trajectory(judge, found.best))
+            if found.stop == _core.Stop.observer:
+                break
+        return motions
+
+    def _usual(self) -> list[Trajectory]:
+        """Return the thesis's motion where every joint keeps the limits: a design must not be worse."""
+        motion = self._thesis()
+        judged = None if motion is None else _judged(self._fine, motion)
+        if motion is None or judged is None or any(each.excess > 0.0 for each in judged):
+            return []
+        return [motion]
+
+    def _thesis(self) -> Trajectory | None:
+        low, high = self._situation.limits.position
+        if not low <= -math.radians(20.0) <= math.radians(20.0) <= high:
+            return None
+        return Trajectory.thesis(duration=self._situation.duration)
+
+    def _reference(self) -> dict[str, float]:
+        """Return the relative errors of the thesis's motion; empty where it leaves the window."""
+        situation = self._situation
+        motion = self._thesis()
+        judged = None if motion is None else _judged(self._fine, motion)
+        if judged is None:
+            return {}
+        names = situation.asked.names
+        worst = np.max([each.errors for each in judged], axis=0)
+        return {n: float(worst[names.index(n)]) for n in situation.asked.wanted}
+
+
+_UNSTABLE = 1e100  # of the criterion, a relative error
+
+
+def _trajectory(judge: _core.Excitation, genes: Array) -> Trajectory:
+    return Trajectory.sines(**judge.motion(genes))
+
+
+def _judged(judge: _core.Excitation, motion: Trajectory) -> list[_core.MotionJudgement] | None:
+    """Return the judgements; None where the loop is not stable."""
+    try:
+        return list(judge.judge(motion.core))
+    except InputError:
+        return None
+
+
+def _alike(
+    fine: list[_core.MotionJudgement] | None, coarse: list[_core.MotionJudgement] | None
+) -> bool:
+    if fine is None or coarse is None:
+        return fine is None and coarse is None
+    ratios = [np.abs(np.log(a.errors / b.errors)) for a, b in zip(fine, coarse, strict=True)]
+    return bool(np.max(ratios) < _ALIKE)
+
+
+def _with_model(joint: Joint) -> Joint:
+    """Return the joint with a model that has a name: the richest that is usual, where it has none."""
+    return joint if joint.model.named else joint.replace(model=joint.model.replace(name="stribeck"))
+
+
+def _default_controller(nominal: Joint) -> Controller:
+    """Return a law that believes the nominal joint, or one without a model where none compensates it."""
+    try:
+        return _core.AdaptiveRobust(
+            **control_estimates(nominal), friction_velocity="reference", torque_feedback=False
+        )
+    except InputError:
+        inertia = nominal.known_inertia or 1.0
+        return _core.Pd(stiffness=inertia * _STIFF * _STIFF, damping=2.0 * inertia * _STIFF)
+
+
+def _matrix(known: Known | None, names: tuple[str, ...]) -> Array:
+    """Return known information in the order of the free parameters."""
+    matrix = np.zeros((len(names), len(names)))
+    if known is None:
+        return matrix
+    require_kind("known", known, Known)
+    at = [names.index(name) for name in known.names if name in names]
+    own = [place for place, name in enumerate(known.names) if name in names]
+    matrix[np.ix_(at, at)] = known.information[np.ix_(own, own)]
+    return matrix

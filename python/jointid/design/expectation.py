@@ -1,0 +1,105 @@
+"""Expected errors of a motion, and what keeps the largest from being smaller."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.design.design import Design
+from jointid.design.expected_error import ExpectedError
+from jointid.design.judging import Situation
+from jointid.design.rehearsal import Rehearsal
+
+Array = NDArray[np.float64]
+
+_REACHED = 0.95  # of a limit
+_TOGETHER = 0.8  # correlation of errors that hang together
+
+
+def expected_errors(
+    situation: Situation,
+    judgements: Sequence[_core.MotionJudgement],
+    values: Sequence[dict[str, float]],
+    rehearsal: Rehearsal,
+) -> dict[str, ExpectedError]:
+    """Return the expected error of each wanted parameter.
+
+    The errors counted in the rehearsal hold for the nominal joint. They are as much larger than those of
+    the information alone for the other joints. Beside information from other recordings, this motion's counts
+    as much less as that: what is known can only make an error smaller.
+    """
+    asked, ranges = situation.asked, situation.ranges
+    units = _units(situation)
+    counted = rehearsal.rms()
+    alone = _alone(judgements[0].information)
+    factors = [
+        max(1.0, counted[name] / float(alone[place])) if alone[place] > 0.0 else 1.0
+        for place, name in enumerate(asked.names)
+    ]
+    known = bool(np.any(situation.known))
+    if known:
+        stretch = np.outer(factors, factors)
+        errors = [_alone(each.information / stretch + situation.known) for each in judgements]
+    found = {}
+    for place, name in enumerate(asked.names):
+        if name not in asked.wanted:
+            continue
+        scale = ranges.scale(name, values[0][name])
+        if known:
+            stderr = float(errors[0][place])
+            shares = [
+                float(error[place]) / ranges.scale(name, joint[name])
+                for error, joint in zip(errors, values, strict=True)
+            ]
+        else:
+            stderr = counted[name]
+            shares = [factors[place] * float(each.errors[place]) for each in judgements]
+        found[name] = ExpectedError(
+            name=name,
+            unit=units.get(name, ""),
+            value=values[0][name],
+            stderr=stderr,
+            relative=stderr / scale,
+            worst=max(stderr / scale, *(shares[1:] or shares)),
+        )
+    return found
+
+
+def what_limits(design: Design, situation: Situation, judgement: _core.MotionJudgement) -> str:
+    """Return one sentence: limits that are reached, what the error hangs together with, noise and duration."""
+    reasons = []
+    reached = [name.replace("_", " ") for name, share in design.shares.items() if share >= _REACHED]
+    if reached:
+        reasons.append(f"the limit of {' and '.join(reached)}")
+    reasons.append(f"the duration of {design.duration:g} s and the noise of the sensors")
+    text = ", ".join(reasons)
+    partner = _partner(situation, judgement, design.weakest)
+    return text + (f"; its error goes with that of {partner}" if partner else "")
+
+
+def _partner(situation: Situation, judgement: _core.MotionJudgement, weakest: str) -> str:
+    names = situation.asked.names
+    covariance = np.linalg.pinv(judgement.information + situation.known, hermitian=True)
+    size = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    row = np.abs(covariance / np.outer(size, size))[names.index(weakest)]
+    row[names.index(weakest)] = 0.0
+    best = int(np.argmax(row))
+    return f"{names[best]} (correlation {row[best]:.2f})" if row[best] > _TOGETHER else ""
+
+
+def _alone(information: Array) -> Array:
+    """Standard errors of this motion alone."""
+    scale = np.sqrt(np.maximum(np.diag(information), 1e-300))
+    inverse = np.linalg.pinv(information / np.outer(scale, scale), hermitian=True)
+    return np.asarray(np.sqrt(np.maximum(np.diag(inverse), 0.0)) / scale)
+
+
+def _units(situation: Situation) -> dict[str, str]:
+    prismatic = situation.joint.kind == "prismatic"
+    rows = [_core.term(key) for key in situation.asked.terms]
+    units = {row.name: row.unit_prismatic if prismatic else row.unit for row in rows}
+    shapes = {row.name: row.unit_prismatic if prismatic else row.unit for row in _core.shapes()}
+    return units | shapes

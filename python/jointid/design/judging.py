@@ -1,0 +1,200 @@
+"""The core's judge of motions, made from a joint, its prior, its controller and its limits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.base.errors import InputError
+from jointid.design.asked import Asked
+from jointid.design.balance_noise import noise_of_balance
+from jointid.design.motion_limits import MotionLimits
+from jointid.design.prior import Ranges
+from jointid.joint.joint import Joint
+from jointid.simulation.arguments import Controller
+from jointid.simulation.batch import setup_of
+
+Array = NDArray[np.float64]
+
+SINES = 8
+_FADE = 0.5  # s, of a motion of 10 s or more
+_WINDOW = 0.01  # s
+_MARGIN = 0.01  # of each limit, that the reference leaves to the joint
+_TORQUE_MARGIN = 0.03  # the same of the torque, which noise moves
+_FASTEST = 8.0  # Hz
+_UNLIMITED = 1e300
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Situation:
+    """All that a motion is judged by, but the motion.
+
+    Attributes
+    ----------
+    joint : Joint
+    asked : Asked
+    ranges : Ranges
+    limits : MotionLimits
+    controller : Controller
+    sensors : Sensors
+    duration, control_period : float
+        [s]
+    criterion : str
+    known : ndarray, shape (p, p)
+        Information at hand about the free parameters.
+    """
+
+    joint: Joint
+    asked: Asked
+    ranges: Ranges
+    limits: MotionLimits
+    controller: Controller
+    sensors: _core.Sensors
+    duration: float
+    control_period: float
+    criterion: str
+    known: Array
+
+    def judge(self, values: list[dict[str, float]], *, coarse: int = 1) -> _core.Excitation:
+        """Return the judge for joints with these values; `coarse` is a factor of the control period."""
+        period = self.control_period * coarse
+        scenario = _core.Scenario(
+            duration=self.duration,
+            control_period=period,
+            integration_step=period if coarse > 1 else 0.5 * period,
+        )
+        return _core.Excitation(
+            family=self._family(values),
+            scenario=scenario,
+            joints=[self._drawn(each, scenario) for each in values],
+            held=self._held(),
+            criterion=self.criterion,
+            window=max(1, round(max(_WINDOW, self.duration / 5000.0) / period)),
+        )
+
+    def with_values(self, values: Mapping[str, float]) -> Joint:
+        """Return the joint with the torque limit of the motion and these values, without bounds."""
+        torque = self.limits.torque
+        limited = self.joint
+        if torque is not None:
+            limited = limited.replace(limits=replace(limited.limits, torque=torque, current=None))
+        free = {name: limited.parameters[name] for name in limited.parameters if name not in values}
+        return limited.replace(parameters=free).with_parameters(values)
+
+    def setup(
+        self, values: Mapping[str, float], scenario: _core.Scenario, seed: int = 0
+    ) -> _core.Setup:
+        """Return the run of one joint."""
+        return setup_of(self.with_values(values), self.controller, seed, 0.0, None, scenario)[0]
+
+    def _drawn(self, values: dict[str, float], scenario: _core.Scenario) -> _core.DrawnJoint:
+        names = self.asked.names
+        setup = self.setup(values, scenario)
+        scale = np.array([self.ranges.scale(name, values[name]) for name in names])
+        width = np.array([high - low for low, high in (self.ranges.ranges[n] for n in names)])
+        own = np.diag(1.0 / np.maximum(width, 1e-3 * scale) ** 2)
+        inertia = setup.joint.inertia
+        if not self.joint.sensor:
+            inertia += setup.joint.link_inertia
+        return _core.DrawnJoint(
+            setup=setup,
+            columns=self.asked.columns(values),
+            noise=noise_of_balance(
+                self.joint,
+                setup,
+                self.sensors,
+                period=scenario.control_period,
+                sampled=self.control_period,
+                torque=self.torque,
+                velocity=self.limits.velocity,
+            ),
+            scale=scale,
+            weight=np.array([float(name in self.asked.wanted) for name in names]),
+            # What was told of given joints is in `known`; a range tells that much.
+            known=self.known if self.ranges.drawn else self.known + own,
+            inertia=inertia,
+            viscous=max(setup.joint.viscous_positive, setup.joint.viscous_negative),
+        )
+
+    @property
+    def torque(self) -> float:
+        """The largest torque of the drive [N·m]."""
+        assert self.limits.torque is not None  # MotionLimits.of sees to it
+        return self.limits.torque
+
+    def _held(self) -> _core.HeldLimits:
+        limits = self.limits
+        return _core.HeldLimits(
+            lowest=limits.position[0],
+            highest=limits.position[1],
+            velocity=limits.velocity,
+            acceleration=_UNLIMITED,
+            torque=(1.0 - 0.5 * _TORQUE_MARGIN) * self.torque,
+            link_torque=limits.sensor_range or _UNLIMITED,
+        )
+
+    def _family(self, values: list[dict[str, float]]) -> _core.MotionFamily:
+        limits = self.limits
+        low, high = limits.position
+        inside = _MARGIN * (high - low)
+        velocity = (1.0 - _MARGIN) * limits.velocity
+        inertia, viscous, dry = self._needs(values)
+        torque = (1.0 - _TORQUE_MARGIN) * self.torque
+        if dry >= torque:
+            raise InputError(
+                f"friction, load and gravity alone may need {dry:.3g}; no motion is left",
+                argument="torque",
+                value=self.torque,
+                place="limits",
+                remedy="narrow the prior, or allow more torque",
+            )
+        room = max(torque - dry, 0.0) / inertia
+        acceleration = min(room, limits.acceleration or _UNLIMITED)
+        slowest = 2.0 * math.pi * 0.5 / self.duration
+        fastest = min(2.0 * math.pi * _FASTEST, 2.0 * acceleration / velocity)
+        fastest = min(fastest, 0.1 / self.control_period)
+        return _core.MotionFamily(
+            sines=SINES,
+            duration=self.duration,
+            fade=min(_FADE, 0.05 * self.duration),
+            slowest=slowest,
+            fastest=max(fastest, 4.0 * slowest),
+            bounds=_core.MotionBounds(
+                lowest=low + inside,
+                highest=high - inside,
+                velocity=velocity,
+                acceleration=(1.0 - _MARGIN) * limits.acceleration
+                if limits.acceleration is not None
+                else 1e12,
+                torque=torque,
+                inertia=inertia,
+                viscous=viscous,
+                dry=dry,
+            ),
+        )
+
+    def _needs(self, values: list[dict[str, float]]) -> tuple[float, float, float]:
+        """Return inertia, viscous friction, and dry friction with load, of the joint that needs most."""
+        scenario = _core.Scenario(
+            duration=self.duration,
+            control_period=self.control_period,
+            integration_step=self.control_period,
+        )
+        inertia = viscous = dry = 0.0
+        for each in values:
+            made = self.setup(each, scenario).joint
+            inertia = max(inertia, made.inertia + made.link_inertia)
+            viscous = max(viscous, made.viscous_positive, made.viscous_negative)
+            load = sum(abs(torque) for torque, _ in made.weights)
+            load += sum(math.hypot(cos, sin) for _, cos, sin in made.harmonics)
+            friction = max(
+                made.coulomb_positive + made.static_positive,
+                made.coulomb_negative + made.static_negative,
+            )
+            dry = max(dry, friction + load + abs(made.torque_offset) + abs(made.load))
+        return inertia, viscous, dry

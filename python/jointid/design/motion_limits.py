@@ -1,0 +1,149 @@
+"""What a designed motion may not exceed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+from jointid.base.errors import InputError
+from jointid.joint.checks import finite_number, positive_number, set_numbers, suggestion
+from jointid.joint.joint import Joint
+from jointid.simulation.plant import torque_limit
+
+OWN_SHARE = 0.9
+"""Of the joint file's window and velocity, where no other is stated: a session stops at the file's own."""
+
+_OWNER = "limits"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MotionLimits:
+    """Limits of a designed motion; the joint itself keeps them, not only its reference.
+
+    A torque or velocity of a prismatic joint is a force or in m/s.
+
+    Parameters
+    ----------
+    position : tuple of float
+        Lowest and highest [rad].
+    velocity : float
+        Largest magnitude [rad/s].
+    acceleration : float, optional
+        Largest magnitude, of the reference [rad/s²]. Default: not limited.
+    torque : float, optional
+        Largest magnitude, of the drive at the output [N·m]. Default: not limited; `of` takes the joint's.
+    sensor_range : float, optional
+        Largest magnitude of the torque at the joint's torque sensor [N·m]. Default: not limited.
+
+    Raises
+    ------
+    InputError
+        A limit that is not a finite number above 0, or a window that is empty.
+
+    Examples
+    --------
+    >>> limits = MotionLimits(position=(-1.0, 1.0), velocity=3.4, torque=160.0)
+    """
+
+    position: tuple[float, float]
+    velocity: float
+    acceleration: float | None = None
+    torque: float | None = None
+    sensor_range: float | None = None
+
+    def __post_init__(self) -> None:
+        window = self.position
+        if not isinstance(window, list | tuple) or len(window) != 2:
+            raise InputError(
+                "a lowest and a highest position are expected",
+                argument="position",
+                value=window,
+                place=_OWNER,
+            )
+        low, high = (finite_number(_OWNER, "position", bound) for bound in window)
+        if not low < high:
+            raise InputError(
+                "the first must be below the second",
+                argument="position",
+                value=[low, high],
+                place=_OWNER,
+            )
+        object.__setattr__(self, "position", (low, high))
+        others = [item.name for item in fields(self) if item.name != "position"]
+        set_numbers(self, _OWNER, others, positive_number)
+
+    @classmethod
+    def of(cls, given: MotionLimits | Mapping[str, Any] | None, joint: Joint) -> MotionLimits:
+        """Return limits, with those of the joint where none is given.
+
+        Parameters
+        ----------
+        given : MotionLimits, mapping or None
+            A mapping has fields of `MotionLimits`.
+        joint : Joint
+            Its window and velocity count nine tenths, because a session stops at them; its torque (the
+            smaller of torque and current) counts whole.
+
+        Raises
+        ------
+        InputError
+            A name that is no limit, a value that cannot be used, a limit that neither says, or a range of
+            a sensor that the joint does not have.
+
+        Examples
+        --------
+        >>> limits = MotionLimits.of({"position": (-1.0, 1.0), "velocity": 3.4}, joint)
+        """
+        if given is None:
+            stated: dict[str, Any] = {}
+        elif isinstance(given, MotionLimits):
+            stated = given.asdict()
+        elif isinstance(given, Mapping):
+            stated = dict(given)
+        else:
+            raise InputError(
+                "MotionLimits or a mapping of them is expected", argument=_OWNER, value=given
+            )
+        known = [item.name for item in fields(cls)]
+        for name in stated:
+            if name not in known:
+                raise InputError(
+                    f"there is no such limit; {suggestion(name, known)}",
+                    argument=str(name),
+                    place=_OWNER,
+                )
+        own = {name: value for name, value in _own(joint).items() if value is not None}
+        limits = own | {name: value for name, value in stated.items() if value is not None}
+        for name in ("position", "velocity", "torque"):
+            if name not in limits:
+                raise InputError(
+                    "it is needed, and the joint's limits state none", argument=name, place=_OWNER
+                )
+        if limits.get("sensor_range") is not None and not joint.sensor:
+            raise InputError(
+                "the joint has no torque sensor",
+                argument="sensor_range",
+                value=limits["sensor_range"],
+                place=_OWNER,
+            )
+        return cls(**limits)
+
+    def asdict(self) -> dict[str, Any]:
+        """Return the limits that are stated, by name."""
+        values = {item.name: getattr(self, item.name) for item in fields(self)}
+        return {name: value for name, value in values.items() if value is not None}
+
+
+def _own(joint: Joint) -> dict[str, Any]:
+    """What a joint's limits leave to a motion."""
+    known = joint.limits
+    window = known.position
+    if window is not None:
+        middle, half = 0.5 * (window[0] + window[1]), 0.5 * OWN_SHARE * (window[1] - window[0])
+        window = (middle - half, middle + half)
+    return {
+        "position": window,
+        "velocity": None if known.velocity is None else OWN_SHARE * known.velocity,
+        "torque": torque_limit(joint),
+    }

@@ -1,0 +1,154 @@
+"""The joints that a motion has to be good for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
+from jointid.joint.checks import finite_number, suggestion
+from jointid.joint.joint import Joint
+
+Range = tuple[float, float]
+Prior = Mapping[str, Range] | Sequence[Mapping[str, float]] | None
+
+_AROUND = 0.3  # of a value without bounds, to both sides
+_SMALL = 0.1  # of its range: an error of a smaller value counts in this
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ranges:
+    """What is believed of each free parameter.
+
+    Attributes
+    ----------
+    nominal : mapping of str to float
+        The joint in the middle.
+    ranges : mapping of str to (float, float)
+    drawn : tuple of mapping
+        Joints that are given one by one; empty: they are drawn from the ranges.
+    """
+
+    nominal: Mapping[str, float]
+    ranges: Mapping[str, Range]
+    drawn: tuple[Mapping[str, float], ...] = ()
+
+    def scale(self, name: str, value: float) -> float:
+        """Return what an error of a parameter counts in: its value, or a part of its range."""
+        low, high = self.ranges[name]
+        return max(abs(value), _SMALL * (high - low))
+
+    def joints(self, count: int, seed: int) -> list[dict[str, float]]:
+        """Return values of `count` joints, the nominal one first; the others fill the ranges evenly.
+
+        Notes
+        -----
+        A Latin hypercube: each parameter has one joint in each of its equal shares, at its middle.
+        """
+        if self.drawn:
+            return [dict(self.drawn[i % len(self.drawn)]) for i in range(max(1, count))]
+        others = max(0, count - 1)
+        random = np.random.default_rng(seed)
+        found = [dict(self.nominal) for _ in range(count)]
+        for name, (low, high) in self.ranges.items():
+            shares = (random.permutation(others) + 0.5) / max(1, others)
+            for joint, share in zip(found[1:], shares.tolist(), strict=True):
+                joint[name] = low + (high - low) * share
+        return found
+
+
+def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
+    """Return what is believed of the free parameters `names`.
+
+    Raises
+    ------
+    InputError
+        A name that is no free parameter, a range that is empty, or a parameter without any range.
+    """
+    if prior is not None and not isinstance(prior, Mapping):
+        return _given(names, prior)
+    stated = {} if prior is None else dict(prior)
+    for name in stated:
+        if name not in names:
+            raise InputError(
+                f"it is no free parameter; {suggestion(str(name), list(names))}",
+                argument=str(name),
+                place="prior",
+            )
+    ranges: dict[str, Range] = {}
+    nominal: dict[str, float] = {}
+    for name in names:
+        parameter = joint.parameters.get(name)
+        value = None if parameter is None else parameter.value
+        bounds = (None, None) if parameter is None else (parameter.min, parameter.max)
+        if name in stated:
+            ranges[name] = _range(name, stated[name])
+            _inside(name, ranges[name], bounds)
+            value = None
+        elif bounds[0] is not None and bounds[1] is not None:
+            ranges[name] = (bounds[0], bounds[1])
+        elif value is not None:
+            around = sorted((value * (1.0 - _AROUND), value * (1.0 + _AROUND)))
+            ranges[name] = (
+                around[0] if bounds[0] is None else max(around[0], bounds[0]),
+                around[1] if bounds[1] is None else min(around[1], bounds[1]),
+            )
+        else:
+            raise InputError(
+                "nothing says how large it may be",
+                argument=name,
+                place="joint",
+                remedy=(
+                    "give its min and max in the joint",
+                    Action("call", {"prior": {name: ...}}, function="design_excitation"),
+                ),
+            )
+        nominal[name] = 0.5 * sum(ranges[name]) if value is None else value
+    return Ranges(nominal=nominal, ranges=ranges)
+
+
+def _inside(name: str, given: Range, bounds: tuple[float | None, float | None]) -> None:
+    lowest, highest = bounds
+    beyond = lowest if lowest is not None and given[0] < lowest else None
+    beyond = highest if highest is not None and given[1] > highest else beyond
+    if beyond is not None:
+        raise InputError(
+            f"it reaches beyond the joint's bound {beyond:g}",
+            argument=name,
+            value=list(given),
+            place="prior",
+        )
+
+
+def _given(names: Sequence[str], joints: Sequence[Mapping[str, float]]) -> Ranges:
+    found = []
+    for number, each in enumerate(joints):
+        if not isinstance(each, Mapping) or set(each) < set(names):
+            raise InputError(
+                f"a value for each free parameter is expected: {', '.join(names)}",
+                argument=f"prior[{number}]",
+            )
+        found.append({name: finite_number("prior", name, each[name]) for name in names})
+    if not found:
+        raise InputError("at least one joint is expected", argument="prior", value=[])
+    ranges = {
+        name: (min(each[name] for each in found), max(each[name] for each in found))
+        for name in names
+    }
+    return Ranges(nominal=found[0], ranges=ranges, drawn=tuple(found))
+
+
+def _range(name: str, given: object) -> Range:
+    if not isinstance(given, list | tuple) or len(given) != 2:
+        raise InputError(
+            "a lowest and a highest value are expected", argument=name, value=given, place="prior"
+        )
+    low, high = (finite_number("prior", name, bound) for bound in given)
+    if not low < high:
+        raise InputError(
+            "the first must be below the second", argument=name, value=[low, high], place="prior"
+        )
+    return low, high

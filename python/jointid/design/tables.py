@@ -1,0 +1,140 @@
+"""A design as text and as HTML."""
+
+from __future__ import annotations
+
+import math
+
+from jointid.base.error_text import printable
+from jointid.base.html import Html, element, table
+from jointid.design.design import COMPLETE, Design
+
+_LIMITS = {
+    "position": ("rad", "m"),
+    "velocity": ("rad/s", "m/s"),
+    "acceleration": ("rad/s²", "m/s²"),
+    "torque": ("N·m", "N"),
+    "sensor_range": ("N·m", "N"),
+}
+_TITLES = {"acceleration": "acceleration of the reference", "sensor_range": "torque at the sensor"}
+_REACHED = 0.98  # a limit of which so much is used is reached
+
+
+def head(design: Design) -> list[str]:
+    """The titles of the columns."""
+    known = any(each.before is not None for each in design.parameters.values())
+    named = ["parameter", "value", *(["error before"] if known else [])]
+    named += ["expected error", "share", "at worst"]
+    return [*named, *(["thesis's motion"] if design.reference else []), "unit"]
+
+
+def rows(design: Design) -> list[list[str]]:
+    """One row a parameter: value, errors before and expected, as a share, the worst, the thesis's, unit."""
+    found, titles = [], head(design)
+    for each in design.parameters.values():
+        row = [each.name, f"{each.value:.6g}"]
+        if "error before" in titles:
+            row.append("–" if each.before is None else _short(each.before))
+        row += [_short(each.stderr), _share(each.relative), _share(each.worst)]
+        if design.reference:
+            known = design.reference.get(each.name)
+            row.append("–" if known is None else _share(known))
+        found.append([*row, each.unit])
+    return found
+
+
+def limits_held(design: Design) -> list[str]:
+    """One sentence a limit: what is reached of it."""
+    peaks, side = design.peaks, design.joint.kind == "prismatic"
+    low, high = design.limits.position
+    reached = {
+        "velocity": peaks.velocity,
+        "acceleration": peaks.acceleration,
+        "torque": peaks.torque,
+        "sensor_range": peaks.sensor_torque,
+    }
+    lines = []
+    for name, share in design.shares.items():
+        unit = _LIMITS[name][side]
+        if name == "position":
+            text = f"position: {peaks.position[0]:.4g} to {peaks.position[1]:.4g} of {low:.4g} to {high:.4g} {unit}"
+        else:
+            text = f"{_TITLES.get(name, name)}: {reached[name]:.4g} of {getattr(design.limits, name):.4g} {unit}"
+        lines.append(f"{text} ({100.0 * share:.0f} %{', reached' if share >= _REACHED else ''})")
+    return lines
+
+
+def summary(design: Design) -> str:
+    """Return a design as text."""
+    lines = [head(design), *rows(design)]
+    widths = [max(len(line[column]) for line in lines) for column in range(len(lines[0]))]
+    text = [
+        "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
+        for line in lines
+    ]
+    text.insert(1, "  ".join("-" * width for width in widths))
+    return printable(
+        "\n".join([_title(design), *_status(design), "", *text, "", *_remarks(design)])
+    )
+
+
+def html_summary(design: Design) -> Html:
+    """What a notebook shows for a design."""
+    return element(
+        "div",
+        element("b", _title(design)),
+        *(element("p", line) for line in _status(design)),
+        table([list(line) for line in rows(design)], head=head(design)),
+        element("ul", *(element("li", line) for line in _remarks(design))),
+    )
+
+
+def _title(design: Design) -> str:
+    named = f" of '{design.joint.name}'" if design.joint.name else ""
+    return f"designed motion{named}: {design.duration:g} s, {design.status}"
+
+
+def _status(design: Design) -> list[str]:
+    return [design.reason] if design.reason and design.status != COMPLETE else []
+
+
+def _remarks(design: Design) -> list[str]:
+    worst = design.parameters[design.weakest].worst if design.weakest in design.parameters else None
+    weakest = "" if worst is None else f"weakest: {design.weakest}, {_share(worst)} at worst"
+    limited = f"; {design.limited_by}" if design.limited_by else ""
+    judged = (
+        f"judged with {design.joints} joints drawn from what is believed, {design.evaluations} motions tried, "
+        f"criterion {design.criterion}, seed {design.seed}"
+    )
+    return [
+        *([f"{weakest}{limited}"] if weakest else []),
+        *_improved(design),
+        *(f"reaches {line}" for line in limits_held(design)),
+        judged,
+    ]
+
+
+def _improved(design: Design) -> list[str]:
+    """What was weakest before, and by how much this motion makes it better."""
+    shares = {
+        name: each.before * each.relative / each.stderr
+        for name, each in design.parameters.items()
+        if each.before is not None and 0.0 < each.stderr < math.inf
+    }
+    if not shares:
+        return []
+    name = max(shares, key=lambda each: shares[each])
+    if math.isinf(shares[name]):
+        return [f"weakest before: {name}, not determined"]
+    smaller = shares[name] / design.parameters[name].relative
+    return [f"weakest before: {name}, {_share(shares[name])}; {smaller:.2g} times smaller now"]
+
+
+def _share(share: float) -> str:
+    if not math.isfinite(share):
+        return "not determined"
+    percent = 100.0 * share
+    return f"{percent:.0f} %" if percent >= 10.0 else f"{percent:.2g} %"
+
+
+def _short(error: float) -> str:
+    return f"± {error:.2g}" if math.isfinite(error) else "∞"

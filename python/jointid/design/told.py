@@ -1,0 +1,202 @@
+"""What an estimate tells of its joint: information, joints that it leaves possible, the sensor's noise."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.base.argument_checks import require_kind
+from jointid.base.errors import InputError
+from jointid.design.known import Known
+from jointid.design.unseen import unseen_friction
+from jointid.estimate.estimate import Estimate
+from jointid.estimate.intervals import NORMAL, half_widths
+from jointid.joint.joint import Joint
+from jointid.joint.parameters import Parameter
+from jointid.problem.constant_torque import undivided
+
+Array = NDArray[np.float64]
+
+_FACTOR = 3.0  # between a value and the farthest joint that is drawn, where nothing else bounds it
+_WIDEST = 0.5  # of the value: a standard deviation beyond it is drawn as this
+_MEDIAN = 0.6745  # of the magnitude of normal noise, in its standard deviations
+_SIGNED = ("offset", "gravity", "ripple", "position")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Told:
+    """What an estimate tells of a joint's parameters.
+
+    Attributes
+    ----------
+    known : Known
+        Information as wide as the intervals are.
+    values : ndarray, shape (p,)
+    bounds : mapping of str to (float, float)
+        That the user states, by name; None where there is none.
+    scale : mapping of str to float
+        What a parameter of either sign is held against, e.g. an offset against the torque.
+    """
+
+    known: Known
+    values: Array
+    bounds: Mapping[str, tuple[float | None, float | None]] = field(default_factory=dict)
+    scale: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The free parameters."""
+        return self.known.names
+
+    def joints(self, count: int, seed: int = 0) -> tuple[dict[str, float], ...]:
+        """Values of joints that the recordings leave possible; the first are the estimate's.
+
+        A joint is drawn from the distribution of all parameters together: what the recordings tell only of a sum
+        of two stays as it is while the two change. Where a joint would leave a bound, it is drawn nearer to the
+        estimate.
+
+        Parameters
+        ----------
+        count : int
+            How many, 1 or more.
+        seed : int
+            The same seed gives the same joints. Default 0.
+        """
+        width, lower, upper = self._box()
+        told, vectors = np.linalg.eigh(self.known.information * np.outer(width, width))
+        # Not determined at all is drawn as badly determined: a joint ten times the estimate is another joint.
+        lengths = 1.0 / np.sqrt(np.maximum(told, 1.0))
+        drawn = np.random.default_rng(seed).standard_normal((max(count - 1, 0), len(self.names)))
+        found = [dict(zip(self.names, self.values.tolist(), strict=True))]
+        for each in drawn:
+            step = width * (vectors @ (lengths * each))
+            room = np.where(step > 0.0, upper - self.values, self.values - lower)
+            share = float(np.min(np.where(step == 0.0, 1.0, room / np.maximum(abs(step), 1e-300))))
+            inside = np.clip(self.values + min(share, 1.0) * step, lower, upper)
+            found.append(dict(zip(self.names, inside.tolist(), strict=True)))
+        return tuple(found)
+
+    def _box(self) -> tuple[Array, Array, Array]:
+        """The widest standard deviation that is drawn, and the bounds of what is drawn."""
+        scale = np.array([self.scale.get(name, 0.0) for name in self.names])
+        size = np.maximum(np.abs(self.values), scale)
+        size = np.where(size > 0.0, size, 1.0)
+        lower = np.where(scale > 0.0, self.values - _FACTOR * size, self.values / _FACTOR)
+        upper = np.where(scale > 0.0, self.values + _FACTOR * size, self.values * _FACTOR)
+        lower, upper = np.minimum(lower, upper), np.maximum(lower, upper)
+        for i, name in enumerate(self.names):
+            low, high = self.bounds.get(name, (None, None))
+            if low is not None:
+                lower[i] = min(max(lower[i], low), self.values[i])
+            if high is not None:
+                upper[i] = max(min(upper[i], high), self.values[i])
+        return _WIDEST * size, lower, upper
+
+
+def told_by(estimate: Estimate) -> Told:
+    """Return what an estimate tells of the parameters that another motion can tell more of.
+
+    It is as uncertain as the intervals: by chance and by what the recordings show besides. An offset
+    that no motion divides from the friction of the two directions is taken as it is, and so is what a bound holds,
+    but for friction at low speed that was not seen: it is looked for.
+    """
+    assumed, held = unseen_friction(estimate)
+    held |= {each.offset for each in undivided(estimate.free)}
+    # A recording's own parameter, "coulomb[0]", will not be that of the next one.
+    own = {name for name in estimate.free if "[" in name}
+    names = tuple(
+        name for name in estimate.parameters if name in {*estimate.free, *assumed} - held - own
+    )
+    table = estimate.joint.parameters
+    values = {name: estimate.parameters[name].value for name in names} | assumed
+    friction = float(np.max(np.abs(estimate.windows.friction), initial=0.0))
+    return Told(
+        known=Known(names=names, information=_information(estimate, names, held, {*assumed, *own})),
+        values=np.array([values[name] for name in names]),
+        bounds={name: (table[name].min, table[name].max) for name in names if name in table},
+        scale={name: friction for name in names if any(part in name for part in _SIGNED)},
+    )
+
+
+def _information(
+    estimate: Estimate, names: tuple[str, ...], held: set[str], unknown: set[str]
+) -> Array:
+    """Information of these parameters, as wide as their intervals: at what is held, whatever the unknown ones are."""
+    wider = half_widths(estimate) / NORMAL
+    whole = _of_chance(estimate) / np.outer(wider, wider)
+    free = estimate.free
+    kept = [free.index(name) for name in names if name in free and name not in unknown]
+    lost = [free.index(name) for name in free if name in unknown and name not in held]
+    told = whole[np.ix_(kept, kept)]
+    if lost:
+        across = whole[np.ix_(kept, lost)]
+        told = told - across @ np.linalg.pinv(whole[np.ix_(lost, lost)], hermitian=True) @ across.T
+    matrix = np.zeros((len(names), len(names)))
+    places = [names.index(free[place]) for place in kept]
+    matrix[np.ix_(places, places)] = told
+    return matrix
+
+
+def _of_chance(estimate: Estimate) -> Array:
+    """The estimate's information; of one that was saved without it, what the finite part of its covariance tells."""
+    if estimate.information is not None:
+        return estimate.information
+    finite = np.flatnonzero(np.isfinite(np.diag(estimate.covariance)))
+    matrix = np.zeros_like(estimate.covariance)
+    block = estimate.covariance[np.ix_(finite, finite)]
+    scale = np.sqrt(np.maximum(np.diag(block), 1e-80))
+    inverse = np.linalg.pinv(block / np.outer(scale, scale), rcond=1e-10, hermitian=True)
+    matrix[np.ix_(finite, finite)] = inverse / np.outer(scale, scale)
+    return matrix
+
+
+def sensors_of(estimate: Estimate) -> _core.Sensors | None:
+    """Return the sensors as the residuals show them: a torque sensor's noise [N·m]; None without a sensor."""
+    gain, windows = estimate.parameters.get("sensor_gain"), estimate.windows
+    usable = estimate.residuals.samples * (1.0 - estimate.residuals.left_out)
+    if gain is None or usable < 1.0:
+        return None
+    # White noise grows with the root of time; the median leaves out what happens at a reversal.
+    period = float(np.sum(windows.duration)) / usable
+    shares = np.abs(windows.residual) / np.sqrt(windows.duration * period)
+    noise = float(np.median(shares)) / _MEDIAN
+    if estimate.settings.get("residual") != "torque":
+        noise *= abs(gain.value)
+    return _core.Sensors(torque_noise=noise) if noise > 0.0 else None
+
+
+def joint_of(estimate: Estimate, told: Told, given: Joint | None) -> Joint:
+    """Return the joint of a design: the estimate's values, free where another motion can tell more of them.
+
+    Parameters
+    ----------
+    given : Joint, optional
+        With facts that the joint of the identification lacked: a link, limits. Default: none.
+    """
+    if given is not None:
+        require_kind("joint", given, Joint)
+    base = estimate.joint if given is None else given
+    own = estimate.joint
+    if given is not None and (given.kind, given.sensor) != (own.kind, own.sensor):
+        raise InputError(
+            "its kind and its sensor must be those of the estimate's joint",
+            argument="joint",
+        )
+    table = dict(base.parameters)
+    values = dict(zip(told.names, told.values.tolist(), strict=True))
+    for name, parameter in own.parameters.items():
+        if parameter.value is None:  # of another model
+            continue
+        known = table.get(name, parameter)
+        table[name] = Parameter(
+            name=name,
+            value=values.get(name, parameter.value),
+            min=known.min,
+            max=known.max,
+            vary=name in told.names,
+        )
+    return base.replace(parameters=table, model=own.model, torque_offset=own.torque_offset)

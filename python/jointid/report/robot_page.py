@@ -1,0 +1,135 @@
+"""The report of a whole robot as one HTML page that needs no other file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jointid.base.advice import Action
+from jointid.base.argument_checks import require_path
+from jointid.base.files import write_whole
+from jointid.base.html import Html, element, page, table
+from jointid.report.html import STYLE, picture
+from jointid.report.joints_page import WIDE, slug
+from jointid.robot.result import RobotEstimate, RobotJoint
+from jointid.robot.tables import base_rows, head, quality, rows
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def robot_report(estimate: RobotEstimate, action: Callable[[Action], str] = str) -> str:
+    """The report as one HTML page: the table of the joints, the findings, and two pictures a joint.
+
+    Parameters
+    ----------
+    estimate : RobotEstimate
+    action : callable
+        Words the advice of a finding. Default: as at a Python prompt.
+    """
+    title = f"{estimate.robot.name or 'robot'}: friction of {len(estimate.joints)} joints, identified by jointid"
+    body: list[Html | str] = [
+        element("h1", title),
+        element(
+            "p",
+            "All joints together, by integrals of the torque balance over windows, without accelerations; value ± "
+            "standard error.",
+        ),
+        element(
+            "div",
+            table([list(row) for row in rows(estimate)], head=head(estimate), class_="joints"),
+            class_="wide",
+        ),
+        table([list(pair) for pair in quality(estimate)], class_="facts"),
+        element("h2", "Findings", id="findings"),
+        _findings(estimate, action),
+    ]
+    if estimate.base_parameters:
+        body += [
+            element("h2", "Base parameters", id="base-parameters"),
+            element(
+                "p",
+                "Combinations of the links' inertial parameters that motion shows, about each joint's own frame.",
+            ),
+            element(
+                "div",
+                table(
+                    [list(row) for row in base_rows(estimate)],
+                    head=["value", "± std. error", "unit", "combination"],
+                ),
+                class_="wide",
+            ),
+        ]
+    for number, joint in enumerate(estimate.joints.values()):
+        body += _section(estimate, joint, number)
+    return page(title, f"{STYLE}{WIDE}", *body)
+
+
+def save_robot_report(
+    estimate: RobotEstimate, path: str | Path, action: Callable[[Action], str] = str
+) -> Path:
+    """Write the report, whole or not at all; see `save_report`."""
+    target = require_path("path", path)
+    write_whole(target, robot_report(estimate, action).encode())
+    return target
+
+
+def _findings(estimate: RobotEstimate, action: Callable[[Action], str]) -> Html:
+    if not estimate.findings:
+        return element("p", "None.")
+    items = [
+        element("li", element("b", found.code), f": {found.worded(action)}", class_=found.severity)
+        for found in estimate.findings
+    ]
+    return element("ul", *items, class_="findings")
+
+
+def _section(estimate: RobotEstimate, joint: RobotJoint, number: int) -> list[Html | str]:
+    return [
+        element("h2", joint.name, id=f"joint-{slug(joint.name)}"),
+        picture(
+            "Friction: a grey point is the torque over one window less all but this joint's friction, the line is what "
+            "was identified, with the other joints at rest.",
+            lambda axes: _friction(estimate, joint, number, axes[0]),
+        ),
+        picture(
+            "Above: measured and fitted mean torque over each window. Below: the residual.",
+            lambda axes: _windows(joint, axes),
+            rows=2,
+        ),
+    ]
+
+
+def _friction(estimate: RobotEstimate, joint: RobotJoint, number: int, axes: Axes) -> None:
+    windows = joint.windows
+    axes.plot(windows.velocity, windows.friction, ".", color="0.65", label="windows")
+    peak = float(np.abs(windows.velocity).max(initial=0.0))
+    for sign in (-1.0, 1.0):
+        speeds = sign * np.linspace(1e-3, 1.0, 100) * peak
+        p = joint.parameters
+        values = sign * p["coulomb"].value + p["viscous"].value * speeds
+        if "static" in p:
+            decay = np.exp(-p["stribeck"].value * speeds**2)
+            values = values + sign * p["static"].value * decay
+        axes.plot(speeds, values, color="C0", label="identified" if sign > 0.0 else None)
+    slides = estimate.robot.tree.prismatic[number]
+    axes.set_xlabel(f"velocity [{'m/s' if slides else 'rad/s'}]")
+    axes.set_ylabel(f"friction [{'N' if slides else 'N·m'}]")
+    axes.legend()
+
+
+def _windows(joint: RobotJoint, axes: list[Axes]) -> None:
+    windows = joint.windows
+    centre = 0.5 * (windows.start + windows.stop)
+    order = np.lexsort((centre, windows.recording))
+    unit = joint.parameters["coulomb"].unit
+    for values, label in ((windows.measured, "measured"), (windows.fitted, "fitted")):
+        axes[0].plot(centre[order], (values / windows.duration)[order], label=label)
+    axes[0].set_ylabel(f"torque [{unit}]")
+    axes[0].legend()
+    axes[1].plot(centre[order], (windows.residual / windows.duration)[order])
+    axes[1].set_ylabel(f"residual [{unit}]")
+    axes[1].set_xlabel("time [s]")

@@ -1,0 +1,204 @@
+"""The balances of all joints over their windows, as one linear system."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.robot.columns import Column, Summing, linear_columns, rotor_values
+from jointid.robot.integrals import Windows, held_between, inertia_integrals
+from jointid.robot.motion import Motion
+from jointid.robot.robot import Robot
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+_LEAST = 0.2  # of a window that has to be usable
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Rows:
+    """Windows of all joints and recordings, in the order of time; one row a joint and window.
+
+    Attributes
+    ----------
+    joint, piece, window : ndarray of int, shape (rows,)
+        Pieces are counted through all recordings, windows in each piece.
+    start, stop : ndarray, shape (rows,)
+        [s]
+    duration : ndarray, shape (rows,)
+        Integrated time [s].
+    velocity : ndarray, shape (rows,)
+        The joint's mean velocity.
+    torque : ndarray, shape (rows,)
+        Integral of the measured torque [N·m·s].
+    """
+
+    joint: Whole
+    piece: Whole
+    window: Whole
+    start: Array
+    stop: Array
+    duration: Array
+    velocity: Array
+    torque: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Balance:
+    """The linear system: torque = matrix x parameters + inertia x inertial parameters + known.
+
+    Attributes
+    ----------
+    rows : Rows
+    labels : tuple of (int, str)
+        Joint and name of each parameter of `matrix`.
+    least : ndarray
+        Their lower bounds.
+    matrix : ndarray, shape (rows, parameters)
+    inertia : ndarray, shape (rows, directions)
+        By changes of the inertial parameters.
+    basis : ndarray, shape (10 n, directions)
+        These changes, of all links' inertial parameters.
+    known : ndarray, shape (rows,)
+        Integral of the torque of given rotor inertias.
+    standing : ndarray, shape (n,)
+        Share of the time that each joint's balance leaves out.
+    samples : int
+    velocity_noise : ndarray, shape (n,)
+    summings : tuple of Summing
+        One a piece: for columns that are not linear.
+    places : tuple of ndarray of int
+        Numbers of each joint's rows.
+    """
+
+    rows: Rows
+    labels: tuple[tuple[int, str], ...]
+    least: Array
+    matrix: Array
+    inertia: Array
+    basis: Array
+    known: Array
+    standing: Array
+    samples: int
+    velocity_noise: Array
+    summings: tuple[Summing, ...]
+    places: tuple[Whole, ...]
+
+    def windows_of(self, joint: int, piece: int) -> Whole:
+        """Return the windows of a joint's rows in a piece, in their order."""
+        rows, mine = self.rows, self.places[joint]
+        return np.asarray(rows.window[mine[rows.piece[mine] == piece]])
+
+
+def balance_of(robot: Robot, motions: Iterable[Motion], duration: float, basis: Array) -> Balance:
+    """Return the balances of a robot's joints over windows.
+
+    Motions are looked at one after the other; of each only its velocities and windows are kept.
+
+    Parameters
+    ----------
+    robot : Robot
+    motions : iterable of Motion
+    duration : float
+        Of the windows [s].
+    basis : ndarray, shape (10 n, directions)
+        Changes of the inertial parameters that are asked for.
+    """
+    parts = [_part(robot, motion, number, duration, basis) for number, motion in enumerate(motions)]
+    first = parts[0]
+    time = np.array([float(part.summings[0].step.sum()) for part in parts])
+    rows = Rows(
+        **{
+            name: np.concatenate([getattr(part.rows, name) for part in parts])
+            for name in Rows.__dataclass_fields__
+        }
+    )
+    return Balance(
+        rows=rows,
+        labels=first.labels,
+        least=first.least,
+        matrix=np.concatenate([part.matrix for part in parts]),
+        inertia=np.concatenate([part.inertia for part in parts]),
+        basis=basis,
+        known=np.concatenate([part.known for part in parts]),
+        standing=np.average([part.standing for part in parts], axis=0, weights=time),
+        samples=sum(part.samples for part in parts),
+        velocity_noise=np.mean([part.velocity_noise for part in parts], axis=0),
+        summings=tuple(summing for part in parts for summing in part.summings),
+        places=tuple(np.flatnonzero(rows.joint == joint) for joint in range(robot.n)),
+    )
+
+
+def _part(robot: Robot, motion: Motion, number: int, duration: float, basis: Array) -> Balance:
+    """The balances of one recording."""
+    windows = Windows.of(motion.time, duration)
+    summing = Summing.of(robot, motion, windows)
+    columns = linear_columns(robot, motion, summing)
+    inertia = inertia_integrals(robot.tree, motion, summing.usable, windows)
+    given = {
+        motor: (float(value), rotor_values(motor, robot, motion, summing))
+        for motor, value in enumerate(robot.rotor_inertias)
+        if value is not None
+    }
+    starts, stops = motion.time[windows.edges[:-1]], motion.time[windows.edges[1:]]
+    rows, matrices, inertias, known = [], [], [], []
+    for joint in range(robot.n):
+        used = summing(joint, summing.step)
+        kept = np.flatnonzero(used >= _LEAST * duration)
+        matrix = np.zeros((kept.size, len(columns)))
+        for place, column in enumerate(columns):
+            if joint in column.values:
+                matrix[:, place] = column.values[joint][kept]
+        carried = [10 * link + k for link in inertia[joint].links for k in range(10)]
+        spread = inertia[joint].columns[kept] @ basis[carried]
+        sure = np.zeros(kept.size)
+        for value, values in given.values():
+            if joint in values:
+                sure += value * values[joint][kept]
+        travel = summing(joint, np.diff(motion.position[joint]))[kept]
+        torque = summing(joint, held_between(motion.torque[joint], summing.step))[kept]
+        rows.append(
+            Rows(
+                joint=np.full(kept.size, joint),
+                piece=np.full(kept.size, number),
+                window=kept,
+                start=starts[kept],
+                stop=stops[kept],
+                duration=used[kept],
+                velocity=travel / used[kept],
+                torque=torque,
+            )
+        )
+        matrices.append(matrix)
+        inertias.append(spread)
+        known.append(sure)
+    order = np.lexsort(
+        (np.concatenate([row.joint for row in rows]), np.concatenate([row.start for row in rows]))
+    )
+    total = float(summing.step.sum())
+    return Balance(
+        rows=Rows(
+            **{
+                name: np.concatenate([getattr(row, name) for row in rows])[order]
+                for name in Rows.__dataclass_fields__
+            }
+        ),
+        labels=tuple((column.joint, column.name) for column in columns),
+        least=np.array([column.least for column in columns]),
+        matrix=np.concatenate(matrices)[order],
+        inertia=np.concatenate(inertias)[order],
+        basis=basis,
+        known=np.concatenate(known)[order],
+        standing=1.0 - summing.usable @ summing.step / total,
+        samples=motion.time.size,
+        velocity_noise=motion.velocity_noise,
+        summings=(summing,),
+        places=(),
+    )
+
+
+__all__ = ["Balance", "Column", "Rows", "balance_of"]

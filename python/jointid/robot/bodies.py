@@ -1,0 +1,40 @@
+"""Whether a body can have given inertial parameters."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_NEGATIVE = 1e-9  # of the largest eigenvalue: what rounding makes
+
+
+def possible(inertial: Array) -> bool:
+    """Return whether bodies of positive density everywhere can have these inertial parameters.
+
+    They can if the matrix of second moments, first moments and mass is positive semidefinite (Wensing, Kim and Slotine
+    2018); then inertias obey the triangle inequality, too.
+
+    Parameters
+    ----------
+    inertial : ndarray, shape (links, 10)
+        Mass, first moments, Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the frame.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> ball = np.array([[2.0, 0, 0, 0, 0.1, 0, 0.1, 0, 0, 0.1]])
+    >>> possible(ball), possible(-ball)
+    (True, False)
+    """
+    for m, x, y, z, xx, xy, yy, xz, yz, zz in inertial:
+        turning = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        moments = np.empty((4, 4))
+        moments[:3, :3] = 0.5 * np.trace(turning) * np.eye(3) - turning
+        moments[3, :3] = moments[:3, 3] = x, y, z
+        moments[3, 3] = m
+        values = np.linalg.eigvalsh(moments)
+        if values[0] < -_NEGATIVE * max(float(np.abs(values).max()), 1e-12):
+            return False
+    return True

@@ -1,0 +1,60 @@
+"""What is known of a robot beside its URDF, from a file."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from jointid.base.errors import InputError
+
+KEYS = (
+    *("joints", "gear_ratios", "couplings", "rotor_inertias", "zero_offsets", "zero_offsets_deg"),
+    *("gravity", "side"),
+)
+
+
+def read_facts(path: Path) -> dict[str, Any]:
+    """Return the arguments of `Robot.from_urdf` that a facts file holds.
+
+    Raises
+    ------
+    InputError
+        No TOML, or a key that is unknown.
+    OSError
+        The file cannot be read.
+    """
+    try:
+        found = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(
+            f"no TOML: {error}",
+            argument="facts",
+            value=path.name,
+            remedy="write lines like gear_ratios = [32, 32, 45, -48, 45, 32]",
+        ) from None
+    for key in found:
+        if key not in KEYS:
+            raise InputError(
+                f"unknown; the facts of a robot are {', '.join(KEYS)}",
+                argument=key,
+                value=found[key],
+                place=path.name,
+            )
+    if "zero_offsets_deg" in found:
+        if "zero_offsets" in found:
+            raise InputError(
+                "it is given twice", argument="zero_offsets", value=path.name, place=path.name
+            )
+        degrees = found.pop("zero_offsets_deg")
+        try:
+            found["zero_offsets"] = [float(each) * 0.017453292519943295 for each in degrees]
+        except (TypeError, ValueError):
+            raise InputError(
+                "numbers are expected", argument="zero_offsets_deg", value=degrees, place=path.name
+            ) from None
+    # TOML has no null: "free" stands for an inertia that is identified.
+    rotors = found.get("rotor_inertias")
+    if isinstance(rotors, list):
+        found["rotor_inertias"] = [None if each == "free" else each for each in rotors]
+    return found

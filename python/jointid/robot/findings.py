@@ -1,0 +1,243 @@
+"""What a robot's recording and fit show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.wording import number, percent, two_digits
+from jointid.robot.inertia import FREE, InertiaColumns
+from jointid.robot.result import RobotEstimate, RobotJoint
+from jointid.robot.robot import Robot
+from jointid.robot.wrong_facts import WrongFact
+from jointid.robot.zeros import Zeros
+
+_STANDING = 0.1  # of the time: worth saying
+_MOSTLY = 0.35
+_VAGUE = 0.25  # a standard error, of the value
+_MATTERS, _SURE = 0.05, 3.0  # of a link's scale, and in its errors
+_EXPLAINED = 0.85  # of the residual: what scales have to leave at most to blame the URDF
+_MOST_LINKS = 2
+_POOR = 0.15  # of the torque
+_DOUBTFUL = 0.05  # of the torque: worth a look at the given facts
+_FRICTION = ("coulomb", "viscous", "motor_coulomb", "motor_viscous")
+_RANK = {"blocking": 0, "warning": 1, "info": 2}
+
+
+def findings_of(estimate: RobotEstimate, columns: InertiaColumns) -> RobotEstimate:
+    """Return the estimate with its findings, the most severe first."""
+    found = [
+        *_standing(estimate),
+        *(each for joint in estimate.joints.values() for each in _of_joint(joint, estimate)),
+        *_of_inertia(estimate, columns),
+    ]
+    return replace(estimate, findings=tuple(sorted(found, key=lambda each: _RANK[each.severity])))
+
+
+def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
+    """The finding that the recording counts from another pose than the URDF."""
+    turned = [
+        f"{name} by {np.rad2deg(angle):+.0f} degrees"
+        for name, angle in zip(robot.names, zeros.offsets, strict=True)
+        if angle
+    ]
+    return Finding(
+        code="turned_zero",
+        severity="warning",
+        evidence={"before": Measured(zeros.before), "after": Measured(zeros.after)},
+        cause=f"the recording counts {' and '.join(turned)} from another zero than the URDF: with the URDF's inertias "
+        f"{percent(zeros.before)} of the torque stays unexplained without these offsets, and {percent(zeros.after)} "
+        "with them; they are taken into account",
+        advice=(
+            Action(
+                "call",
+                {"zero_offsets": [round(each, 6) for each in zeros.offsets]},
+                text="if that is so",
+                function="Robot.from_urdf",
+            ),
+        ),
+    )
+
+
+def doubtful_joints(estimate: RobotEstimate) -> list[int]:
+    """Joints whose balance says that something that was given is wrong: much is left, or friction would be negative."""
+    return [
+        number
+        for number, joint in enumerate(estimate.joints.values())
+        if joint.relative_residual > _DOUBTFUL
+        or any(joint.parameters[name].at_bound == "min" for name in ("coulomb", "viscous"))
+    ]
+
+
+def named_fact(wrong: WrongFact) -> Finding:
+    """The finding that one fact, if it were otherwise, would explain most of what is left."""
+    first, *others = wrong.joints
+    both = " and ".join(wrong.joints)
+    better = f"{percent(wrong.before)} of a joint's torque stays unexplained as it is, and {percent(wrong.after)} so"
+    coupling = f"motor {first} turns with {' and '.join(others)} by {wrong.coupling or 0.0:g}"
+    texts = {
+        "swapped_joints": f"the columns of {both} are probably exchanged",
+        "swapped_torques": f"the torques of {both} are probably exchanged",
+        "wrong_sign": f"{first} probably turns the other way: its position and torque have the wrong sign, or its gear "
+        "ratio",
+        "wrong_coupling": f"a coupling is probably wrong: if {coupling}, and not as given, much more is explained",
+    }
+    advice: tuple[Action, ...] = (Action("inspect", text="the order and names of the columns"),)
+    if wrong.kind == "wrong_sign":
+        advice = (Action("inspect", text="the sign of this joint's gear ratio and signals"),)
+    if wrong.kind == "wrong_coupling":
+        row = {first: {others[0]: wrong.coupling}}
+        advice = (Action("call", {"couplings": row}, function="Robot.from_urdf"),)
+    return Finding(
+        code=wrong.kind,
+        severity="warning",
+        evidence={"before": Measured(wrong.before), "after": Measured(wrong.after)},
+        cause=f"{texts[wrong.kind]}: {better}",
+        advice=advice,
+    )
+
+
+def _standing(estimate: RobotEstimate) -> Iterator[Finding]:
+    """Joints that hardly move one by one, and in one sentence those that stand still now and then."""
+    shares = {name: joint.residuals.standing for name, joint in estimate.joints.items()}
+    for name, share in shares.items():
+        if share > _MOSTLY:
+            yield Finding(
+                code="standing",
+                evidence={"left_out": Measured(share)},
+                cause=f"{name} stands still, sticks or is too slow in {percent(share)} of the time, which carries no "
+                "information about friction and is left out",
+                advice=(Action("record", text="more motion"),),
+            )
+    some = {name: share for name, share in shares.items() if _STANDING < share <= _MOSTLY}
+    if some:
+        shown = ", ".join(f"{name} {percent(share)}" for name, share in some.items())
+        yield Finding(
+            code="standing",
+            severity="info",
+            evidence={name: Measured(share) for name, share in some.items()},
+            cause=f"joints stand still, stick or are too slow, which carries no information about friction and is left "
+            f"out: {shown} of the time",
+        )
+
+
+def _of_joint(joint: RobotJoint, estimate: RobotEstimate) -> Iterator[Finding]:
+    for name in _FRICTION:
+        p = joint.parameters.get(name)
+        if p is None or p.stderr is None or p.stderr <= _VAGUE * abs(p.value):
+            continue
+        error = "by any amount" if np.isinf(p.stderr) else f"by {two_digits(p.stderr)} {p.unit}"
+        yield Finding(
+            code="undetermined",
+            parameters=(f"{joint.name}.{name}",),
+            evidence={"stderr": Measured(p.stderr, p.unit)} if np.isfinite(p.stderr) else {},
+            cause=f"{name.replace('_', ' ')} of {joint.name} may be off {error} (standard error); its value is "
+            f"{number(p.value)} {p.unit}",
+            advice=(Action("record", text="more and faster motion of this joint"),),
+        )
+    held = [name for name in _FRICTION if name in joint.parameters]
+    held = [name for name in held if joint.parameters[name].at_bound is not None]
+    if held:
+        yield Finding(
+            code="at_bound",
+            parameters=tuple(f"{joint.name}.{name}" for name in held),
+            cause=f"{' and '.join(held)} of {joint.name} would be negative, and is held at 0: the model or a given "
+            "fact is wrong",
+        )
+    residual = joint.relative_residual
+    if residual > _POOR:
+        freed = Action("call", {"inertia": FREE}, function="identify_robot")
+        yield Finding(
+            code="poor_fit",
+            evidence={"relative_residual": Measured(residual)},
+            cause=f"the balance of {joint.name} leaves {percent(residual)} of its torque unexplained",
+            advice=() if estimate.inertia == FREE else (freed,),
+        )
+
+
+def _of_inertia(estimate: RobotEstimate, columns: InertiaColumns) -> Iterator[Finding]:
+    names = estimate.robot.names
+    if columns.dropped:
+        shown = ", ".join(names[each] for each in columns.dropped)
+        yield Finding(
+            code="merged_inertia",
+            severity="info",
+            cause=f"no motion separates the rotor inertia of {shown} from the links' inertias; the base parameters "
+            "contain it",
+        )
+    if columns.fixed:
+        shown = ", ".join(names[each] for each in columns.fixed)
+        yield Finding(
+            code="merged_inertia",
+            severity="info",
+            cause=f"no motion separates the scale of the link that {shown} moves from rotor inertias and other scales; "
+            "it stays at 1",
+            advice=(Action("call", {"rotor_inertias": ...}, function="Robot.from_urdf"),),
+        )
+    if estimate.consistent is False:
+        free = estimate.inertia == FREE
+        nearest = (
+            "of the sets with these base parameters, the one nearest to the URDF's has links"
+            if free
+            else ""
+        )
+        yield Finding(
+            code="impossible_inertia",
+            severity="info" if free else "warning",
+            cause=f"{nearest or 'there are links'} that no body can be: friction and the torque of motion may be "
+            "right, single inertial parameters are not",
+            advice=() if free else (Action("call", {"inertia": FREE}, function="identify_robot"),),
+        )
+    for joint in estimate.joints.values():
+        scale = joint.parameters.get("inertia_scale")
+        if scale is not None and scale.stderr and _far(scale.value, scale.stderr):
+            yield Finding(
+                code="scaled_inertia",
+                severity="info",
+                parameters=(f"{joint.name}.inertia_scale",),
+                evidence={"scale": Measured(scale.value), "stderr": Measured(scale.stderr)},
+                cause=f"the link that {joint.name} moves has {scale.value:.3g} ± {two_digits(scale.stderr)} times the "
+                "URDF's inertial parameters",
+            )
+
+
+def _far(scale: float, stderr: float) -> bool:
+    """Whether a scale is another than 1, by its error and by what matters."""
+    return abs(scale - 1.0) > max(_MATTERS, _SURE * stderr)
+
+
+def wrong_inertias(estimate: RobotEstimate, scaled: RobotEstimate) -> Iterator[Finding]:
+    """Findings that links are heavier or lighter than the URDF has them, where that explains the torque better.
+
+    Parameters
+    ----------
+    estimate : RobotEstimate
+        With the URDF's inertias.
+    scaled : RobotEstimate
+        Of the same, with scales.
+    """
+    if scaled.relative_residual > _EXPLAINED * estimate.relative_residual:
+        return
+    scales = {name: joint.parameters.get("inertia_scale") for name, joint in scaled.joints.items()}
+    far = [
+        (abs(p.value - 1.0) / p.stderr, name, p)
+        for name, p in scales.items()
+        if p is not None and p.stderr and _far(p.value, p.stderr)
+    ]
+    for _, name, p in sorted(far, key=lambda each: each[:2], reverse=True)[:_MOST_LINKS]:
+        yield Finding(
+            code="wrong_inertia",
+            evidence={
+                "scale": Measured(p.value),
+                "stderr": Measured(p.stderr or 0.0),
+                "residual": Measured(estimate.relative_residual),
+                "residual_scaled": Measured(scaled.relative_residual),
+            },
+            cause=f"the link that {name} moves is not as in the URDF: {p.value:.3g} ± {two_digits(p.stderr or 0.0)} "
+            "times its inertial parameters fit",
+            advice=(Action("call", {"inertia": "scaled"}, function="identify_robot"),),
+        )

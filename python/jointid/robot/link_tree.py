@@ -1,0 +1,61 @@
+"""A robot's links as numbers: how they hang on each other, where they are, what they weigh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+INERTIAL = ("m", "mx", "my", "mz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz")
+"""The inertial parameters of a link, in its own frame: mass, first moments, inertia about the frame's origin."""
+INERTIAL_UNITS = ("kg", *("kg·m",) * 3, *("kg·m²",) * 6)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LinkTree:
+    """Links and the joints of one degree of freedom that move them; link k is moved by joint k.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Of the joints.
+    parents : tuple of int
+        Link that each joint sits on, before its own; -1: the base, which stands still.
+    rotations : ndarray, shape (n, 3, 3)
+        Of a joint's frame at position 0, to its parent's frame.
+    translations : ndarray, shape (n, 3)
+        [m]
+    axes : ndarray, shape (n, 3)
+        Unit vectors in the joint's own frame.
+    prismatic : tuple of bool
+        Whether a joint slides along its axis.
+    inertias : ndarray, shape (n, 10)
+        In the order of `INERTIAL`.
+    gravity : ndarray, shape (3,)
+        Acceleration in the base's frame [m/s²].
+    """
+
+    names: tuple[str, ...]
+    parents: tuple[int, ...]
+    rotations: Array
+    translations: Array
+    axes: Array
+    prismatic: tuple[bool, ...]
+    inertias: Array
+    gravity: Array
+
+    @property
+    def pairs(self) -> tuple[tuple[int, int], ...]:
+        """Each joint with each link that it carries, as (joint, link), in the links' order."""
+        return tuple((i, k) for k in range(len(self.names)) for i in self.carriers(k))
+
+    def carriers(self, link: int) -> tuple[int, ...]:
+        """Joints between the base and a link, the base's side first."""
+        found: list[int] = []
+        while link >= 0:
+            found.append(link)
+            link = self.parents[link]
+        return tuple(reversed(found))

@@ -1,0 +1,50 @@
+"""The friction model of each joint, as it is asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from jointid.base.errors import InputError
+from jointid.joint.model import Model
+from jointid.robot.robot import Robot
+
+PLAIN, STRIBECK, AUTO = "coulomb_viscous", "stribeck", "auto"
+_NAMES = (PLAIN, STRIBECK, AUTO)
+
+
+def friction_models(model: object, robot: Robot) -> list[str]:
+    """Return the name of each joint's model.
+
+    Parameters
+    ----------
+    model : Model, str, mapping or None
+        One for all, or by joints' names; a joint that is not named has "auto".
+    robot : Robot
+
+    Raises
+    ------
+    InputError
+        No such joint, or a model that is not known here.
+    """
+    if isinstance(model, Mapping) and any(name in robot.names for name in model):
+        for name in model:
+            if name not in robot.names:
+                raise InputError(
+                    f"the robot has the joints {', '.join(robot.names)}",
+                    argument="model",
+                    value=name,
+                )
+        return [_named(model.get(name)) for name in robot.names]
+    return [_named(model)] * robot.n
+
+
+def _named(model: object) -> str:
+    chosen = Model.of(model)
+    stated = {name for name in chosen.stated() if name != "name"}
+    if chosen.name not in (None, *_NAMES) or stated:
+        raise InputError(
+            f"of a whole robot's friction, one of {', '.join(_NAMES)} is identified",
+            argument="model",
+            value=str(chosen),
+        )
+    return chosen.name or AUTO

@@ -1,0 +1,206 @@
+"""What a recording says of a robot: positions, velocities and torques of its joints, and where they may be used."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid import _core
+from jointid.base.errors import InputError
+from jointid.recording.recording import Recording
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.recording.wide.words import MOTOR
+from jointid.robot.robot import Robot
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+_UNKNOWNS = 6  # of a joint's balance, for the length of its windows
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Motion:
+    """Motion and torque of a robot's joints, all at the joints; rows are joints, in the robot's order.
+
+    Attributes
+    ----------
+    time : ndarray, shape (samples,)
+        [s]
+    position, velocity, torque : ndarray, shape (n, samples)
+    velocity_noise : ndarray, shape (n,)
+        Usual standard deviation of each velocity.
+    motor_position, motor_velocity : ndarray, shape (n, samples)
+        Of the motors, divided by their gear ratios, counted from their own zero.
+    moving : ndarray of bool, shape (n, samples - 1)
+        Intervals between samples in which a joint moves, and the recording has no gap.
+    motor_moving : ndarray of bool, shape (n, samples - 1)
+        The same of the motors.
+    wished : ndarray, shape (n,)
+        Duration of a window that the noise of each velocity asks for [s].
+    at_motor : bool
+        Whether positions were recorded at the motors.
+    """
+
+    time: Array
+    position: Array
+    velocity: Array
+    torque: Array
+    velocity_noise: Array
+    motor_position: Array
+    motor_velocity: Array
+    moving: Flags
+    motor_moving: Flags
+    wished: Array
+    at_motor: bool
+
+    @classmethod
+    def of(
+        cls, recording: RobotRecording, robot: Robot, min_speed: Array, mask_standstill: bool = True
+    ) -> Motion:
+        """Return the motion of a recording.
+
+        Parameters
+        ----------
+        recording : RobotRecording
+        robot : Robot
+        min_speed : ndarray, shape (n,)
+            Below it a joint's friction is not used [rad/s or m/s].
+        mask_standstill : bool
+        """
+        coupling = robot.couplings
+        position, torque, at_motor = _signals(recording, robot)
+        found = [_derived(recording, row, robot.names[k]) for k, row in enumerate(position)]
+        velocity = np.array([each.velocity for each in found])
+        noise = np.array([float(np.median(each.derived.noise)) for each in found])
+        if at_motor:
+            back = np.linalg.inv(coupling)
+            own = (position, velocity)
+            position, velocity = back @ position, back @ velocity
+            noise = np.sqrt((back * back) @ (noise * noise))
+        else:
+            own = (coupling @ position, coupling @ velocity)
+        if robot.zero_offsets is not None:
+            position = position + np.array(robot.zero_offsets)[:, None]
+        masked = _Mask(
+            time=recording.time,
+            gaps=[gap.index for gap in found[0].gaps],
+            standstill=mask_standstill,
+        )
+        signals = zip(position, velocity, torque, min_speed, strict=True)
+        joints = [masked.core(*row) for row in signals]
+        of_joints = np.array([masked.moving(each) for each in joints])
+        of_motors = of_joints.copy()
+        for k in np.flatnonzero(robot.coupled):
+            of_motors[k] = masked.moving(masked.core(own[0][k], own[1][k], torque[k], min_speed[k]))
+        return cls(
+            time=recording.time,
+            position=position,
+            velocity=velocity,
+            torque=torque,
+            velocity_noise=noise,
+            motor_position=own[0],
+            motor_velocity=own[1],
+            moving=of_joints,
+            motor_moving=of_motors,
+            at_motor=at_motor,
+            wished=np.array([masked.wished(each) for each in joints]),
+        )
+
+
+def part_of(recording: RobotRecording, first: int, end: int) -> RobotRecording:
+    """Return some samples of a recording."""
+    if first == 0 and end == recording.samples:
+        return recording
+    fields = recording.fields()
+    for signal in recording.signals:
+        fields[signal] = fields[signal][first:end]
+    fields["extra"] = {}
+    return RobotRecording(**fields)
+
+
+def _signals(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, bool]:
+    """Positions and torques, one row a joint, and whether the positions are of the motors.
+
+    Torques are at the joints, positions of motors divided by the gear ratios.
+    """
+    columns = robot.columns_of(recording)
+    position = np.ascontiguousarray(recording.position[:, columns].T)
+    torque, motor_torque = recording.torque, recording.motor_torque
+    at_motor = (robot.side or recording.side) == MOTOR
+    if at_motor and torque is not None:
+        torque, motor_torque = None, torque
+    if torque is None and motor_torque is None:
+        raise InputError("the recording has no torque", argument="recordings", value=recording.name)
+    ratios = _ratios(recording, robot, columns) if at_motor or torque is None else np.ones(robot.n)
+    if torque is not None:
+        joint_torque = np.array(torque[:, columns].T)
+    else:
+        assert motor_torque is not None
+        joint_torque = robot.couplings.T @ (motor_torque[:, columns].T * ratios[:, None])
+    if not np.all(np.isfinite(joint_torque)):
+        missing = robot.names[int(np.argmin(np.all(np.isfinite(joint_torque), axis=1)))]
+        raise InputError(
+            "this joint has no torque",
+            argument="recordings",
+            value=missing,
+            remedy="name the joints that have one",
+        )
+    return (position / ratios[:, None] if at_motor else position), joint_torque, at_motor
+
+
+def _ratios(recording: RobotRecording, robot: Robot, columns: list[int]) -> Array:
+    if robot.gear_ratios is not None:
+        return np.array(robot.gear_ratios)
+    if recording.gear_ratio is not None:
+        return np.array([recording.gear_ratio[column] for column in columns])
+    raise InputError(
+        "the recording is of the motors; only the gear ratios bring it to the joints",
+        argument="gear_ratios",
+        value=None,
+        remedy="give them to Robot.from_urdf",
+    )
+
+
+def _derived(recording: RobotRecording, position: Array, name: str) -> Recording:
+    """One row of positions as a recording, whose velocity is derived from them."""
+    try:
+        return Recording(time=recording.time, position=position, torque=np.zeros(position.size))
+    except InputError as error:
+        raise error.at(f"joint {name}") from None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Mask:
+    """The mask of one joint's identification, for each joint and motor."""
+
+    time: Array
+    gaps: list[int]
+    standstill: bool
+
+    def core(
+        self, position: Array, velocity: Array, torque: Array, min_speed: float
+    ) -> _core.Recording:
+        return _core.Recording(
+            time=self.time,
+            position=np.ascontiguousarray(position),
+            velocity=np.ascontiguousarray(velocity),
+            torque=np.ascontiguousarray(torque),
+            sensor=None,
+            torque_hold=_core.Hold.linear,
+            gap_after=self.gaps,
+            min_speed=float(min_speed),
+        )
+
+    def moving(self, recording: _core.Recording) -> Flags:
+        try:
+            return np.asarray(_core.usable_intervals(recording, self.standstill), dtype=bool)
+        except InputError:  # it never moves: the others may
+            return np.zeros(self.time.size - 1, dtype=bool)
+
+    def wished(self, recording: _core.Recording) -> float:
+        try:
+            return _core.window_duration(recording, _UNKNOWNS, self.standstill)
+        except InputError:
+            return 0.0

@@ -1,0 +1,76 @@
+"""What a robot's estimate says of a recording that it need not have seen."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.balance import Balance, balance_of
+from jointid.robot.columns import MEANINGS
+from jointid.robot.decays import Decays
+from jointid.robot.motion import Motion
+from jointid.robot.result import RobotEstimate
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobotPrediction:
+    """How well an estimate predicts the torque of a recording.
+
+    Attributes
+    ----------
+    joints : mapping of str to float
+        Norm of each joint's residuals over the norm of its measured integrals.
+    relative_residual : float
+        The same of all joints together.
+    windows : int
+    """
+
+    joints: Mapping[str, float]
+    relative_residual: float
+    windows: int
+
+
+def predict_robot(estimate: RobotEstimate, recording: RobotRecording) -> RobotPrediction:
+    """Predict the window integrals of a recording's torques; see `RobotEstimate.predict`."""
+    robot, settings = estimate.robot, estimate.settings
+    motion = Motion.of(
+        recording, robot, np.array(settings["min_speed"]), bool(settings["mask_standstill"])
+    )
+    whole = estimate.inertial.reshape(-1, 1)
+    balance = balance_of(robot, [motion], float(settings["window_duration"]), whole)
+    told = balance.inertia[:, 0] + balance.known + _friction(estimate, balance)
+    residual, measured = balance.rows.torque - told, balance.rows.torque
+    shares = {}
+    for joint, name in enumerate(robot.names):
+        mine = balance.places[joint]
+        size = float(np.linalg.norm(measured[mine])) or 1.0
+        shares[name] = float(np.linalg.norm(residual[mine])) / size
+    return RobotPrediction(
+        joints=shares,
+        relative_residual=float(np.linalg.norm(residual))
+        / (float(np.linalg.norm(measured)) or 1.0),
+        windows=measured.size,
+    )
+
+
+def _friction(estimate: RobotEstimate, balance: Balance) -> Array:
+    """Integrals of friction, offsets and the rotors that the links' parameters do not contain."""
+    joints = list(estimate.joints.values())
+    total = np.zeros(balance.rows.torque.size)
+    for place, (joint, name) in enumerate(balance.labels):
+        parameter = joints[joint].parameters.get(name)
+        if parameter is not None and name in MEANINGS:
+            total += parameter.value * balance.matrix[:, place]
+    for joint, found in enumerate(joints):
+        static = found.parameters.get("static")
+        if static is not None:
+            decays = Decays(balance=balance, joints=(joint,))
+            value, _ = decays.column(joint, found.parameters["stribeck"].value)
+            total[balance.places[joint]] += static.value * value
+    return total

@@ -1,0 +1,88 @@
+"""A link tree from a URDF, read by pinocchio (the extra `robot`)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jointid.base.errors import InputError
+from jointid.robot.link_tree import LinkTree
+
+
+def tree_of_urdf(path: Path, joints: Sequence[str] | None, gravity: Sequence[float]) -> LinkTree:
+    """Return the links that some joints of a URDF move; its other joints stand at zero.
+
+    Parameters
+    ----------
+    path : Path
+    joints : sequence of str, optional
+        Default: all that move.
+    gravity : sequence of float
+        In the base's frame [m/s²].
+
+    Raises
+    ------
+    InputError
+        pinocchio is not installed, the file is no URDF, it has no such joint, or a joint has several degrees of
+        freedom.
+    """
+    try:
+        import pinocchio
+    except ModuleNotFoundError:
+        raise InputError(
+            "reading a robot needs pinocchio",
+            argument="path",
+            value=path.name,
+            remedy="install the extra: pip install 'jointid[robot]'",
+        ) from None
+    text = path.read_text(encoding="utf-8")
+    try:
+        model: Any = pinocchio.buildModelFromXML(text)
+    except (ValueError, RuntimeError) as error:
+        raise InputError(f"no URDF: {error}", argument="path", value=path.name) from None
+    names = list(model.names)[1:]
+    kept = names if joints is None else list(joints)
+    for name in kept:
+        if name not in names:
+            shown = ", ".join(names)
+            raise InputError(
+                f"the URDF has no such moving joint; it has {shown}", argument="joints", value=name
+            )
+    if not kept:
+        raise InputError("the URDF has no moving joint", argument="path", value=path.name)
+    locked = [model.getJointId(name) for name in names if name not in kept]
+    if locked:
+        model = pinocchio.buildReducedModel(model, locked, pinocchio.neutral(model))
+    order = list(model.names)[1:]
+    axes = [_axis(model, name) for name in order]
+    return LinkTree(
+        names=tuple(order),
+        parents=tuple(int(parent) - 1 for parent in list(model.parents)[1:]),
+        rotations=np.array([place.rotation for place in list(model.jointPlacements)[1:]]),
+        translations=np.array([place.translation for place in list(model.jointPlacements)[1:]]),
+        axes=np.array([axis for axis, _ in axes]),
+        prismatic=tuple(slides for _, slides in axes),
+        inertias=np.array([each.toDynamicParameters() for each in list(model.inertias)[1:]]),
+        gravity=np.array(gravity, dtype=np.float64),
+    )
+
+
+def _axis(model: Any, name: str) -> tuple[np.ndarray[Any, np.dtype[np.float64]], bool]:
+    """A joint's axis, and whether it slides along it."""
+    joint = model.joints[model.getJointId(name)]
+    if joint.nv != 1:
+        raise InputError(
+            "it has several degrees of freedom; hinges and slides are understood",
+            argument="joints",
+            value=name,
+            remedy="leave it out of joints",
+        )
+    state = joint.createData()
+    neutral = np.array([1.0, 0.0]) if joint.nq == 2 else np.zeros(1)
+    joint.calc(state, neutral, np.zeros(1))
+    motion = np.asarray(state.S, dtype=np.float64).ravel()
+    slides = bool(np.any(motion[:3] != 0.0))
+    return (motion[:3] if slides else motion[3:]), slides

@@ -1,0 +1,207 @@
+"""The result of `identify_robot`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from jointid.base.argument_checks import require_kind
+from jointid.base.errors import InputError
+from jointid.estimate.findings import Finding
+from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
+from jointid.problem.window_table import WindowTable
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.robot import Robot
+
+if TYPE_CHECKING:
+    from jointid.robot.prediction import RobotPrediction
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RobotJoint:
+    """One joint of a robot's estimate.
+
+    Attributes
+    ----------
+    name : str
+    model : str
+        "coulomb_viscous" or "stribeck".
+    parameters : mapping of str to ParameterEstimate
+        At the joint: "coulomb", "viscous" and "torque_offset"; "static" and "stribeck" with the model "stribeck"; of
+        a motor that turns with several joints "motor_coulomb" and "motor_viscous"; "rotor_inertia" where it is
+        identified, "inertia_scale" with ``inertia="scaled"``.
+    residuals : ResidualStatistics
+    windows : WindowTable
+        Its `friction` is the torque less all but this joint's friction.
+    """
+
+    name: str
+    model: str
+    parameters: Mapping[str, ParameterEstimate]
+    residuals: ResidualStatistics
+    windows: WindowTable
+
+    @property
+    def relative_residual(self) -> float:
+        """Norm of the residuals over the norm of the measured integrals."""
+        return self.residuals.relative
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RobotEstimate:
+    """Friction and inertia of a whole robot.
+
+    Attributes
+    ----------
+    joints : mapping of str to RobotJoint
+        By the URDF's names.
+    inertia : str
+        "urdf", "scaled" or "free".
+    base_parameters : mapping of str to ParameterEstimate
+        With ``inertia="free"``: the combinations of inertial parameters that motion shows.
+    inertial : ndarray, shape (n, 10)
+        Inertial parameters of all links, as far as they are known: m, m·c, I about the joint's frame. With
+        ``inertia="free"`` one set of many with these base parameters; its single values mean nothing.
+    consistent : bool or None
+        Whether a body can have these inertial parameters; None: not known.
+    relative_residual : float
+        Norm of all joints' residuals over the norm of their measured integrals.
+    free : tuple of str
+        The free parameters, "joint.name", in the order of `covariance`.
+    covariance : ndarray
+    condition : float
+    findings : tuple of Finding
+    robot : Robot
+    settings : mapping
+    seconds : float
+        Wall time.
+    """
+
+    joints: Mapping[str, RobotJoint]
+    inertia: str
+    base_parameters: Mapping[str, ParameterEstimate]
+    inertial: Array
+    consistent: bool | None
+    relative_residual: float
+    free: tuple[str, ...]
+    covariance: Array
+    condition: float
+    findings: tuple[Finding, ...]
+    robot: Robot = field(repr=False)
+    settings: Mapping[str, Any] = field(repr=False)
+    seconds: float = field(default=0.0, repr=False)
+
+    @property
+    def warnings(self) -> tuple[Finding, ...]:
+        """Findings that may bias values or make them unusable."""
+        return tuple(found for found in self.findings if found.severity != "info")
+
+    def friction(self, velocity: ArrayLike) -> Array:
+        """Friction torque of all joints at given speeds, with what coupled motors add.
+
+        Parameters
+        ----------
+        velocity : array_like, shape (n,) or (samples, n)
+            Of the joints [rad/s or m/s].
+
+        Returns
+        -------
+        ndarray
+            Of the same shape [N·m or N].
+
+        Raises
+        ------
+        InputError
+            Not one number a joint.
+        """
+        from jointid.robot.friction import friction_of
+
+        try:
+            speeds = np.asarray(velocity, dtype=np.float64)
+        except (TypeError, ValueError):
+            speeds = np.zeros(0)
+        if speeds.ndim not in (1, 2) or speeds.shape[-1] != self.robot.n:
+            raise InputError(
+                f"{self.robot.n} numbers are expected, one a joint",
+                argument="velocity",
+                value=velocity,
+            )
+        return friction_of(self, speeds)
+
+    def predict(self, recording: RobotRecording) -> RobotPrediction:
+        """Predict the torques of a recording, and compare them with the measured ones, over windows as identified.
+
+        Parameters
+        ----------
+        recording : RobotRecording
+            Of the same robot; it need not be one that the estimate was made from.
+
+        Returns
+        -------
+        RobotPrediction
+            Relative residuals: of each joint, and of all.
+
+        Raises
+        ------
+        InputError
+            The recording lacks a joint, its torque, or the gear ratios.
+        """
+        from jointid.robot.prediction import predict_robot
+
+        require_kind("recording", recording, RobotRecording)
+        return predict_robot(self, recording)
+
+    def report(self) -> str:
+        """Return the table of the joints and the findings as text."""
+        from jointid.robot.tables import text_report
+
+        return text_report(self)
+
+    def summary(self) -> str:
+        """Return the table of the joints as text."""
+        from jointid.robot.tables import text_summary
+
+        return text_summary(self)
+
+    def document(self) -> dict[str, Any]:
+        """Return the result in JSON types."""
+        from jointid.robot.document import document_of
+
+        return document_of(self)
+
+    def to_json(self) -> str:
+        """Return the result as JSON."""
+        from jointid.robot.document import json_of
+
+        return json_of(self)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the result as JSON, whole or not at all.
+
+        Raises
+        ------
+        InputError
+            The path does not end in ``.json``, or its folder does not exist.
+        OSError
+            The file cannot be written; an existing one is untouched.
+        """
+        from jointid.robot.document import save_json
+
+        return save_json(self, path)
+
+    def __str__(self) -> str:
+        return self.report()
+
+    def __repr__(self) -> str:
+        names = ", ".join(self.joints)
+        return (
+            f"<RobotEstimate {self.robot.name!r}: {names}; inertia {self.inertia}, residual "
+            f"{100.0 * self.relative_residual:.2f} %, {len(self.warnings)} warnings>"
+        )

@@ -1,0 +1,149 @@
+"""The linear parameters of all joints at once, each joint weighted by its own residual."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.identification.inference.segments import Segments, usual_length
+from jointid.robot.products import Products, powers, root_of, weighted
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+_ROUNDS = 6  # of weights and values; they settle within three
+_SETTLED = 1e-4
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Known:
+    """What is known of the parameters beforehand: rows of unit variance beside those of the recording.
+
+    Attributes
+    ----------
+    matrix : ndarray, shape (rows, parameters)
+    wanted : ndarray, shape (rows,)
+    """
+
+    matrix: Array
+    wanted: Array
+
+    @classmethod
+    def nothing(cls, count: int) -> Self:
+        """Nothing is known of so many parameters."""
+        return cls(matrix=np.zeros((0, count)), wanted=np.zeros(0))
+
+    def padded(self, count: int) -> Known:
+        """The same, with further parameters of which nothing is known."""
+        more = np.zeros((len(self.wanted), count))
+        return Known(matrix=np.hstack([self.matrix, more]), wanted=self.wanted)
+
+    def tightened(self, factor: float) -> Known:
+        """The same, as many times as certain."""
+        return Known(matrix=factor * self.matrix, wanted=factor * self.wanted)
+
+    def scaled(self, norms: Array) -> Array:
+        """Its products, for columns and a target that are divided by these lengths."""
+        rows = np.column_stack([self.matrix * (norms[-1] / norms[:-1]), self.wanted])
+        return np.asarray(rows.T @ rows)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Solution:
+    """Values of a bounded, weighted least-squares problem.
+
+    Attributes
+    ----------
+    values : ndarray, shape (parameters,)
+        As scaled.
+    at_bound : ndarray of bool, shape (parameters,)
+    scatter : ndarray, shape (joints,)
+        Root mean square of each joint's residuals, in units of the target's length.
+    """
+
+    values: Array
+    at_bound: NDArray[np.bool_]
+    scatter: Array
+
+
+def solved(products: Products, least: Array, known: Known) -> Solution:
+    """Return the values that fit best, with the weight of each joint from its own residuals.
+
+    Parameters
+    ----------
+    products : Products
+    least : ndarray, shape (parameters,)
+        Lower bounds.
+    known : Known
+        Of the parameters beforehand.
+    """
+    sums = products.sums.sum(axis=0)
+    said = known.scaled(products.norms)
+    scatter = scatter_of(sums[:, -1, -1], products.counts)
+    values, at_bound = np.zeros(least.size), np.zeros(least.size, dtype=bool)
+    for _ in range(_ROUNDS):
+        values, at_bound = bounded(weighted(sums, scatter) + said, least)
+        before, scatter = scatter, scatter_of(powers(sums, values), products.counts)
+        if np.all(np.abs(scatter - before) <= _SETTLED * before):
+            break
+    return Solution(values=values, at_bound=at_bound, scatter=scatter)
+
+
+def bounded(product: Array, least: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Return the least-squares values above lower bounds, and which are at them.
+
+    Parameters
+    ----------
+    product : ndarray, shape (parameters + 1, parameters + 1)
+        Products of the columns and, last, of the target.
+    least : ndarray, shape (parameters,)
+        0 or minus infinity, which no scale changes.
+    """
+    from scipy.optimize import lsq_linear
+
+    count = least.size
+    present = np.flatnonzero(np.diag(product)[:count] > 0.0)
+    values, at_bound = np.zeros(count), np.zeros(count, dtype=bool)
+    if not present.size:
+        return values, at_bound
+    root = root_of(product[np.ix_(np.append(present, count), np.append(present, count))])
+    left, right = root[:, :-1], root[:, -1]
+    free = np.linalg.lstsq(left, right, rcond=1e-10)[0]
+    lower = least[present]
+    if np.any(free < lower):
+        found = lsq_linear(left, right, bounds=(lower, np.inf), method="bvls")
+        held = found.active_mask < 0
+        at_bound[present] = held
+        free = np.where(held, lower, found.x)
+    values[present] = free
+    return values, at_bound
+
+
+def scatter_of(power: Array, count: Whole) -> Array:
+    """Root mean square by joint; of nothing 1."""
+    rms = np.sqrt(power / np.maximum(count, 1))
+    return np.where(rms > 0.0, rms, 1.0)
+
+
+def time_segments(start: Array, stop: Array, piece: Whole) -> Segments:
+    """Return segments of equal duration over rows in the order of time: all joints of a stretch are one.
+
+    What one joint's model misses acts on its neighbours in the same stretch.
+    """
+    first = np.flatnonzero(np.diff(piece, prepend=-1))
+    spans = [
+        float(stop[low:high].max() - start[low])
+        for low, high in zip(first, [*first[1:], len(start)], strict=True)
+    ]
+    length = usual_length(sum(spans))
+    cuts, between = [0], [0]
+    for low, high, span in zip(first, [*first[1:], len(start)], spans, strict=True):
+        count = max(1, round(span / length))
+        for shift, found in ((0.0, cuts), (0.5, between)):
+            ends = start[low] + span * (np.arange(1, count) - shift) / count
+            found += [int(low + each) for each in np.searchsorted(start[low:high], ends)]
+            found.append(int(high))
+    return Segments(length=length, cuts=(np.unique(cuts), np.unique(between)))

@@ -1,0 +1,129 @@
+"""A robot's estimate as text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from jointid.base.advice import Action
+from jointid.base.error_text import printable
+from jointid.estimate.wording import number, percent, two_digits
+from jointid.joints.tables import value_with_error
+from jointid.robot.columns import MEANINGS
+from jointid.robot.result import RobotEstimate
+
+
+def shown_parameters(estimate: RobotEstimate) -> list[str]:
+    """Names of the parameters that some joint has, in the order of the table."""
+    present = {name for joint in estimate.joints.values() for name in joint.parameters}
+    return [name for name in MEANINGS if name in present]
+
+
+def head(estimate: RobotEstimate) -> list[str]:
+    """The table's head."""
+    units: dict[str, str] = {}
+    for joint in estimate.joints.values():
+        for name, parameter in joint.parameters.items():
+            units.setdefault(name, parameter.unit)
+    shown = [
+        f"{name} [{units[name]}]" if units[name] else name for name in shown_parameters(estimate)
+    ]
+    return ["joint", "model", *shown, "residual", "left out", "warnings"]
+
+
+def rows(estimate: RobotEstimate) -> list[list[str]]:
+    """One row a joint, in the order of the head."""
+    names = shown_parameters(estimate)
+    return [
+        [
+            joint.name,
+            joint.model,
+            *(value_with_error(joint.parameters.get(name)) for name in names),
+            f"{100.0 * joint.relative_residual:.1f} %",
+            percent(joint.residuals.left_out),
+            _codes(estimate, joint.name),
+        ]
+        for joint in estimate.joints.values()
+    ]
+
+
+def _codes(estimate: RobotEstimate, name: str) -> str:
+    mine = [
+        found.code
+        for found in estimate.warnings
+        if f"{name} " in f"{found.cause} "
+        or any(p.startswith(f"{name}.") for p in found.parameters)
+    ]
+    return ", ".join(dict.fromkeys(mine)) or "none"
+
+
+def quality(estimate: RobotEstimate) -> list[tuple[str, str]]:
+    """How good the fit is and what it rests on, as label and text."""
+    inertia = {
+        "urdf": "as the URDF has it",
+        "scaled": "the URDF's, scaled link by link",
+        "free": f"identified: {len(estimate.base_parameters)} base parameters",
+    }[estimate.inertia]
+    windows = sum(joint.residuals.windows for joint in estimate.joints.values())
+    duration = 1e3 * float(estimate.settings.get("window_duration", 0.0))
+    return [
+        ("inertia", inertia),
+        (
+            "fit",
+            f"relative residual {100.0 * estimate.relative_residual:.2f} % of all joints' torque",
+        ),
+        ("windows", f"{windows} of {duration:.4g} ms, all joints"),
+        ("condition", f"{estimate.condition:.3g}"),
+        ("time", f"{estimate.seconds:.2f} s"),
+    ]
+
+
+def base_rows(estimate: RobotEstimate) -> list[list[str]]:
+    """The table of base parameters: value, error, unit, combination."""
+    return [
+        [
+            number(p.value),
+            "–" if p.stderr is None else two_digits(p.stderr),
+            p.unit,
+            p.name,
+        ]
+        for p in estimate.base_parameters.values()
+    ]
+
+
+def text_summary(estimate: RobotEstimate) -> str:
+    """The table of the joints."""
+    return printable("\n".join(_aligned([head(estimate), *rows(estimate)])))
+
+
+def text_report(estimate: RobotEstimate, action: Callable[[Action], str] = str) -> str:
+    """The estimate as text.
+
+    Parameters
+    ----------
+    estimate : RobotEstimate
+    action : callable
+        Words the advice of a finding. Default: as at a Python prompt.
+    """
+    lines = [f"jointid robot estimate — {estimate.robot.name}; value ± standard error", ""]
+    lines += [*_aligned([head(estimate), *rows(estimate)]), ""]
+    width = max(len(label) for label, _ in quality(estimate))
+    lines += [f"{label.ljust(width)}  {text}" for label, text in quality(estimate)]
+    if estimate.base_parameters:
+        table = [["value", "± std. error", "unit", "base parameter"], *base_rows(estimate)]
+        lines += ["", *_aligned(table)]
+    lines += [
+        "",
+        *(f"{each.severity} ({each.code}): {each.worded(action)}" for each in estimate.findings),
+    ]
+    return printable("\n".join(lines).rstrip())
+
+
+def _aligned(table: list[list[str]]) -> list[str]:
+    widths = [max(len(row[column]) for row in table) for column in range(len(table[0]))]
+    lines = []
+    for index, row in enumerate(table):
+        cells = [cell.ljust(width) for cell, width in zip(row, widths, strict=True)]
+        lines.append("  ".join(cells).rstrip())
+        if index == 0:
+            lines.append("  ".join("-" * width for width in widths))
+    return lines

@@ -1,0 +1,169 @@
+"""Facts that may be wrong where a robot's balance leaves much unexplained: each is tried otherwise.
+
+A joint's columns exchanged with another's, a sign, a coupling that is missing or has another sign: with the URDF's
+inertias such an error leaves a large part of the torque unexplained, and the right fact much less. What is found is
+named, not used: the user knows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.robot.motion import Motion
+from jointid.robot.quick_look import misfits, thinned
+from jointid.robot.robot import Robot
+
+Array = NDArray[np.float64]
+
+_BETTER = 0.6  # of the misfit as given: what another fact has to reach
+_SLOW = 0.02  # of a peak speed: standing still, for a quick look
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WrongFact:
+    """A fact that fits clearly better than the given one.
+
+    Attributes
+    ----------
+    kind : str
+        "swapped_joints", "swapped_torques", "wrong_sign" or "wrong_coupling".
+    joints : tuple of str
+    coupling : float or None
+        What the matrix should have in the row of the first joint, at the second.
+    before, after : float
+        Root mean square of the joints' relative residuals with the URDF's inertias.
+    """
+
+    kind: str
+    joints: tuple[str, ...]
+    coupling: float | None
+    before: float
+    after: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Trial:
+    kind: str
+    joints: tuple[int, ...]
+    robot: Robot
+    motions: list[Motion]
+    coupling: float | None = None
+
+
+def wrong_fact(
+    robot: Robot, motions: Sequence[Motion], duration: float, suspects: Sequence[int]
+) -> WrongFact | None:
+    """Return the one fact about some joints that explains most if it is otherwise, or None.
+
+    Parameters
+    ----------
+    robot : Robot
+    motions : sequence of Motion
+    duration : float
+        Of the windows [s].
+    suspects : sequence of int
+        Joints whose balance is poor.
+    """
+    thin = [thinned(motion) for motion in motions]
+    before = misfits(robot, thin, duration)
+    best, found = _BETTER, None
+    for trial in _trials(robot, thin, set(suspects)):
+        after = misfits(trial.robot, trial.motions, duration)
+        share = min(a / b if b > 0.0 else 1.0 for a, b in zip(after, before, strict=True))
+        if share < best:
+            best = share
+            found = WrongFact(
+                kind=trial.kind,
+                joints=tuple(robot.names[joint] for joint in trial.joints),
+                coupling=trial.coupling,
+                before=before[1],
+                after=after[1],
+            )
+    return found
+
+
+def _trials(robot: Robot, motions: list[Motion], suspects: set[int]) -> Iterator[_Trial]:
+    n = robot.n
+    for i in range(n):
+        for j in range(i + 1, n):
+            if suspects & {i, j}:
+                order = np.arange(n)
+                order[[i, j]] = j, i
+                both = [_remade(each, robot, order=order, torque=order) for each in motions]
+                yield _Trial(kind="swapped_joints", joints=(i, j), robot=robot, motions=both)
+                torques = [_remade(each, robot, torque=order) for each in motions]
+                yield _Trial(kind="swapped_torques", joints=(i, j), robot=robot, motions=torques)
+    for i in sorted(suspects):
+        sign = np.ones(n)
+        sign[i] = -1.0
+        turned = [_remade(each, robot, sign=sign) for each in motions]
+        yield _Trial(kind="wrong_sign", joints=(i,), robot=robot, motions=turned)
+    for i, j in np.argwhere(robot.couplings - np.diag(np.diag(robot.couplings))).tolist():
+        matrix = robot.couplings.copy()
+        matrix[i, j], matrix[j, i] = 0.0, matrix[i, j]
+        yield _coupled(robot, motions, matrix, (j, i))
+    for i in range(n):
+        for j in (i - 1, i + 1):
+            if not 0 <= j < n or not suspects & {i, j}:
+                continue
+            for value in {0.0, 1.0, -1.0} - {float(robot.couplings[i, j])}:
+                matrix = robot.couplings.copy()
+                matrix[i, j] = value
+                if abs(np.linalg.det(matrix)) < 1e-9:
+                    continue
+                yield _coupled(robot, motions, matrix, (i, j))
+
+
+def _coupled(robot: Robot, motions: list[Motion], matrix: Array, at: tuple[int, int]) -> _Trial:
+    other = replace(robot, couplings=matrix)
+    made = [_remade(each, other, coupled_before=robot.couplings) for each in motions]
+    return _Trial(
+        kind="wrong_coupling", joints=at, robot=other, motions=made, coupling=float(matrix[at])
+    )
+
+
+def _remade(
+    motion: Motion,
+    robot: Robot,
+    *,
+    order: NDArray[np.int64] | None = None,
+    torque: NDArray[np.int64] | None = None,
+    sign: Array | None = None,
+    coupled_before: Array | None = None,
+) -> Motion:
+    """The motion as other facts have it: columns in another order, other signs, other couplings."""
+    before = robot.couplings if coupled_before is None else coupled_before
+    shift = np.array(robot.zero_offsets or (0.0,) * robot.n)[:, None]
+    # As recorded: of the motors, or of the joints.
+    matrix = before if motion.at_motor else np.eye(robot.n)
+    position, velocity = matrix @ (motion.position - shift), matrix @ motion.velocity
+    pushed = np.linalg.solve(matrix.T, motion.torque)
+    if order is not None:
+        position, velocity = position[order], velocity[order]
+    if torque is not None:
+        pushed = pushed[torque]
+    if sign is not None:
+        position, velocity, pushed = (sign[:, None] * each for each in (position, velocity, pushed))
+    matrix = robot.couplings if motion.at_motor else np.eye(robot.n)
+    back = np.linalg.inv(matrix)
+    joints, speeds = back @ position, back @ velocity
+    motors, rates = robot.couplings @ joints, robot.couplings @ speeds
+    return replace(
+        motion,
+        position=joints + shift,
+        velocity=speeds,
+        torque=matrix.T @ pushed,
+        motor_position=motors,
+        motor_velocity=rates,
+        moving=_moving(speeds),
+        motor_moving=_moving(rates),
+    )
+
+
+def _moving(velocity: Array) -> NDArray[np.bool_]:
+    fast = np.abs(velocity) > _SLOW * np.abs(velocity).max(axis=1, keepdims=True)
+    return np.asarray(fast[:, 1:] & fast[:, :-1])

@@ -1,0 +1,140 @@
+"""Motions in files: a table `[trajectory]`, written by a design or by hand."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from jointid.base.argument_checks import require_path
+from jointid.base.errors import InputError
+from jointid.base.schema import Kind, ListOf, Number, Plain, Record, Text
+from jointid.base.toml_file import read_toml
+from jointid.joint.angles import in_radians
+from jointid.simulation.peaks import Peaks
+from jointid.simulation.trajectory import Trajectory
+
+_SINES = "sines"
+_FORMS = (_SINES, "thesis", "sine", "multisine", "sigmoid", "step", "trapezoid")
+_MOST_SINES = 10_000
+_LISTS = ("amplitude", "frequency", "phase")
+# What a trajectory and a magnitude may be; the trajectory's own checks say more.
+_VALUE, _SIZE = Number(), Number(low=0.0)
+_DURATION = Number(low=1e-3, high=1e6)  # s
+_PEAKS = Record(
+    {
+        "position": ListOf(_VALUE, 2, 2),
+        **dict.fromkeys(("velocity", "acceleration", "torque"), _SIZE),
+    },
+    {"sensor_torque": _SIZE},
+)
+# Other tables of the file belong to the design that wrote it.
+_TRAJECTORY = Record({"form": Text(known=_FORMS)}, other=Plain())
+_FILE = Record({"trajectory": Plain()}, {"peaks": _PEAKS}, other=Plain())
+
+COMMENTS = {
+    "trajectory.amplitude": "rad, or m of a prismatic joint",
+    "trajectory.frequency": "rad/s",
+    "trajectory.phase": "rad",
+    "trajectory.offset": "where it starts and ends",
+    "trajectory.fade": "s, in which the sines grow at the start and fade at the end",
+    "trajectory.duration": "s",
+}
+"""What a file says behind the keys of a motion."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Motion:
+    """What a motion's file holds.
+
+    Attributes
+    ----------
+    trajectory : Trajectory
+    peaks : Peaks or None
+        What the joints that it was designed for reach; None where the file does not say it.
+    """
+
+    trajectory: Trajectory
+    peaks: Peaks | None = None
+
+
+def load_motion(path: str | Path) -> Motion:
+    """Return the motion of a file, such as `Design.save` writes; a table `[trajectory]` is enough.
+
+    Its `form` is a class method of `Trajectory`, and the other keys are its arguments; angles may be
+    texts such as "60deg".
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or holds no motion; names file and key.
+    """
+    place = require_path("path", path)
+    try:
+        return motion_of(read_toml(place))
+    except InputError as error:
+        raise (error if error.place.startswith(str(place)) else error.at(str(place))) from None
+
+
+def motion_of(document: Mapping[str, Any]) -> Motion:
+    """Return the motion of a file's tables.
+
+    Raises
+    ------
+    InputError
+        Names the key.
+    """
+    tables = _FILE.read(dict(document), "")
+    peaks = tables.get("peaks")
+    return Motion(
+        trajectory=_trajectory(tables["trajectory"]),
+        peaks=None if peaks is None else Peaks(**peaks | {"position": tuple(peaks["position"])}),
+    )
+
+
+def motion_table(trajectory: Trajectory) -> dict[str, Any]:
+    """Return the table `[trajectory]` of a motion that is a sum of sines; the inverse of `motion_of`.
+
+    Raises
+    ------
+    InputError
+        It is of another form.
+    """
+    if trajectory.form != "multisine":
+        raise InputError(
+            "a sum of sines is expected", argument="trajectory.form", value=trajectory.form
+        )
+    arguments = {
+        name: list(value) if isinstance(value, tuple) else value
+        for name, value in trajectory.arguments
+    }
+    return {"form": _SINES, **arguments}
+
+
+def _trajectory(table: Any) -> Trajectory:
+    """The trajectory of a table: its form's class method with the other keys."""
+    given = {key: in_radians(value) for key, value in _TRAJECTORY.read(table, "trajectory").items()}
+    form = given.pop("form")
+    make: Callable[..., Trajectory] = getattr(Trajectory, form)
+    required: dict[str, Kind] = {}
+    optional: dict[str, Kind] = {}
+    for name, parameter in inspect.signature(make).parameters.items():
+        kind: Kind = _VALUE
+        if name == "duration":
+            kind = _DURATION
+        elif name == "count":
+            kind = Number(low=1, high=_MOST_SINES, whole=True)
+        elif form == _SINES and name in _LISTS:
+            kind = ListOf(_VALUE, 1, _MOST_SINES)
+        (required if parameter.default is parameter.empty else optional)[name] = kind
+    arguments = Record(required, optional).read(given, "trajectory")
+    try:
+        return make(**arguments)
+    except InputError as error:
+        name = error.argument.removeprefix("Trajectory").removeprefix(".")
+        place = f"trajectory.{name}" if name else "trajectory"
+        raise InputError(
+            error.reason, value=error.value, place=place, remedy=error.remedy
+        ) from None

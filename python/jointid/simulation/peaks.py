@@ -1,0 +1,58 @@
+"""What joints reach in a motion."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, fields
+from typing import Any
+
+from jointid.base.errors import InputError
+from jointid.joint.checks import finite_number, not_negative, set_numbers
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Peaks:
+    """The farthest that any of several simulated joints goes in one motion.
+
+    Of a prismatic joint in m, m/s, m/s² and N.
+
+    Parameters
+    ----------
+    position : tuple of float
+        Lowest and highest [rad].
+    velocity : float
+        Largest magnitude [rad/s].
+    acceleration : float
+        Largest magnitude, of the reference [rad/s²].
+    torque : float
+        Largest magnitude, of the drive at the output [N·m].
+    sensor_torque : float, optional
+        Largest magnitude at the joint's torque sensor [N·m]. Default: there is no sensor.
+
+    Raises
+    ------
+    InputError
+        A value that is not finite, or a magnitude below 0.
+    """
+
+    position: tuple[float, float]
+    velocity: float
+    acceleration: float
+    torque: float
+    sensor_torque: float | None = None
+
+    def __post_init__(self) -> None:
+        low, high = (finite_number("peaks", "position", bound) for bound in self.position)
+        if not low <= high:
+            raise InputError(
+                "the first must not be above the second",
+                argument="position",
+                value=[low, high],
+                place="peaks",
+            )
+        object.__setattr__(self, "position", (low, high))
+        others = [item.name for item in fields(self) if item.name != "position"]
+        set_numbers(self, "peaks", others, not_negative)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the values by name, of JSON's types."""
+        return {**asdict(self), "position": list(self.position)}

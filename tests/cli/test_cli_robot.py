@@ -1,0 +1,59 @@
+"""`jointid identify --robot`: one command from a log and a URDF to a table, a page and a file."""
+
+import json
+from pathlib import Path
+
+import pytest
+from command_line_answers import answer
+
+from jointid.cli import main
+
+pytest.importorskip("pinocchio")
+
+FACTS = """gear_ratios = [32, 32, 45, -48, 45, 32]
+zero_offsets_deg = [0, -90, 90, 0, 0, 0]
+[couplings.joint_6]
+joint_5 = 1.0
+"""
+
+
+def test_one_command(shared_data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    facts = tmp_path / "robot.toml"
+    facts.write_text(FACTS, encoding="utf-8")
+    log, urdf = shared_data / "tx40" / "tx40.csv.gz", shared_data / "tx40" / "tx40.urdf"
+    page, saved = tmp_path / "arm.html", tmp_path / "arm.json"
+    files = ("--report", str(page), "--save", str(saved))
+    line = ["identify", str(log), "--robot", str(urdf), "--facts", str(facts), *files]
+    assert main(line) == 0
+    out = capsys.readouterr().out
+    assert "turned_zero" not in out  # it is a fact now
+    rows = {line.split()[0]: line for line in out.splitlines() if line.startswith("joint_")}
+    assert len(rows) == 6
+    assert "motor_coulomb [N·m]" in out
+    document = json.loads(saved.read_text(encoding="utf-8"))
+    assert document["joints"]["joint_1"]["parameters"]["viscous"]["value"] == pytest.approx(
+        8.05, rel=0.05
+    )
+    html = page.read_text(encoding="utf-8")
+    assert html.count("<img") == 12
+    assert "joint_6" in html
+
+
+def test_what_is_for_a_robot_needs_one(capsys: pytest.CaptureFixture[str]) -> None:
+    code, told = answer(["identify", "run.csv", "--inertia", "free"], capsys)
+    assert code == 2
+    assert "--inertia" in told
+    assert "--robot" in told
+
+
+def test_facts_that_nobody_knows_are_refused(
+    shared_data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    facts = tmp_path / "robot.toml"
+    facts.write_text("gear_ratio = 3\n", encoding="utf-8")
+    log, urdf = shared_data / "tx40" / "tx40.csv.gz", shared_data / "tx40" / "tx40.urdf"
+    line = ["identify", str(log), "--robot", str(urdf), "--facts", str(facts)]
+    code, told = answer(line, capsys)
+    assert code == 2
+    assert "robot.toml" in told
+    assert "gear_ratios" in told
