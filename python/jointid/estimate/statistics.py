@@ -10,7 +10,16 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-SYSTEMATIC_PARTS = ("windows", "sampling", "lag", "velocity", "extra", "residual_side", "given")
+SYSTEMATIC_PARTS = (
+    "windows",
+    "sampling",
+    "curvature",
+    "lag",
+    "velocity",
+    "extra",
+    "residual_side",
+    "given",
+)
 """What moves a value however long the recording is."""
 
 
@@ -27,7 +36,8 @@ class ParameterEstimate:
         fixed or held at a bound.
     interval : tuple of float or None
         95 % interval: of chance (Student's t, with as many degrees of freedom as the segments give), and of the
-        systematic parts "windows", "sampling", "lag", "velocity" and "extra". It holds if the given facts are right.
+        systematic parts "windows", "sampling", "curvature", "lag", "velocity" and "extra". It holds if the given facts
+        are right.
     min, max : float
         Bounds of the search.
     vary : bool
@@ -38,9 +48,11 @@ class ParameterEstimate:
         How the value moves when the windows are halved and doubled.
     systematic : mapping of str to float
         Sizes of errors that do not decrease with the recording's length, by name:
-        "windows" (how the value moves when they are halved and doubled), "sampling" (the unknown instant of the
-        sensor's sample), "lag" (delays between signals that are certain), "velocity" (its noise), "extra" (noise of the
-        extra signals of own terms), all as one standard error; "residual_side" (how the value moves when the other
+        "windows" (how the value moves when they are halved and doubled, without what noise of the velocity and of
+        extra signals adds to that), "curvature" (friction that is not straight between samples), "lag" (delays
+        between signals that are certain), "velocity" (its noise), "extra" (noise of the extra signals of own terms),
+        all as one standard error; "sampling" (the unknown instant of the sensor's sample), at its limit;
+        "residual_side" (how the value moves when the other
         signal is compared; a gain by instruments needs no side); "given" (the tolerances of the joint's
         facts, at their limits). Parts that do not apply are missing.
     """

@@ -27,7 +27,7 @@ from jointid.identification.inference.inference import (
 from jointid.identification.inference.lag import of_lags
 from jointid.identification.inference.own_noise import own_systematic
 from jointid.identification.inference.segments import Motion, motion_segments
-from jointid.identification.inference.systematic import systematic_errors
+from jointid.identification.inference.systematic import admissible_shifts, systematic_errors
 from jointid.identification.inference.undivided import divided, with_undivided
 from jointid.identification.inference.velocity_misfit import beyond_velocity_noise
 from jointid.identification.inference.velocity_noise import velocity_systematic
@@ -105,23 +105,28 @@ def infer(
     spread = with_undivided(spread, kept, free, names, groups)
     instant = refinements.sensor_instant
     unknown = 1.0 if instant is None else instant.unknown
-    parts = systematic_errors(problem, penalty, best, kept, free_jacobian, columns, shifts, unknown)
+    counted = admissible_shifts(penalty, shifts)
+    parts = systematic_errors(
+        problem, penalty, best, kept, free_jacobian, columns, counted, unknown
+    )
     lags = {each.signal: _unknown(each) for each in refinements.delays.values()}
     if any(lags.values()):
         parts["lag"] = np.zeros(len(best))
         parts["lag"][kept] = of_lags(problem, penalty, best, free_jacobian, lags)
-    effect = velocity_systematic(problem, penalty, best, domain.lower, domain.upper)
+    effect = velocity_systematic(
+        problem, penalty, best, domain.lower, domain.upper, counted, kept, segments
+    )
     if effect is not None:
         parts["velocity"] = np.where(np.isin(np.arange(len(best)), free), effect.systematic, 0.0)
-    own_noise = own_systematic(problem, penalty, best, domain.lower, domain.upper)
+    own_noise = own_systematic(problem, penalty, best, domain.lower, domain.upper, counted)
     if own_noise is not None:
         moved_by = own_noise.effect.systematic
         parts["extra"] = np.where(np.isin(np.arange(len(best)), free), moved_by, 0.0)
-    noisy = [parts[name] for name in ("velocity", "extra") if name in parts]
-    if "windows" in parts and noisy:
-        # Other windows have other noise at their edges: what the signals show is not counted twice.
-        beyond = np.square(parts["windows"]) - np.square(noisy).sum(axis=0)
-        parts["windows"] = np.sqrt(np.maximum(0.0, beyond))
+    for noisy in (effect, None if own_noise is None else own_noise.effect):
+        if noisy is not None and "windows" in parts:
+            # Other windows have other noise at their edges: it is chance, or counted as the velocity's already.
+            beyond = np.square(parts["windows"]) - np.square(noisy.of_windows)
+            parts["windows"] = np.sqrt(np.maximum(0.0, beyond))
     parts |= {name: moved for name, moved in beside.items() if moved is not None}
     del free_jacobian
     if not penalty.is_linear:

@@ -8,6 +8,7 @@ import numpy as np
 
 from jointid import _core
 from jointid.recording.recording import Recording
+from jointid.recording.signals import FloatArray
 
 _APART = 1_000_003  # from the draws of the velocity's noise
 
@@ -25,14 +26,23 @@ def noise_of_extra(recording: Recording, name: str) -> float:
     return float(found.sigma)
 
 
+def noise_unit(random: np.random.Generator, count: int, draw: int) -> FloatArray:
+    """Return white noise of unit size; an odd draw's is that of the one before with the other sign."""
+    # Uniform noise: the generator's bits are the same on every host.
+    unit = np.sqrt(3.0) * (2.0 * random.random(count) - 1.0)
+    return np.asarray(-unit if draw % 2 else unit)
+
+
 def extra_measured_again(
     recording: Recording, names: Collection[str], draw: int, number: int
 ) -> Recording:
-    """Return a recording whose extra signals of these names have noise of their own size once more."""
-    random = np.random.default_rng((draw, number, _APART))
+    """Return a recording whose extra signals of these names have noise of their own size once more.
+
+    An odd draw's noise is that of the one before with the other sign.
+    """
+    random = np.random.default_rng((draw // 2, number, _APART))
     extra = dict(recording.extra)
     for name in names:
-        # Uniform noise: the generator's bits are the same on every host.
-        unit = np.sqrt(3.0) * (2.0 * random.random(len(recording)) - 1.0)
+        unit = noise_unit(random, len(recording), draw)
         extra[name] = extra[name] + noise_of_extra(recording, name) * unit
     return recording.with_signals(extra=extra)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
-from jointid.estimate.student import quantile
+from jointid.estimate.student import limited_half_width, quantile
 from jointid.identification.inference.covariance import Covariance
 from jointid.identification.search.domain import SearchDomain
 from jointid.joint.joint import Joint
@@ -25,6 +25,7 @@ Array = NDArray[np.float64]
 
 # Not in the intervals: what another choice would give, and what the recording knows nothing of.
 _BESIDE = ("residual_side", "given")
+_LIMITED = ("sampling",)  # known limits of an error, not its standard error
 _NORMAL = 1.959964  # standard errors of a 95 % interval
 
 
@@ -147,9 +148,14 @@ def parameters_of(
 
 
 def _half_width(chance: float, systematic: Mapping[str, float]) -> float:
-    """Half of the 95 % interval: chance, already at its quantile, and what the recording shows besides."""
-    shown = math.hypot(*(size for part, size in systematic.items() if part not in _BESIDE))
-    return math.hypot(chance, _NORMAL * shown)
+    """Half of the 95 % interval: chance, already at its quantile, and what the recording shows besides.
+
+    An error within known limits is at worst at one of them: the rest is then held against that limit.
+    """
+    shown = (size for part, size in systematic.items() if part not in (*_BESIDE, *_LIMITED))
+    half = math.hypot(chance, _NORMAL * math.hypot(*shown))
+    limit = sum(systematic.get(part, 0.0) for part in _LIMITED)
+    return limited_half_width(half / _NORMAL, limit) if limit > 0.0 else half
 
 
 def joint_of(problem: Problem, parameters: dict[str, ParameterEstimate]) -> Joint:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.identification.inference.measuring_again import NoiseEffect, noise_effect
+from jointid.identification.inference.measuring_again import NoiseEffect, Shifts, noise_effect
 from jointid.identification.inference.velocity_noise import measured_again
 from jointid.joint.own_terms import OwnTerms
 from jointid.problem.problem import Problem
@@ -38,7 +38,12 @@ class OwnNoise:
 
 
 def own_systematic(
-    problem: Problem, penalty: _core.Penalty, best: Array, lower: Array, upper: Array
+    problem: Problem,
+    penalty: _core.Penalty,
+    best: Array,
+    lower: Array,
+    upper: Array,
+    shifts: Shifts,
 ) -> OwnNoise | None:
     """Return the effect of the extra signals' noise, or None where it is harmless or no coefficient is free.
 
@@ -52,6 +57,8 @@ def own_systematic(
         Over the windows used.
     best, lower, upper : ndarray, shape (p,)
         The parameters found and their bounds.
+    shifts : tuple of ndarray or None
+        Change of each parameter when the windows are halved and doubled; None is not asked for.
     """
     own = problem.choice.model.resolved.terms
     if not own.each:
@@ -70,6 +77,7 @@ def own_systematic(
         best,
         (lower, upper),
         lambda run, draw, number: extra_measured_again(run, list(noisy), draw, number),
+        shifts,
     )
     return None if effect is None else OwnNoise(effect=effect, noise=tuple(noisy.items()))
 

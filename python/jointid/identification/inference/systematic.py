@@ -13,6 +13,21 @@ from jointid.recording.recording import Recording
 Array = NDArray[np.float64]
 
 
+_SHARE = 2.5e-4  # of the velocity's change over a window: over half of it noise has four times this share
+
+
+def admissible_shifts(
+    penalty: _core.Penalty, shifts: tuple[Array | None, Array | None]
+) -> tuple[Array | None, Array | None]:
+    """Return the shifts to other windows that say something about those used: not to ones too short for the noise.
+
+    Windows are chosen so that the noise of the velocity has at most a thousandth of the variance of its change over a
+    window. What shorter ones do, by noise and by the smoothing of a derived velocity, grows as this share does.
+    """
+    halved, doubled = shifts
+    return (None if doubled is not None and penalty.noise_share > _SHARE else halved), doubled
+
+
 def systematic_errors(
     problem: Problem,
     penalty: _core.Penalty,
@@ -34,7 +49,7 @@ def systematic_errors(
     columns : ndarray, shape (windows, coefficients)
         The penalty's columns at `best`.
     shifts : tuple of ndarray or None
-        Change of each parameter when the windows are halved and doubled.
+        Change of each parameter when the windows are halved and doubled; those that count.
     instant : float
         How well the instant of the sensor's sample is known: the part of half a step that may be lacking.
 
@@ -52,7 +67,7 @@ def systematic_errors(
         parts["sampling"] = instant * of_sampling
     of_curvature = _of_curvature(problem, penalty, best, jacobian)
     if of_curvature is not None:
-        parts["sampling"] = np.hypot(parts.get("sampling", 0.0), of_curvature)
+        parts["curvature"] = of_curvature
     return {name: _everywhere(sizes, free, len(best)) for name, sizes in parts.items()}
 
 

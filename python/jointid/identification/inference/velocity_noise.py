@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.identification.inference.measuring_again import REPEATS, NoiseEffect, noise_effect
+from jointid.identification.inference.measuring_again import (
+    DRAWS,
+    NoiseEffect,
+    Shifts,
+    noise_effect,
+)
+from jointid.identification.inference.segments import Segments
+from jointid.identification.inference.shift_by_chance import variance_over_segments
 from jointid.problem.problem import Problem
+from jointid.recording.extra_noise import noise_unit
 from jointid.recording.recording import Recording
 from jointid.recording.velocity_noise import follows_position, noise_of_velocity
 
@@ -39,8 +48,9 @@ def velocity_systematic(
     best: Array,
     lower: Array,
     upper: Array,
-    *,
-    repeats: int = REPEATS,
+    shifts: Shifts,
+    free: Sequence[int],
+    segments: Segments,
 ) -> VelocityEffect | None:
     """Return the effect of the velocity's noise, or None where that noise is harmless.
 
@@ -55,32 +65,52 @@ def velocity_systematic(
         Over the windows used.
     best, lower, upper : ndarray, shape (p,)
         The parameters found and their bounds.
-    repeats : int
-        Draws. Default 4.
+    shifts : tuple of ndarray or None
+        Change of each parameter when the windows are halved and doubled; None is not asked for.
+    free : sequence of int
+        Parameters that vary and that no bound holds.
+    segments : Segments
+        Of the motion.
     """
     noisy = [is_noisy(run, penalty.noise_share) for run in problem.recordings]
     if not any(noisy):
         return None
+    draws = [
+        [measured_again(run, draw, number) if noisy[number] else run for draw in range(DRAWS)]
+        for number, run in enumerate(problem.recordings)
+    ]
     effect = noise_effect(
         problem,
         penalty,
         best,
         (lower, upper),
-        lambda run, draw, number: measured_again(run, draw, number) if noisy[number] else run,
-        repeats,
+        lambda _, draw, number: draws[number][draw],
+        shifts,
     )
     if effect is None:
         return None
     return VelocityEffect(
-        shift=effect.shift,
+        shifts=effect.shifts,
         spread=effect.spread,
-        draws=effect.draws,
+        of_windows=effect.of_windows,
+        chance=variance_over_segments(
+            problem, _in_the_mean(problem, draws), penalty, best, free, segments
+        ),
         noise=max(
             noise_of_velocity(run)
             for run, too in zip(problem.recordings, noisy, strict=True)
             if too
         ),
     )
+
+
+def _in_the_mean(problem: Problem, draws: Sequence[Sequence[Recording]]) -> Problem:
+    """The problem with the mean velocity of the draws: smoothed once more, with hardly any noise added."""
+    runs = tuple(
+        run.with_velocity(np.mean([each.velocity for each in again], axis=0))
+        for run, again in zip(problem.recordings, draws, strict=True)
+    )
+    return replace(problem, recordings=runs)
 
 
 def is_noisy(run: Recording, share: float) -> bool:
@@ -92,10 +122,9 @@ def is_noisy(run: Recording, share: float) -> bool:
 
 
 def measured_again(run: Recording, draw: int, number: int) -> Recording:
-    """Return a recording whose velocity has been measured once more."""
-    random = np.random.default_rng((draw, number))
-    # Uniform noise: the generator's bits are the same on every host.
-    unit = np.sqrt(3.0) * (2.0 * random.random(len(run)) - 1.0)
+    """Return a recording whose velocity has been measured once more; an odd draw is opposite to the one before."""
+    random = np.random.default_rng((draw // 2, number))
+    unit = noise_unit(random, len(run), draw)
     if not follows_position(run):
         return run.with_velocity(run.velocity + noise_of_velocity(run) * unit)
     noise = run.derived.position_noise
@@ -108,7 +137,7 @@ def measured_again(run: Recording, draw: int, number: int) -> Recording:
         # position is rounded again, its steps being elsewhere.
         others = np.sqrt(max(0.0, noise.sigma**2 - step**2 / 12.0))
         scale = np.hypot(others, noise.timing * run.velocity)
-        place = random.random()
+        place = random.random() + 0.5 * (draw % 2)  # errors of rounding are nearly opposite
         position = (np.floor((_smooth(run) + scale * unit) / step + place) - place + 0.5) * step
     moved = Recording(time=run.time, position=position, kind=run.kind)
     return run.with_velocity(moved.velocity)

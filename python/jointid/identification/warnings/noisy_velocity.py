@@ -17,12 +17,13 @@ from jointid.recording.velocity_noise import noise_of_velocity
 
 NOISY_VELOCITY = FindingType(
     code="noisy_velocity",
-    meaning="noise in the velocity moves parameters by more than 1.5 %, or is not small against the "
-    "velocity's change over any admissible window: the estimated inertia is then too small",
+    meaning="noise in the velocity moves parameters by more than 2 %, so that it alone makes a 95 % interval wider "
+    "than ±4 %, or is not small against the velocity's change over any admissible window: the estimated inertia is "
+    "then too small",
     advice="record the position with a finer resolution, or for longer; leave out a velocity column that is "
     "noisier than the position's rate",
 )
-_MOVED = 0.015  # of the value
+_MOVED = 0.02  # of the value: two of them are what `undetermined` calls wide
 _OF_TORQUE = 0.05  # of the torque's level: the least that a constant torque is held against
 _QUIETER = 0.5  # of the recorded velocity's noise
 _JITTER = 0.02  # sample periods between position and stamps
