@@ -106,7 +106,10 @@ FOLDERS: dict[str, Folder] = {
     "online": Folder(may_use={*_SOUGHT, "identification/inference"}, packages={"numpy"}),
     "simulation": Folder(may_use=_DATA, packages={"numpy"}),
     "study": Folder(may_use={*_SOUGHT, "simulation"}, packages={"numpy", "pandas", "pyarrow"}),
-    "design": Folder(may_use={*_SOUGHT, "simulation", "plot"}, packages={"numpy", "matplotlib"}),
+    "design": Folder(
+        may_use={*(_SOUGHT - {"identification/search"}), "simulation", "plot"},
+        packages={"numpy", "matplotlib"},
+    ),
     "robot": Folder(
         may_use={
             *("base", "recording", "recording/wide", "joint", "problem", "estimate", "joints"),

@@ -42,8 +42,7 @@ void bind_values(py::module_& m) {
         Field{"fade", &Family::fade, "Time over which they grow and shrink [s]."},
         Field{"slowest", &Family::slowest, "Frequency [rad/s]."},
         Field{"fastest", &Family::fastest, "Frequency [rad/s]."},
-        Field{"bounds", &Family::bounds, "What the reference is held within."})
-      .def_property_readonly("genes", &Family::genes, "How many numbers make a motion.");
+        Field{"bounds", &Family::bounds, "What the reference is held within."});
   value(m, "HeldLimits", "What the joints themselves are held within.",
         Field{"lowest", &Held::lowest, "Position [rad]."},
         Field{"highest", &Held::highest, "Position [rad]."},

@@ -2962,11 +2962,6 @@ class MotionFamily:
         Frequency [rad/s].
         """
     @property
-    def genes(self) -> int:
-        """
-        How many numbers make a motion.
-        """
-    @property
     def sines(self) -> int:
         """
         How many.
