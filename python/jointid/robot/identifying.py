@@ -29,6 +29,7 @@ from jointid.robot.products import Products
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
 from jointid.robot.solving import solved
+from jointid.robot.stamps import all_on_even_clocks
 from jointid.robot.wrong_facts import wrong_fact
 from jointid.robot.zeros import zeros_of
 
@@ -99,7 +100,7 @@ def identify_robot(
     """
     started = time.perf_counter()
     require_kind("robot", robot, Robot)
-    runs = recordings_of(recordings)
+    runs = all_on_even_clocks(recordings_of(recordings))
     if inertia not in MODES:
         raise InputError(
             f"one of {', '.join(MODES)} is expected", argument="inertia", value=inertia

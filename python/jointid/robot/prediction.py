@@ -14,6 +14,7 @@ from jointid.robot.columns import MEANINGS
 from jointid.robot.decays import Decays
 from jointid.robot.motion import Motion
 from jointid.robot.result import RobotEstimate
+from jointid.robot.stamps import on_even_clock
 
 Array = NDArray[np.float64]
 
@@ -40,7 +41,10 @@ def predict_robot(estimate: RobotEstimate, recording: RobotRecording) -> RobotPr
     """Predict the window integrals of a recording's torques; see `RobotEstimate.predict`."""
     robot, settings = estimate.robot, estimate.settings
     motion = Motion.of(
-        recording, robot, np.array(settings["min_speed"]), bool(settings["mask_standstill"])
+        on_even_clock(recording),
+        robot,
+        np.array(settings["min_speed"]),
+        bool(settings["mask_standstill"]),
     )
     whole = estimate.inertial.reshape(-1, 1)
     balance = balance_of(robot, [motion], float(settings["window_duration"]), whole)

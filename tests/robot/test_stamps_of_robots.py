@@ -1,0 +1,40 @@
+"""A host's stamps are late by chance: the samples were even, and the positions say so."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from simulated_arm import URDF, Sensors, random_arm, random_motion, recorded, run
+
+import jointid as jid
+from jointid.robot.stamps import on_even_clock
+
+pytest.importorskip("pinocchio")
+
+
+@pytest.mark.parametrize("lateness", [1e-4, 3e-4])
+def test_stamps_of_a_busy_host(lateness: float) -> None:
+    ran = run(random_arm(2, stribeck=False), random_motion(2, duration=12.0))
+    recording = recorded(ran, Sensors(stamp_lateness=lateness), 2)
+    clock = on_even_clock(recording).time
+    assert np.ptp(np.diff(clock)) < 1e-9
+    assert np.all(clock <= recording.time + 1e-9)
+    found = jid.identify_robot(recording, jid.Robot.from_urdf(URDF), model="coulomb_viscous")
+    for joint, source in zip(found.joints.values(), ran.arm.sources, strict=True):
+        assert joint.parameters["coulomb"].value == pytest.approx(source.coulomb, rel=0.03)
+        assert joint.parameters["viscous"].value == pytest.approx(source.viscous, rel=0.03)
+
+
+def test_samples_that_were_uneven_keep_their_stamps() -> None:
+    time = np.arange(4000) * 1e-3 + np.random.default_rng(0).uniform(-3e-4, 3e-4, 4000)
+    position = np.column_stack([np.sin(2.0 * time), np.cos(3.0 * time)])
+    recording = jid.RobotRecording(time=time, position=position, torque=position)
+    assert on_even_clock(recording) is recording
+
+
+def test_lost_samples_keep_their_stamps() -> None:
+    time = np.delete(np.arange(4000) * 1e-3, np.s_[1500:1800])
+    late = time + np.random.default_rng(0).exponential(1e-4, time.size)
+    position = np.column_stack([np.sin(2.0 * time), np.cos(3.0 * time)])
+    recording = jid.RobotRecording(time=np.maximum.accumulate(late), position=position)
+    assert on_even_clock(recording) is recording
