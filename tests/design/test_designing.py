@@ -222,6 +222,14 @@ def test_the_drawn_joints_fill_their_ranges_evenly() -> None:
     assert ranges_of(joint, names, around()).joints(11, 0) == drawn
 
 
+def test_a_prior_counts_as_far_as_the_joint_s_bounds_go() -> None:
+    joint = thesis_joint()
+    names = free_parameters(joint, None).names
+    wide = ranges_of(joint, names, {**around(), "coulomb": (40.0, 60.0)})
+    assert wide.ranges["coulomb"] == (40.0, 50.0)
+    assert wide.nominal["coulomb"] == pytest.approx(45.0)
+
+
 def test_without_sensors_and_controller_both_are_assumed() -> None:
     found = jid.design_excitation(thesis_joint(), LIMITS, 4.0, search=QUICK)
     assert found.sensors.torque_noise == pytest.approx(0.003 * 160.0)
@@ -237,7 +245,7 @@ def test_without_sensors_and_controller_both_are_assumed() -> None:
         ({"parameters": []}, "at least one"),
         ({"prior": {"coulomp": (1.0, 2.0)}}, "coulomb"),
         ({"prior": {"coulomb": (2.0, 1.0)}}, "below the second"),
-        ({"prior": {"coulomb": (2.0, 1000.0)}}, "beyond the joint's bound 50"),
+        ({"prior": {"coulomb": (60.0, 100.0)}}, "outside the joint's bounds"),
         ({"prior": {"coulomb": 3.0}}, "lowest and a highest"),
         ({"prior": [{"coulomb": 3.0}]}, "each free parameter"),
         ({"prior": []}, "at least one joint"),

@@ -96,8 +96,7 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
         value = None if parameter is None else parameter.value
         bounds = (None, None) if parameter is None else (parameter.min, parameter.max)
         if name in stated:
-            ranges[name] = _range(name, stated[name])
-            _inside(name, ranges[name], bounds)
+            ranges[name] = _inside(name, _range(name, stated[name]), bounds)
             value = None
         elif bounds[0] is not None and bounds[1] is not None:
             ranges[name] = (bounds[0], bounds[1])
@@ -121,17 +120,18 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
     return Ranges(nominal=nominal, ranges=ranges)
 
 
-def _inside(name: str, given: Range, bounds: tuple[float | None, float | None]) -> None:
-    lowest, highest = bounds
-    beyond = lowest if lowest is not None and given[0] < lowest else None
-    beyond = highest if highest is not None and given[1] > highest else beyond
-    if beyond is not None:
+def _inside(name: str, given: Range, bounds: tuple[float | None, float | None]) -> Range:
+    """Return the part of a range that the joint's bounds leave: an identification finds nothing beyond."""
+    low = given[0] if bounds[0] is None else max(given[0], bounds[0])
+    high = given[1] if bounds[1] is None else min(given[1], bounds[1])
+    if not low < high:
         raise InputError(
-            f"it reaches beyond the joint's bound {beyond:g}",
+            f"it lies outside the joint's bounds, {bounds[0]} to {bounds[1]}",
             argument=name,
             value=list(given),
             place="prior",
         )
+    return low, high
 
 
 def _given(names: Sequence[str], joints: Sequence[Mapping[str, float]]) -> Ranges:
