@@ -22,7 +22,7 @@ from jointid.design.holding import held_by_all
 from jointid.design.judging import Situation, fade_of
 from jointid.design.known import Known
 from jointid.design.motion_limits import MotionLimits
-from jointid.design.prior import Prior, ranges_of
+from jointid.design.prior import Prior, ranges_of, with_room
 from jointid.design.rehearsal import Rehearsal, rehearse
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller, positive
@@ -132,6 +132,7 @@ def design_excitation(
     joint = _with_model(joint)
     asked = free_parameters(joint, parameters)
     ranges = ranges_of(joint, asked.names, prior)
+    joint = with_room(joint, ranges.ranges)
     nominal = joint.with_parameters(ranges.nominal)
     assert held.torque is not None
     situation = Situation(

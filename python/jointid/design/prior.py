@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -96,7 +96,7 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
         value = None if parameter is None else parameter.value
         bounds = (None, None) if parameter is None else (parameter.min, parameter.max)
         if name in stated:
-            ranges[name] = _inside(name, _range(name, stated[name]), bounds)
+            ranges[name] = _range(name, stated[name])
             value = None
         elif bounds[0] is not None and bounds[1] is not None:
             ranges[name] = (bounds[0], bounds[1])
@@ -120,18 +120,16 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
     return Ranges(nominal=nominal, ranges=ranges)
 
 
-def _inside(name: str, given: Range, bounds: tuple[float | None, float | None]) -> Range:
-    """Return the part of a range that the joint's bounds leave: an identification finds nothing beyond."""
-    low = given[0] if bounds[0] is None else max(given[0], bounds[0])
-    high = given[1] if bounds[1] is None else min(given[1], bounds[1])
-    if not low < high:
-        raise InputError(
-            f"it lies outside the joint's bounds, {bounds[0]} to {bounds[1]}",
-            argument=name,
-            value=list(given),
-            place="prior",
-        )
-    return low, high
+def with_room(joint: Joint, ranges: Mapping[str, Range]) -> Joint:
+    """Return the joint with bounds that hold these ranges: what is believed may lie beyond those of a search."""
+    table = dict(joint.parameters)
+    for name, (low, high) in ranges.items():
+        own = table.get(name)
+        if own is not None:
+            least = None if own.min is None else min(own.min, low)
+            most = None if own.max is None else max(own.max, high)
+            table[name] = replace(own, min=least, max=most)
+    return joint.replace(parameters=table)
 
 
 def _given(names: Sequence[str], joints: Sequence[Mapping[str, float]]) -> Ranges:
