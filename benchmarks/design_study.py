@@ -120,7 +120,7 @@ def others() -> list[Case]:
     """Without a sensor, with a coarse encoder, with ripple, with inertia and gravity free."""
     truth = JOINTS[1]
     friction = {n: v for n, v in truth.items() if not n.startswith("sensor")}
-    believed = {n: v for n, v in WRONG.items() if not n.startswith("sensor")}
+    believed: dict[str, Any] = {n: v for n, v in WRONG.items() if not n.startswith("sensor")}
     own = jid.AdaptiveRobust(
         inertia=INERTIA + 0.25, friction_velocity="reference", torque_feedback=False, **believed
     )

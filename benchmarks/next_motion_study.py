@@ -18,6 +18,7 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -42,7 +43,7 @@ class Situation:
     )
 
     def run(
-        self, values: dict[str, float], controller: object, trajectory: jid.Trajectory, seed: int
+        self, values: dict[str, float], controller: Any, trajectory: jid.Trajectory, seed: int
     ) -> jid.Recording:
         """One recording of the joint."""
         sensors = jid.Sensors(torque_noise=self.noise)
