@@ -53,7 +53,10 @@ class Loop {
     if (signals_) {
       const auto every = static_cast<std::size_t>(scenario.sample_every);
       const std::size_t samples = (scenario.instants() + every - 1) / every;
-      outcome.signals.each([&](std::vector<double>& signal) { signal.resize(samples); });
+      outcome.signals.each([&](std::vector<double>& signal) {
+        signal.clear();
+        signal.reserve(samples);  // not filled: a run of days may be ended early
+      });
     }
   }
 
@@ -76,24 +79,23 @@ class Loop {
     if (!signals_) return torque;
     Signals& s = outcome_->signals;
     if (sample) {
-      const std::size_t n = samples_++;
       held_ = 0.0;
       commands_ = 0;
-      s.position[n] = shown.position;
-      s.velocity[n] = shown.velocity;
-      s.torque[n] = torque;
-      s.reading[n] = shown.reading;
-      s.reference[n] = wanted.position;
-      s.true_position[n] = position;
-      s.true_velocity[n] = velocity;
-      s.true_acceleration[n] = acting.acceleration;
-      s.friction[n] = acting.friction;
-      s.link_torque[n] = acting.link_torque;
+      s.position.push_back(shown.position);
+      s.velocity.push_back(shown.velocity);
+      s.torque.push_back(torque);
+      s.reading.push_back(shown.reading);
+      s.reference.push_back(wanted.position);
+      s.true_position.push_back(position);
+      s.true_velocity.push_back(velocity);
+      s.true_acceleration.push_back(acting.acceleration);
+      s.friction.push_back(acting.friction);
+      s.link_torque.push_back(acting.link_torque);
     }
     // Over a sample the drive gave the mean of what was commanded until the next.
     held_ += torque;
     ++commands_;
-    if (commands_ > 1) s.torque[samples_ - 1] = held_ / commands_;
+    if (commands_ > 1) s.torque.back() = held_ / commands_;
     return torque;
   }
   void finish() {
@@ -105,7 +107,6 @@ class Loop {
   ControlRun control_;
   Outcome* outcome_;
   bool signals_;
-  std::size_t samples_ = 0;  ///< that were recorded
   double sum_ = 0.0;
   std::int64_t count_ = 0;
   double held_ = 0.0;  ///< commands since the last sample, summed

@@ -39,9 +39,9 @@ def poor(shared_data: Path) -> jid.Recording:
 def test_a_range_that_is_missing_is_left_to_the_user(poor: jid.Recording) -> None:
     action = advice(jid.identify(poor, THESIS), "undetermined")
     # The joint states its torque and its link, not its speed.
-    assert action.arguments == {"limits": {"position": ..., "velocity": 1.12}, "duration": 6.0}
+    assert action.arguments == {"limits": {"position": ..., "velocity": ...}, "duration": 6.0}
     assert str(action).endswith(
-        "designed by estimate.next_motion(limits={'position': ..., 'velocity': 1.12}, duration=6.0)"
+        "designed by estimate.next_motion(limits={'position': ..., 'velocity': ...}, duration=6.0)"
     )
 
 
@@ -86,7 +86,7 @@ def test_the_command_line_names_its_own_files(
     THESIS.save(joint)
     file = str(shared_data / "simulated" / "poorly_excited.csv.gz")
     assert main(["identify", file, "--joint", str(joint), "--save", str(saved), "--quiet"]) == 0
-    command = f"jointid design {joint} --after {saved} --position=LOW,HIGH --velocity=1.12"
+    command = f"jointid design {joint} --after {saved} --position=LOW,HIGH --velocity=SPEED"
     printed = capsys.readouterr()
     assert f"{command} --duration 6 --output motion.toml" in printed.out + printed.err
 
