@@ -60,7 +60,7 @@ def noise_of_balance(
         turn = sensors.encoder_counts * abs(joint.gear_ratio)
         position = 2.0 * math.pi / turn / math.sqrt(12.0)
     # Of a straight line through so many positions.
-    derived = position * math.sqrt(12.0 / _SMOOTHED**3) / sampled
+    derived = position * math.sqrt(12.0 / _SMOOTHED**3) / period
     slowest = max(_STANDING * velocity, 3.0 * derived, _SLOW * _fading_speed(setup.joint))
     return _core.BalanceNoise(
         # White in the recording's samples; fewer of them are as good as their means.
