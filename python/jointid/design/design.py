@@ -46,8 +46,8 @@ class Design:
     parameters : mapping of str to ExpectedError
         Of those that the motion was designed for.
     reference : mapping of str to float
-        Largest relative error of each parameter in the thesis's motion (20 degrees), with the same
-        joints, controller, sensors and duration. Default: not computed.
+        Relative error of each parameter in the thesis's motion (20 degrees, ending at rest), counted for
+        the nominal joint with the same controller, sensors and duration. Default: not computed.
     criterion : str
         "worst" or "determinant".
     joints : int
