@@ -272,6 +272,13 @@ def test_limits_that_leave_no_motion_are_refused() -> None:
         )
 
 
+def test_more_torque_than_the_drive_has_is_refused() -> None:
+    with pytest.raises(jid.InputError, match=r"torque.*beyond the drive's own limit of 159.984"):
+        jid.design_excitation(
+            thesis_joint(), {**LIMITS, "torque": 200.0}, prior=around(), search=QUICK
+        )
+
+
 def test_a_loop_that_rattles_at_its_limits_is_told() -> None:
     found = design(controller=jid.Pd(stiffness=1e12))
     assert found.status == "limits exceeded"

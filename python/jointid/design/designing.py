@@ -26,7 +26,7 @@ from jointid.design.prior import Prior, ranges_of, with_room
 from jointid.design.rehearsal import Rehearsal, rehearse
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller, positive
-from jointid.simulation.plant import control_estimates
+from jointid.simulation.plant import control_estimates, torque_limit
 from jointid.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -42,6 +42,7 @@ _CONTRADICTED = 1.25  # times the error that the information tells
 _USUAL = math.radians(20.0)  # of the thesis's motion [rad]
 _CYCLE = 6.0  # the same [s]
 _ROBUST = 0.03  # of the torque limit: the robust term of a controller that is chosen here
+_SAME_TORQUE = 1.01  # 8 A of current are 159.984 of 160 N·m
 _STIFF = 80.0  # 1/s: of a controller that is chosen here
 
 
@@ -120,6 +121,14 @@ def design_excitation(
     settings = DesignSearch() if search is None else search
     require_kind("search", settings, DesignSearch)
     held = MotionLimits.of(limits, joint)
+    drive = torque_limit(joint)
+    if drive is not None and held.torque is not None and held.torque > _SAME_TORQUE * drive:
+        raise InputError(
+            f"it is beyond the drive's own limit of {drive:g}",
+            argument="torque",
+            value=held.torque,
+            place="limits",
+        )
     if criterion not in ("worst", "determinant"):
         raise InputError("known are worst and determinant", argument="criterion", value=criterion)
     if isinstance(controller, _core.OpenLoop):
