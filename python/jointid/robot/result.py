@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from jointid.base.argument_checks import require_kind
+from jointid.base.argument_checks import require_kind, require_path
 from jointid.base.errors import InputError
 from jointid.estimate.findings import Finding
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
@@ -244,6 +244,46 @@ class RobotEstimate:
         from jointid.robot.document import save_json
 
         return save_json(self, path)
+
+    @classmethod
+    def from_json(cls, text: str) -> RobotEstimate:
+        """Return the estimate that a JSON text holds.
+
+        Raises
+        ------
+        InputError
+            Not JSON, not a robot's estimate, another schema, or a field that cannot be used; names the place in it.
+        """
+        from jointid.robot.reading_back import read_robot_estimate
+
+        return read_robot_estimate(text)
+
+    @classmethod
+    def load(cls, path: str | Path) -> RobotEstimate:
+        """Return the estimate that a .json file holds; everything but `bootstrap` works with it.
+
+        Parameters
+        ----------
+        path : path-like
+
+        Raises
+        ------
+        InputError
+            No such file, or as `from_json`; names the file and the place in it.
+
+        Examples
+        --------
+        >>> jid.RobotEstimate.load("arm.json").friction([0.5, -0.5])  # doctest: +SKIP
+        array([ 5.5, -2.75])
+        """
+        from jointid.base.schema import read_text
+
+        place = require_path("path", path)
+        text = read_text(place)
+        try:
+            return cls.from_json(text)
+        except InputError as error:
+            raise error.at(str(place)) from error
 
     def __str__(self) -> str:
         return self.report()
