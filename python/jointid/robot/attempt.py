@@ -21,6 +21,7 @@ from jointid.robot.inertia import basis_of, inertia_columns
 from jointid.robot.models import AUTO, PLAIN
 from jointid.robot.motion import Motion, part_of
 from jointid.robot.products import Products
+from jointid.robot.resampling import RobotDraws
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
 from jointid.robot.shifts import without_delay
@@ -187,7 +188,8 @@ def _solved(
             decays = Decays(balance=balance, joints=left)
             found = solved_with_decays(decays, products, least, known, start)
     fit = Fit.of(balance, columns, kept, products, decays, found)
-    return concluded(robot, balance, mode, fit, fit.covariance(balance), duration, runs), fit
+    estimate = concluded(robot, balance, mode, fit, fit.covariance(balance), duration, runs)
+    return replace(estimate, draws=RobotDraws.of(balance, fit, known)), fit
 
 
 def _pieces(runs: Sequence[RobotRecording]) -> list[tuple[int, int, int]]:
