@@ -57,6 +57,11 @@ def add_export(export: argparse.ArgumentParser) -> None:
         help="where the target has Coulomb and viscous friction only, write the nearest, and what it loses",
     )
     export.add_argument(
+        "--inertia",
+        action="store_true",
+        help="of a whole robot: write the identified inertia of its links, too",
+    )
+    export.add_argument(
         "--speed",
         type=float,
         help="largest speed for the nearest friction and for tables, rad/s or m/s (default: as recorded)",
@@ -105,6 +110,7 @@ def export(arguments: argparse.Namespace) -> None:
         into=arguments.into,
         joint_name=arguments.joint_name,
         approximate=arguments.approximate,
+        inertia=arguments.inertia,
         speed=arguments.speed,
     )
     warnings = [each.code for each in findings if each.severity == "warning"]

@@ -17,14 +17,16 @@ from jointid.robot.bodies import moments_of, possible
 
 Array = NDArray[np.float64]
 
-_LIGHTEST = 1e-3  # of the links' mean mass
-_SMALLEST = 1e-3  # [m]: thinner is no link
-_TOGETHER = (1.0, 0.1, 0.01, 1e-3)  # weights of the divergence, one after the other
-_STEPS = 60
+_LIGHTEST = 0.01  # of the links' mean mass
+_SMALLEST = 0.01  # [m]: thinner is hardly a link
+_TOGETHER = (1.0, 0.1, 0.01, 1e-3, 1e-4)  # weights of the divergence, one after the other
+_NEAR_ENOUGH = 0.01  # from this weight on, what is left of the distance is taken away
+_STEPS = 400
+_HEAVY = 10.0  # how many times a link's inertia a motor behind its gear usually has
 _SETTLED = 1e-9  # of the decrease that Newton's method foresees
 _SHORTEST = 1e-9  # step
 _BY_CHANCE = 0.003  # probability of a larger distance if bodies have the true base parameters
-# Products of the moments' matrix with the ten parameters of a link.
+# Matrix of moments by each of the ten parameters of a link.
 _CHANGES = np.array([moments_of(each) for each in np.eye(10)])
 
 
@@ -46,7 +48,9 @@ class PossibleBodies:
     by_chance: bool
 
 
-def possible_bodies(wanted: Array, base: Array, precision: Array, urdf: Array) -> PossibleBodies:
+def possible_bodies(
+    wanted: Array, base: Array, precision: Array, urdf: Array, discs: Array
+) -> PossibleBodies:
     """Return possible links with given base parameters.
 
     Parameters
@@ -58,19 +62,31 @@ def possible_bodies(wanted: Array, base: Array, precision: Array, urdf: Array) -
     precision : ndarray, shape (count, count)
         Inverse of their covariance; positive definite.
     urdf : ndarray, shape (n, 10)
+    discs : ndarray, shape (10 n, motors)
+        What a unit of inertia of motors adds to the links that cannot be told from these: the URDF's links lack it.
     """
     from scipy.special import chdtri
 
     start = _as_bodies(urdf)
+    search = _Search(
+        urdf=start,
+        wanted=wanted,
+        base=np.hstack([base, base @ discs]),
+        precision=precision,
+        usual=np.full(discs.shape[1], _HEAVY * float(start[:, [4, 6, 9]].max(axis=1).mean())),
+    )
+    at = np.append(start.ravel(), search.usual)
+    links = start.size
     found = start
     for weight in _TOGETHER:
-        found = _nearest(found, start, wanted, base, precision, weight)
-    exact = _with_base(found, wanted, base, start)
-    if possible(exact):
-        return PossibleBodies(inertial=exact, distance=0.0, by_chance=True)
+        at = search.minimum(at, weight)
+        found = (at[:links] + discs @ at[links:]).reshape(start.shape)
+        exact = _with_base(found, wanted, base, start)
+        if weight <= _NEAR_ENOUGH and possible(exact):
+            return PossibleBodies(inertial=exact, distance=0.0, by_chance=True)
     missed = base @ found.ravel() - wanted
-    distance = float(np.sqrt(max(missed @ precision @ missed, 0.0)))
-    limit = float(np.sqrt(chdtri(wanted.size, _BY_CHANCE)))
+    distance = float(np.sqrt(np.maximum(missed @ precision @ missed, 0.0)))
+    limit = float(chdtri(wanted.size, _BY_CHANCE) ** 0.5)
     return PossibleBodies(inertial=found, distance=distance, by_chance=distance <= limit)
 
 
@@ -107,46 +123,87 @@ def _with_base(inertial: Array, wanted: Array, base: Array, sizes: Array) -> Arr
     return np.asarray(inertial + (scale * change).reshape(inertial.shape))
 
 
-def _nearest(
-    found: Array, urdf: Array, wanted: Array, base: Array, precision: Array, weight: float
-) -> Array:
-    """The minimum with one weight of the divergence, by damped Newton steps."""
-    pull = np.array(
-        [np.einsum("iab,ab->i", _CHANGES, np.linalg.inv(moments_of(each))) for each in urdf]
-    )
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Search:
+    """Damped Newton steps; the variables are the links' parameters, and behind them the motors' inertias.
 
-    def value(inertial: Array) -> float:
-        missed = base @ inertial.ravel() - wanted
-        signs, logs = np.linalg.slogdet(np.array([moments_of(each) for each in inertial]))
-        if np.any(signs <= 0.0) or not possible(inertial):
+    Attributes
+    ----------
+    urdf : ndarray, shape (n, 10)
+    wanted : ndarray, shape (count,)
+    base : ndarray, shape (count, variables)
+    precision : ndarray, shape (count, count)
+    usual : ndarray, shape (motors,)
+        Sizes of the motors' inertias.
+    """
+
+    urdf: Array
+    wanted: Array
+    base: Array
+    precision: Array
+    usual: Array
+
+    def minimum(self, at: Array, weight: float) -> Array:
+        """The minimum with one weight of the divergence."""
+        now = self._value(at, weight)
+        for _ in range(_STEPS):
+            slope, curvature = self._derivatives(at, weight)
+            size = 1.0 / np.sqrt(np.diag(curvature))
+            scaled = curvature * np.outer(size, size)
+            step = -size * np.linalg.lstsq(scaled, size * slope, rcond=1e-14)[0]
+            foreseen = -float(slope @ step)
+            if foreseen < _SETTLED:
+                break
+            length = 1.0
+            while length > _SHORTEST:
+                trial = at + length * step
+                after = self._value(trial, weight)
+                if after <= now - 0.25 * length * foreseen:
+                    at, now = trial, after
+                    break
+                length *= 0.5
+            else:
+                break
+        return at
+
+    @property
+    def _pull(self) -> Array:
+        return np.array([_products(_inverse(each)) for each in self.urdf])
+
+    def _value(self, at: Array, weight: float) -> float:
+        links, motors = self._parts(at)
+        moments = np.array([moments_of(each) for each in links])
+        if np.any(motors <= 0.0) or np.linalg.eigvalsh(moments).min() <= 0.0:
             return np.inf
-        return float(0.5 * missed @ precision @ missed + weight * (np.sum(pull * inertial) - logs.sum()))
+        missed = self.base @ at - self.wanted
+        size = motors / self.usual
+        away = np.sum(self._pull * links) - np.linalg.slogdet(moments)[1].sum()
+        away += np.sum(size - np.log(size))
+        return float(0.5 * missed @ self.precision @ missed + weight * away)
 
-    now = value(found)
-    of_base = base.T @ precision @ base
-    for _ in range(_STEPS):
-        slope = base.T @ (precision @ (base @ found.ravel() - wanted))
-        curvature = of_base.copy()
-        for number, each in enumerate(found):
-            inverse = np.linalg.inv(moments_of(each))
+    def _derivatives(self, at: Array, weight: float) -> tuple[Array, Array]:
+        links, motors = self._parts(at)
+        slope = self.base.T @ (self.precision @ (self.base @ at - self.wanted))
+        curvature = self.base.T @ self.precision @ self.base
+        for number, each in enumerate(links):
+            inverse = _inverse(each)
             turned = np.einsum("ab,ibc->iac", inverse, _CHANGES)
             mine = slice(10 * number, 10 * number + 10)
-            slope[mine] += weight * (pull[number] - np.einsum("iaa->i", turned))
+            slope[mine] += weight * (self._pull[number] - _products(inverse))
             curvature[mine, mine] += weight * np.einsum("iab,jba->ij", turned, turned)
-        size = 1.0 / np.sqrt(np.diag(curvature))
-        scaled = curvature * np.outer(size, size)
-        step = -size * np.linalg.lstsq(scaled, size * slope, rcond=1e-14)[0]
-        foreseen = -float(slope @ step)
-        if foreseen < _SETTLED:
-            break
-        length = 1.0
-        while length > _SHORTEST:
-            trial = found + length * step.reshape(found.shape)
-            after = value(trial)
-            if after <= now - 0.25 * length * foreseen:
-                found, now = trial, after
-                break
-            length *= 0.5
-        else:
-            break
-    return found
+        behind = np.arange(links.size, at.size)
+        slope[behind] += weight * (1.0 / self.usual - 1.0 / motors)
+        curvature[behind, behind] += weight / motors**2
+        return slope, curvature
+
+    def _parts(self, at: Array) -> tuple[Array, Array]:
+        return at[: self.urdf.size].reshape(self.urdf.shape), at[self.urdf.size :]
+
+
+def _inverse(link: Array) -> Array:
+    return np.asarray(np.linalg.inv(moments_of(link)), dtype=np.float64)
+
+
+def _products(matrix: Array) -> Array:
+    """Traces of the products with the changes of a link's moments."""
+    return np.asarray(np.einsum("iab,ab->i", _CHANGES, matrix))

@@ -70,9 +70,13 @@ class RobotEstimate:
         With ``inertia="free"``: the combinations of inertial parameters that motion shows.
     inertial : ndarray, shape (n, 10)
         Inertial parameters of all links, as far as they are known: m, m·c, I about the joint's frame. With
-        ``inertia="free"`` one set of many with these base parameters; its single values mean nothing.
+        ``inertia="free"`` one set of many with these base parameters: one that bodies can have and that is like the
+        URDF's, where there is one within the errors; its single values mean nothing.
     consistent : bool or None
-        Whether a body can have these inertial parameters; None: not known.
+        Whether bodies can have these inertial parameters; None: the URDF's are used as they are.
+    impossible_by : float
+        With ``inertia="free"``, the distance of the identified base parameters from the nearest that bodies can
+        have, in standard errors (Mahalanobis distance of all together). Default 0: bodies can have them.
     relative_residual : float
         Norm of all joints' residuals over the norm of their measured integrals.
     free : tuple of str
@@ -102,6 +106,7 @@ class RobotEstimate:
     settings: Mapping[str, Any] = field(repr=False)
     seconds: float = field(default=0.0, repr=False)
     draws: RobotDraws | None = field(default=None, repr=False)
+    impossible_by: float = 0.0
 
     @property
     def parameters(self) -> dict[str, ParameterEstimate]:
