@@ -138,7 +138,7 @@ def test_the_determinant_is_another_criterion(found: jid.Design) -> None:
     assert sum(math.log(each.relative) for each in other.parameters.values()) < usual - 1.0
 
 
-def test_progress_is_told_and_true_ends_the_search() -> None:
+def test_progress_is_reported_and_true_ends_the_search() -> None:
     steps: list[jid.DesignProgress] = []
     design(callback=steps.append)
     assert [step.number for step in steps] == sorted(step.number for step in steps)
@@ -318,7 +318,7 @@ def test_more_torque_than_the_drive_has_is_refused() -> None:
         )
 
 
-def test_a_loop_that_rattles_at_its_limits_is_told() -> None:
+def test_a_loop_that_rattles_at_its_limits_is_named() -> None:
     found = design(controller=jid.Pd(stiffness=1e12))
     assert found.status == "limits exceeded"
     assert "exceeds a limit" in found.reason

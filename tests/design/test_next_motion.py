@@ -154,7 +154,7 @@ def test_what_cannot_be_asked_for(poor: jid.Estimate, first: jid.Recording) -> N
         bare.next_motion(LIMITS | {"torque": 160.0})
 
 
-def test_a_link_may_be_told(first: jid.Recording, handed: dict[str, Any]) -> None:
+def test_a_link_may_be_given(first: jid.Recording, handed: dict[str, Any]) -> None:
     bare = jid.identify(first)
     with pytest.raises(CalledError):
         bare.next_motion(LIMITS, joint=THESIS)

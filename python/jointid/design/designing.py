@@ -208,6 +208,7 @@ class _Designing:
             reason=problem,
             trajectory=trajectory,
             joint=nominal,
+            believed=dict(situation.ranges.ranges),
             controller=situation.controller,
             sensors=situation.sensors,
             limits=situation.limits,

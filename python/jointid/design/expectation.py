@@ -95,11 +95,11 @@ def _partner(situation: Situation, judgement: _core.MotionJudgement, weakest: st
 
 def _alone(information: Array) -> Array:
     """Standard errors by an information matrix alone; infinite where it tells nothing."""
-    told = np.sqrt(np.maximum(np.diag(information), 0.0))
-    size = np.where(told > 0.0, told, 1.0)
+    seen = np.sqrt(np.maximum(np.diag(information), 0.0))
+    size = np.where(seen > 0.0, seen, 1.0)
     strength, directions = np.linalg.eigh(information / np.outer(size, size))
     errors = np.sqrt(directions**2 @ (1.0 / np.maximum(strength, _WEAKEST))) / size
-    return np.where(told > 0.0, errors, np.inf)
+    return np.where(seen > 0.0, errors, np.inf)
 
 
 def _units(situation: Situation) -> dict[str, str]:
