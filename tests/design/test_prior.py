@@ -4,8 +4,13 @@ import pytest
 
 import jointid as jid
 from jointid.design.prior import ranges_of
+from jointid.joint.parameters import Parameter
 
-JOINT = jid.Joint(parameters={"coulomb": {"value": 10.0}, "static": {"min": 0.0, "max": 5.0}})
+KNOWN = {
+    "coulomb": Parameter(name="coulomb", value=10.0),
+    "static": Parameter(name="static", min=0.0, max=5.0),
+}
+JOINT = jid.Joint(parameters=KNOWN)
 
 
 def test_all_parameters_without_a_range_are_named_at_once() -> None:
