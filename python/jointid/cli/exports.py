@@ -6,29 +6,22 @@ import argparse
 import json
 import sys
 from pathlib import Path
-from typing import Any
 
 from jointid.base.errors import InputError
-from jointid.cli.arguments import TEXT
 from jointid.cli.outputs import check_folder
 
 
-def add_export(commands: Any) -> None:
+def add_export(export: argparse.ArgumentParser) -> None:
     """Add the command's grammar."""
     from jointid.exports.registry import TARGETS, endings_text
 
     kinds = ", ".join(f"{'/'.join(each.endings)} ({each.meaning})" for each in TARGETS)
-    export = commands.add_parser(
-        "export",
-        help="write an identified joint for a simulator, a controller, a PLC or Simulink",
-        epilog=(
-            "examples:\n"
-            "  jointid export estimate.json --to joint_friction.h\n"
-            "  jointid export joint.toml --to joint.st\n"
-            "  jointid export estimate.json --to arm.xml --into arm.xml --joint-name shoulder --approximate\n"
-            "the estimate (.json) knows how certain its values are, and the file says so; a joint file does not"
-        ),
-        formatter_class=TEXT,
+    export.epilog = (
+        "examples:\n"
+        "  jointid export estimate.json --to joint_friction.h\n"
+        "  jointid export joint.toml --to joint.st\n"
+        "  jointid export estimate.json --to arm.xml --into arm.xml --joint-name shoulder --approximate\n"
+        "the estimate (.json) knows how certain its values are, and the file says so; a joint file does not"
     )
     export.add_argument(
         "source",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 
 from jointid.base.errors import InputError
 from jointid.cli.arguments import as_given, gear_ratios, how_to_read, joints_wanted, with_terms
@@ -10,7 +11,7 @@ from jointid.cli.outputs import check_folder, check_page
 from jointid.cli.wording import ADVICE, Wording
 
 _OF_ONE_JOINT = (
-    *("joint", "checkpoint", "resume", "selftest", "bootstrap", "causes", "shift", "residual"),
+    *("joint", "checkpoint", "resume", "selftest", "causes", "shift", "residual"),
     *("torque_hold", "population", "generations"),
 )
 
@@ -47,16 +48,21 @@ def identify_whole_robot(arguments: argparse.Namespace) -> int:
         windows=arguments.windows,
         min_speed=arguments.min_speed,
     )
+    draws = arguments.bootstrap
+    drawn = found.bootstrap(draws, arguments.seed) if draws is not None else None
     if arguments.report is not None:
         save_robot_report(found, arguments.report, action=ADVICE.of_action)
     if arguments.save is not None:
         found.save(arguments.save)
     if arguments.json:
-        print(found.to_json())
+        done = {} if drawn is None else {"bootstrap": drawn.document()}
+        print(json.dumps(found.document() | done, indent=1, ensure_ascii=False, allow_nan=False))
     else:
         from jointid.robot.tables import text_report
 
         print(text_report(found, action=Wording.of(arguments).of_action))
+        if drawn is not None:
+            print(f"\n{drawn.report()}")
         lines = [
             f"{what}: {path}"
             for what, path in (("report", arguments.report), ("estimate", arguments.save))
@@ -73,9 +79,7 @@ def _check(arguments: argparse.Namespace) -> None:
         if getattr(arguments, name) not in (None, False):
             raise InputError(
                 "this is for one joint, not for a robot",
-                argument={"bootstrap": "n", "population": "ga.population"}.get(
-                    name, "ga.generations" if name == "generations" else name
-                ),
+                argument=f"ga.{name}" if name in ("population", "generations") else name,
             )
     for name in ("set", "drop_copies", "drop_invalid"):
         if getattr(arguments, name):

@@ -14,6 +14,8 @@ from jointid.estimate.wording import number, percent, two_digits
 
 Array = NDArray[np.float64]
 
+_LONGEST_NAME = 40  # letters, in a table
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BootstrapParameter:
@@ -89,7 +91,7 @@ class Bootstrap:
             interval = f"{p.interval[0]:.5g} … {p.interval[1]:.5g}"
             interval += " (percentiles)" if p.near_bound else ""
             error = f"{two_digits(p.stderr)}{share}"
-            table.append((p.name, number(p.value), error, interval, p.unit, remark))
+            table.append((_short(p.name), number(p.value), error, interval, p.unit, remark))
         widths = [max(len(row[column]) for row in table) for column in range(6)]
         lines = [
             "  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip()
@@ -101,3 +103,8 @@ class Bootstrap:
             f"{len(self.samples)} draws of {self.blocks} blocks of {self.block:.2g} s, seed {self.seed}",
         ]
         return printable("\n".join(lines))
+
+
+def _short(name: str) -> str:
+    """A name that leaves room for the table; a base parameter of a robot is a long sum."""
+    return name if len(name) <= _LONGEST_NAME else f"{name[: _LONGEST_NAME - 1]}…"

@@ -26,6 +26,7 @@ from jointid.robot.inertia import MODES, SCALED, URDF, basis_of, inertia_columns
 from jointid.robot.models import AUTO, PLAIN, friction_models
 from jointid.robot.motion import Motion, part_of
 from jointid.robot.products import Products
+from jointid.robot.resampling import RobotDraws
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
 from jointid.robot.solving import solved
@@ -198,7 +199,8 @@ def _solved(
             decays = Decays(balance=balance, joints=left)
             found = solved_with_decays(decays, products, least, known, start)
     fit = Fit.of(balance, columns, kept, products, decays, found)
-    return concluded(robot, balance, mode, fit, fit.covariance(balance), duration, runs)
+    estimate = concluded(robot, balance, mode, fit, fit.covariance(balance), duration, runs)
+    return replace(estimate, draws=RobotDraws.of(balance, fit, known))
 
 
 def _pieces(runs: Sequence[RobotRecording]) -> list[tuple[int, int, int]]:

@@ -41,6 +41,8 @@ class Motion:
         Duration of a window that the noise of each velocity asks for [s].
     at_motor : bool
         Whether positions were recorded at the motors.
+    torque_held : bool
+        Whether a torque holds from its sample to the next one, as a command does; else it is straight between them.
     """
 
     time: Array
@@ -54,6 +56,7 @@ class Motion:
     motor_moving: Flags
     wished: Array
     at_motor: bool
+    torque_held: bool = False
 
     @classmethod
     def of(
@@ -105,6 +108,7 @@ class Motion:
             moving=of_joints,
             motor_moving=of_motors,
             at_motor=at_motor,
+            torque_held=recording.torque_hold == "zoh",
             wished=np.array([masked.wished(each) for each in joints]),
         )
 

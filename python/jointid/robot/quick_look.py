@@ -63,4 +63,5 @@ def thinned(motion: Motion) -> Motion:
         motor_velocity=motion.motor_velocity[:, kept],
         moving=moving(motion.moving),
         motor_moving=moving(motion.motor_moving),
+        torque_held=motion.torque_held and every == 1,
     )
