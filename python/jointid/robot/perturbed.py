@@ -5,7 +5,7 @@ Momentum and force are computed anew with a fact a little otherwise, of fewer sa
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from jointid.robot.balance import Balance
 from jointid.robot.link_tree import LinkTree
+from jointid.robot.looked_rows import LookedRows
 from jointid.robot.momentum import columns_of
 from jointid.robot.motion import Motion
 
@@ -23,41 +24,48 @@ _NEAR = 1e-3  # [rad or m]
 
 
 def moved_zeros(
-    tree: LinkTree, balance: Balance, motions: Mapping[int, Motion], inertial: Array
+    tree: LinkTree,
+    balance: Balance,
+    rows: LookedRows,
+    motions: Mapping[int, Motion],
+    inertial: Array,
 ) -> Array:
-    """Change of each row's integral per change of each joint's zero, shape (rows of the pieces, n).
+    """Change of each row's integral per change of each joint's zero, shape (rows, n).
 
     Parameters
     ----------
     tree : LinkTree
     balance : Balance
+    rows : LookedRows
+        Of some of its pieces.
     motions : mapping of int to Motion
-        Pieces of the balance, by number; only their rows are returned, in their order.
+        These pieces, by number.
     inertial : ndarray, shape (10 n,)
         Inertial parameters of all links.
     """
     n = len(tree.names)
 
-    def change(motion: Motion) -> list[tuple[Array, Array]]:
+    def changes(motion: Motion) -> list[tuple[Array, Array]]:
         place, speed = motion.position, motion.velocity
-        base = _mechanics(tree, place, speed, inertial)
-        return [
-            tuple(
-                (a - b) / _NEAR
-                for a, b in zip(
-                    _mechanics(tree, place + _NEAR * unit[:, None], speed, inertial),
-                    base,
-                    strict=True,
-                )
-            )
-            for unit in np.eye(n)
-        ]
+        momentum, force = _mechanics(tree, place, speed, inertial)
+        found = []
+        for joint in range(n):
+            moved = place.copy()
+            moved[joint] += _NEAR
+            other = _mechanics(tree, moved, speed, inertial)
+            found.append(((other[0] - momentum) / _NEAR, (other[1] - force) / _NEAR))
+        return found
 
-    return _integrated(balance, motions, change, n)
+    return _integrated(balance, rows, motions, changes, n)
 
 
 def tilted_gravity(
-    tree: LinkTree, balance: Balance, motions: Mapping[int, Motion], inertial: Array, ways: Array
+    tree: LinkTree,
+    balance: Balance,
+    rows: LookedRows,
+    motions: Mapping[int, Motion],
+    inertial: Array,
+    ways: Array,
 ) -> Array:
     """Change of each row's integral per further gravity along each of some ways, shape (rows, ways).
 
@@ -67,13 +75,13 @@ def tilted_gravity(
         In the base's frame.
     """
 
-    def change(motion: Motion) -> list[tuple[Array, Array]]:
+    def changes(motion: Motion) -> list[tuple[Array, Array]]:
         still = np.zeros_like(motion.velocity)
         return [
             _mechanics(replace(tree, gravity=way), motion.position, still, inertial) for way in ways
         ]
 
-    return _integrated(balance, motions, change, len(ways))
+    return _integrated(balance, rows, motions, changes, len(ways))
 
 
 def _mechanics(
@@ -89,22 +97,25 @@ def _mechanics(
     return found[0], found[1]
 
 
-def _integrated(balance, motions, change, count):
-    rows = balance.rows
-    kept = np.flatnonzero(np.isin(rows.piece, list(motions)))
-    found = np.zeros((kept.size, count))
-    for number, motion in motions.items():
-        every = max(1, motion.time.size // _SAMPLES)
-        some = np.unique(np.append(np.arange(0, motion.time.size, every), motion.time.size - 1))
+def _integrated(
+    balance: Balance,
+    rows: LookedRows,
+    motions: Mapping[int, Motion],
+    changes: Callable[[Motion], list[tuple[Array, Array]]],
+    count: int,
+) -> Array:
+    """Integrals over the rows' windows of changed momenta and forces, known at fewer samples."""
+    found = np.zeros((rows.kept.size, count))
+    for piece, motion in motions.items():
+        time, summing = motion.time, balance.summings[piece]
+        every = max(1, time.size // _SAMPLES)
+        some = np.unique(np.append(np.arange(0, time.size, every), time.size - 1))
         thin = replace(motion, position=motion.position[:, some], velocity=motion.velocity[:, some])
-        summing = balance.summings[number]
-        for column, (momentum, force) in enumerate(change(thin)):
-            for joint in range(len(momentum)):
-                if not (momentum[joint].any() or force[joint].any()):
-                    continue
-                p = np.interp(motion.time, motion.time[some], momentum[joint])
-                f = np.interp(motion.time, motion.time[some], force[joint])
-                mine = (rows.piece[kept] == number) & (rows.joint[kept] == joint)
-                values = np.diff(p) - 0.5 * summing.step * (f[1:] + f[:-1])
-                found[mine, column] = summing(joint, values)[rows.window[kept][mine]]
+        for column, (momentum, force) in enumerate(changes(thin)):
+            for joint in np.flatnonzero(momentum.any(axis=1) | force.any(axis=1)).tolist():
+                mine = rows.places(piece, joint)
+                change = np.diff(np.interp(time, time[some], momentum[joint]))
+                pushed = np.interp(time, time[some], force[joint])
+                change -= 0.5 * summing.step * (pushed[1:] + pushed[:-1])
+                found[mine, column] = summing(joint, change)[rows.window[mine]]
     return found
