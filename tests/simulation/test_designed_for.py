@@ -25,7 +25,12 @@ assert JOINT.rotor_inertia is not None
 
 
 def warning(**changes: Any) -> str:
-    given = {"trajectory": MOTION, "joint": JOINT, "controller": LAW, "control_period": 2e-3}
+    given: dict[str, Any] = {
+        "trajectory": MOTION,
+        "joint": JOINT,
+        "controller": LAW,
+        "control_period": 2e-3,
+    }
     return FOR.warning(**given | changes)
 
 

@@ -115,11 +115,15 @@ class MotionLimits:
                 )
         own = {name: value for name, value in _own(joint).items() if value is not None}
         limits = own | {name: value for name, value in stated.items() if value is not None}
-        for name in ("position", "velocity", "torque"):
-            if name not in limits:
-                raise InputError(
-                    "it is needed, and the joint's limits state none", argument=name, place=_OWNER
-                )
+        missing = [name for name in ("position", "velocity", "torque") if name not in limits]
+        if missing:
+            first, *others = missing
+            also = f"{' and '.join(others)} {'is' if len(others) == 1 else 'are'} needed"
+            raise InputError(
+                "it is needed, and the joint's limits state none" + f"; {also}, too" * bool(others),
+                argument=first,
+                place=_OWNER,
+            )
         _within(limits, joint)
         if limits.get("sensor_range") is not None and not joint.sensor:
             raise InputError(

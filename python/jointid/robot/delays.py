@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from jointid.robot.balance import Balance
 from jointid.robot.fit import Fit
 from jointid.robot.integrals import torque_integrals
+from jointid.robot.looked_rows import LookedRows
 from jointid.robot.motion import Motion
-from jointid.robot.products import FOLDS
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -26,8 +26,6 @@ _ROUNDS = 5
 _NEAR = 2e-5  # [s], the last step
 _STEP = 5e-4  # [s], for the torque's change with the shift
 _LONGEST_STEP, _LONGEST = 4e-3, 0.05  # [s]
-_CLUSTER = 0.3  # [s] of motion that counts as one observation
-_SINGULAR = 1e-11  # of the largest eigenvalue of the scaled normal equations
 _FINEST = 1e-4  # [s]: no joint's delay is surer than this beside the others'
 _SMALL = 3e-4  # [s]; a shorter delay is left alone
 _WITHIN_SAMPLE = 0.06  # sample periods: friction and torque jump between samples
@@ -75,14 +73,15 @@ def torque_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> T
     motions : mapping of int to Motion
         Some of the balance's pieces, by number.
     """
-    rows = _Rows(balance, fit, motions)
+    rows = LookedRows(balance, fit, motions)
+    torque = _Shifted(rows, balance, motions)
     n = fit.scatter.size
     delay, step = np.zeros(n), 0.0
-    start = rows.rest(rows.residual)
-    rest, change = start, start
+    measured = torque(delay)
+    rest, change, slope = rows.residual, rows.residual, measured
     for _ in range(_ROUNDS):
-        rest = rows.rest(rows.residual + rows.torque(delay) - rows.measured)
-        slope = (rows.torque(delay + _STEP) - rows.torque(delay - _STEP)) / (2.0 * _STEP)
+        rest = rows.residual + rows.rest(torque(delay) - measured)
+        slope = (torque(delay + _STEP) - torque(delay - _STEP)) / (2.0 * _STEP)
         change = rows.rest(slope)
         energy = float(change @ change)
         step = -float(change @ rest) / (energy or np.inf)
@@ -106,11 +105,9 @@ def torque_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> T
         taken[:] = value
     alone = ~alike & (np.abs(joints) > np.maximum(_APART, _SURE_OF_ONE * errors))
     taken[alone] = joints[alone]
-    certain = bool(taken.any()) and rows.fits(
-        start, rows.rest(rows.torque(taken) - rows.torque(np.zeros(n)))
-    )
+    better = taken.any() and rows.share((torque(taken) - measured)[:, None]).certainty > _BETTER
     return TorqueDelay(
-        value=value, stderr=stderr, joints=joints, errors=errors, taken=taken, certain=certain
+        value=value, stderr=stderr, joints=joints, errors=errors, taken=taken, certain=bool(better)
     )
 
 
@@ -129,53 +126,24 @@ def _common(joints: Array, errors: Array, least: float) -> tuple[float, float, F
     return value, float(np.sqrt(max(scatter, of_errors**2) + least**2)), alike
 
 
-class _Rows:
-    """Rows of the pieces that are looked at, weighted, and what the fit's parameters cannot follow."""
+class _Shifted:
+    """Integrals of the torques of some pieces at any shift."""
 
-    def __init__(self, balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> None:
-        rows = balance.rows
-        kept = np.flatnonzero(np.isin(rows.piece, list(motions)))
-        self.joint = rows.joint[kept]
-        self.residual, self.measured = fit.residual[kept], rows.torque[kept]
-        self._weight = 1.0 / fit.scatter[self.joint]
-        known = fit.jacobian[np.ix_(kept, np.flatnonzero(~fit.at_bound))] * self._weight[:, None]
-        lengths = np.sqrt(np.einsum("ij,ij->j", known, known))
-        self._known = known[:, lengths > 0.0] / lengths[lengths > 0.0]
-        values, vectors = np.linalg.eigh(self._known.T @ self._known)
-        clear = values > _SINGULAR * values[-1]
-        self._inverse = (vectors[:, clear] / values[clear]) @ vectors[:, clear].T
-        self._motions, self._summings = motions, balance.summings
-        windows, piece = rows.window[kept], rows.piece[kept]
-        self._places = []
-        for number in motions:
-            for joint in range(fit.scatter.size):
-                mine = np.flatnonzero((piece == number) & (self.joint == joint))
-                self._places.append((number, joint, mine, windows[mine]))
-        count = (rows.start[kept] // _CLUSTER).astype(np.int64)
-        _, self.cluster = np.unique(np.column_stack([piece, count]), axis=0, return_inverse=True)
-        self.cluster = self.cluster.ravel()
-        self._fold = np.arange(kept.size) * FOLDS // max(kept.size, 1)
+    def __init__(self, rows: LookedRows, balance: Balance, motions: Mapping[int, Motion]) -> None:
+        self._count, self._motions, self._summings = rows.kept.size, motions, balance.summings
+        self._places = [
+            (piece, joint, rows.places(piece, joint))
+            for piece in motions
+            for joint in range(len(balance.places))
+        ]
+        self._window = rows.window
 
-    def torque(self, delay: Array) -> Array:
-        """Integrals of each joint's torque as it was, if it is late by this much."""
-        found = np.empty(self.joint.size)
-        for number, joint, mine, windows in self._places:
-            motion, summing = self._motions[number], self._summings[number]
+    def __call__(self, delay: Array) -> Array:
+        """Return each row's integral if its joint's torque is late by this much."""
+        found = np.empty(self._count)
+        for piece, joint, mine in self._places:
+            motion, summing = self._motions[piece], self._summings[piece]
             signal = np.interp(motion.time + delay[joint], motion.time, motion.torque[joint])
             pushed = torque_integrals(signal, summing.step, motion.torque_held)
-            found[mine] = summing(joint, pushed)[windows]
+            found[mine] = summing(joint, pushed)[self._window[mine]]
         return found
-
-    def rest(self, values: Array) -> Array:
-        """Weighted values (rows, or rows and columns) without what the parameters can follow."""
-        weight = self._weight if values.ndim == 1 else self._weight[:, None]
-        scaled = values * weight
-        return np.asarray(scaled - self._known @ (self._inverse @ (self._known.T @ scaled)))
-
-    def fits(self, start: Array, effect: Array) -> bool:
-        """Whether stretches of time fit better with an effect, as large as the other stretches ask for."""
-        push = np.bincount(self._fold, effect * start, FOLDS)
-        power = np.bincount(self._fold, effect * effect, FOLDS)
-        size = -(push.sum() - push) / np.maximum(power.sum() - power, 1e-300)
-        gain = -(2.0 * size * push + size**2 * power)
-        return bool(gain.sum() > _BETTER * np.std(gain, ddof=1) * np.sqrt(FOLDS))
