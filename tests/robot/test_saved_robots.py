@@ -139,6 +139,8 @@ def test_the_place_is_named(tmp_path: Path) -> None:
         (("covariance",), "[[1.0]]", "rows of"),
         (("inertial", 0), "[1.0]", "10 to 10 items"),
         (("settings", "min_speed"), "[0.0]", "2 numbers"),
+        (("settings", "shift"), '{"torque": 5.0}', "settings"),
+        (("settings", "shift"), '{"torque": {"wrist": 0.01}}', "no such joint"),
     ],
 )
 def test_fields_that_contradict_each_other(path: Path_, junk: str, reason: str) -> None:

@@ -27,6 +27,7 @@ def document_of(estimate: RobotEstimate) -> dict[str, Any]:
         "seconds": estimate.seconds,
         "inertia": estimate.inertia,
         "consistent": estimate.consistent,
+        "impossible_by": plain(estimate.impossible_by),
         "relative_residual": plain(estimate.relative_residual),
         "condition": plain(estimate.condition),
         "joints": {

@@ -58,6 +58,7 @@ ROBOT_ESTIMATE: Kind = Record(
         "seconds": Number(low=0.0, high=1e12),
         "inertia": Text(known=MODES),
         "consistent": OrNull(Flag()),
+        "impossible_by": Number(low=0.0, high=1e100),
         "relative_residual": _ANY,
         "condition": _ANY,
         "joints": TableOf(_JOINT, _MOST),

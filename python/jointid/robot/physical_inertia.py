@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import two_digits
 from jointid.robot.bodies import possible
-from jointid.robot.possible_bodies import possible_bodies
+from jointid.robot.possible_bodies import nearest_possible
 from jointid.robot.result import RobotEstimate
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def with_possible_bodies(estimate: RobotEstimate, fit: Fit) -> RobotEstimate:
     if prior is None:  # the URDF has no masses: nothing says which of many links
         return replace(estimate, consistent=possible(estimate.inertial))
     places = [place for place, (joint, _) in enumerate(fit.labels) if joint is None]
-    found = possible_bodies(
+    found = nearest_possible(
         fit.values[places],
         prior.of_links,
         _precision(estimate, fit, places),

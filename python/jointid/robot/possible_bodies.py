@@ -48,7 +48,7 @@ class PossibleBodies:
     by_chance: bool
 
 
-def possible_bodies(
+def nearest_possible(
     wanted: Array, base: Array, precision: Array, urdf: Array, discs: Array
 ) -> PossibleBodies:
     """Return possible links with given base parameters.

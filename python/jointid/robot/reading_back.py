@@ -25,6 +25,7 @@ from jointid.robot.link_tree import LinkTree
 from jointid.robot.models import STRIBECK
 from jointid.robot.result import RobotEstimate, RobotJoint
 from jointid.robot.robot import Robot
+from jointid.robot.shifts import torque_shift
 
 _ALWAYS = ("coulomb", "viscous", "torque_offset")
 _PAIRS = (("static", "stribeck"), ("motor_coulomb", "motor_viscous"))
@@ -57,6 +58,11 @@ def read_robot_estimate(text: str) -> RobotEstimate:
 
 def _estimate(d: Mapping[str, Any]) -> RobotEstimate:
     base = [parameter_of(each) for each in d["base_parameters"]]
+    robot = _robot(d["robot"], d["name"])
+    try:
+        torque_shift(d["settings"].get("shift", {}), robot)
+    except InputError as error:
+        raise error.at("settings") from None
     return RobotEstimate(
         joints={
             name: RobotJoint(
@@ -72,12 +78,13 @@ def _estimate(d: Mapping[str, Any]) -> RobotEstimate:
         base_parameters={p.name: p for p in base},
         inertial=np.array(d["inertial"], dtype=np.float64),
         consistent=d["consistent"],
+        impossible_by=d["impossible_by"],
         relative_residual=d["relative_residual"],
         free=tuple(d["free"]),
         covariance=matrix_of(d["covariance"]),
         condition=d["condition"],
         findings=tuple(finding_of(each) for each in d["findings"]),
-        robot=_robot(d["robot"], d["name"]),
+        robot=robot,
         settings=d["settings"],
         seconds=d["seconds"],
     )
