@@ -89,7 +89,8 @@ std::vector<Judgement> Excitation::judge(const simulate::Trajectory& trajectory,
       setups.back().position = wanted.front().position;
     }
     outcomes.resize(setups.size());
-    simulate::simulate_on_this_thread(scenario_, wanted, setups, outcomes, true, cancel);
+    simulate::simulate_on_this_thread(scenario_, wanted, setups, outcomes, simulate::Kept::truth,
+                                      cancel);
     for (std::size_t i = first; i < last; ++i) {
       result.push_back(judged(joints_[i], outcomes[i - first].signals));
     }

@@ -130,7 +130,9 @@ def _signals(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, boo
     Torques are at the joints, positions of motors divided by the gear ratios.
     """
     columns = robot.columns_of(recording)
-    position = np.ascontiguousarray(recording.position[:, columns].T)
+    way = np.array(robot.directions or (1.0,) * robot.n)
+    factor = way * np.array(robot.torque_scales or (1.0,) * robot.n)
+    position = np.ascontiguousarray(way[:, None] * recording.position[:, columns].T)
     torque, motor_torque = recording.torque, recording.motor_torque
     at_motor = (robot.side or recording.side) == MOTOR
     if at_motor and torque is not None:
@@ -139,10 +141,10 @@ def _signals(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, boo
         raise InputError("the recording has no torque", argument="recordings", value=recording.name)
     ratios = _ratios(recording, robot, columns) if at_motor or torque is None else np.ones(robot.n)
     if torque is not None:
-        joint_torque = np.array(torque[:, columns].T)
+        joint_torque = factor[:, None] * torque[:, columns].T
     else:
         assert motor_torque is not None
-        joint_torque = robot.couplings.T @ (motor_torque[:, columns].T * ratios[:, None])
+        joint_torque = robot.couplings.T @ (motor_torque[:, columns].T * (factor * ratios)[:, None])
     if not np.all(np.isfinite(joint_torque)):
         missing = robot.names[int(np.argmin(np.all(np.isfinite(joint_torque), axis=1)))]
         raise InputError(
