@@ -3241,10 +3241,6 @@ class Excitation:
         criterion: str,
         window: typing.SupportsInt | typing.SupportsIndex,
     ) -> None: ...
-    def cost(self, judgements: collections.abc.Sequence[MotionJudgement]) -> float:
-        """
-        The logarithm of what the search minimises.
-        """
     def judge(self, trajectory: Trajectory) -> list[MotionJudgement]:
         """
         One judgement a joint.
