@@ -12,11 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.attempt import Asked, Attempt, attempted
-from jointid.robot.findings import doubtful_joints
+from jointid.robot.findings import FRICTION, doubtful_joints
 from jointid.robot.naming import named_error, named_fact
 from jointid.robot.robot import Robot
 from jointid.robot.small_errors import ZERO, SmallError, refined, small_error
@@ -24,6 +25,7 @@ from jointid.robot.wrong_facts import WrongFact, wrong_fact
 
 Array = NDArray[np.float64]
 
+_ROBOT = "Robot.from_urdf"
 _MOST = 3  # facts that are looked for
 _REFINED = 3  # identifications without a fact, at most
 _BETTER = 0.02  # fall of the joints' logarithmic residuals, summed: less is no correction
@@ -84,7 +86,12 @@ def _corrected(
     looks = list(attempt.looks.values())
     wrong = wrong_fact(attempt.robot, looks, attempt.duration, suspects) if suspects else None
     if wrong is not None:
-        found.append(_without_fact(wrong, recordings, robot, asked, attempt))
+        signs = [
+            _without_fact(each, recordings, robot, asked, attempt)
+            for each in (wrong, *wrong.others)
+        ]
+        # Friction takes power away: that decides where a coupling's sign hardly shows.
+        found.append(min(signs, key=lambda each: (_held(each.attempt), _misfit(each.attempt))))
     falls = [_misfit(attempt) - _misfit(each.attempt) for each in found]
     if not falls or max(falls) < _BETTER:
         return None
@@ -124,11 +131,15 @@ def _without_fact(
 ) -> _Corrected:
     other = replace(wrong.robot, zero_offsets=robot.zero_offsets)
     runs = [_reordered(run, robot, wrong) for run in recordings]
+    without = attempted(runs, other, asked, attempt.delay)
+    before, after = (_left(each) for each in (attempt, without))
+    shown = int(np.argmax(before / after))
+    told = replace(wrong, before=float(before[shown]), after=float(after[shown]))
     return _Corrected(
-        finding=named_fact(wrong),
+        finding=named_fact(told, robot.names[shown]),
         recordings=runs,
         robot=other,
-        attempt=attempted(runs, other, asked, attempt.delay),
+        attempt=without,
     )
 
 
@@ -154,8 +165,23 @@ def _reordered(recording: RobotRecording, robot: Robot, wrong: WrongFact) -> Rob
 
 def _misfit(attempt: Attempt) -> float:
     """Sum of the logarithms of the joints' residuals."""
+    return float(np.sum(np.log(_left(attempt))))
+
+
+def _left(attempt: Attempt) -> Array:
+    """Each joint's residual over its torque."""
     left = [joint.relative_residual for joint in attempt.estimate.joints.values()]
-    return float(np.sum(np.log(np.maximum(left, 1e-6))))
+    return np.maximum(left, 1e-6)
+
+
+def _held(attempt: Attempt) -> int:
+    """How many parameters of friction are at a bound."""
+    return sum(
+        p.at_bound is not None
+        for joint in attempt.estimate.joints.values()
+        for name, p in joint.parameters.items()
+        if name in FRICTION
+    )
 
 
 def _key(found: Finding, attempt: Attempt) -> tuple[str, tuple[str, ...], str]:
@@ -173,6 +199,22 @@ def _summary(
     facts = "this fact" if len(causes) == 1 else "these facts"
     codes = sorted({each.code for each in gone})
     found = []
+    calls = [each.arguments for cause in causes for each in cause.advice if each.function == _ROBOT]
+    if len(causes) > 1 and calls:
+        found.append(
+            Finding(
+                code="several_wrong_facts",
+                severity="info",
+                evidence=evidence,
+                cause=f"{len(causes)} given facts are wrong; with all of them corrected {percent(after)} of the torque "
+                f"stays unexplained instead of {percent(before)}",
+                advice=(
+                    Action(
+                        "call", {k: v for each in calls for k, v in each.items()}, function=_ROBOT
+                    ),
+                ),
+            )
+        )
     if codes:
         found.append(
             Finding(

@@ -19,7 +19,7 @@ _VAGUE = 0.25  # a standard error, of the value
 _MATTERS, _SURE = 0.05, 3.0  # of a link's scale, and in its errors
 _POOR = 0.15  # of the torque
 _DOUBTFUL = 0.05  # of the torque: worth a look at the given facts
-_FRICTION = ("coulomb", "viscous", "motor_coulomb", "motor_viscous")
+FRICTION = ("coulomb", "viscous", "motor_coulomb", "motor_viscous")
 _RANK = {"blocking": 0, "warning": 1, "info": 2}
 
 
@@ -68,7 +68,7 @@ def _standing(estimate: RobotEstimate) -> Iterator[Finding]:
 
 
 def _of_joint(joint: RobotJoint, estimate: RobotEstimate) -> Iterator[Finding]:
-    for name in _FRICTION:
+    for name in FRICTION:
         p = joint.parameters.get(name)
         if p is None or p.stderr is None or p.stderr <= _VAGUE * abs(p.value):
             continue
@@ -81,7 +81,7 @@ def _of_joint(joint: RobotJoint, estimate: RobotEstimate) -> Iterator[Finding]:
             f"{number(p.value)} {p.unit}",
             advice=(Action("record", text="more and faster motion of this joint"),),
         )
-    held = [name for name in _FRICTION if name in joint.parameters]
+    held = [name for name in FRICTION if name in joint.parameters]
     held = [name for name in held if joint.parameters[name].at_bound is not None]
     if held:
         yield Finding(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -41,8 +41,8 @@ def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
     )
 
 
-def named_fact(wrong: WrongFact) -> Finding:
-    """The finding that one fact, if it were otherwise, would explain most of what is left."""
+def named_fact(wrong: WrongFact, shown: str) -> Finding:
+    """The finding that one fact, if it were otherwise, would explain most of what is left; `shown`: of which joint."""
     first, *others = wrong.joints
     both = " and ".join(wrong.joints)
     coupling = f"motor {first} turns with {' and '.join(others)} by {wrong.coupling or 0.0:g}"
@@ -54,7 +54,7 @@ def named_fact(wrong: WrongFact) -> Finding:
         "wrong_motion_sign": f"{first} is probably recorded with its position of the wrong sign, and its torque of the "
         "right one",
         "wrong_torque_sign": f"the torque of {first} probably has the wrong sign",
-        "wrong_coupling": f"a coupling is probably wrong: if {coupling}, and not as given, more is explained",
+        "wrong_coupling": f"a coupling is probably wrong: if {coupling}, and not as given, more is explained{_or(wrong)}",
     }
     advice: tuple[Action, ...] = (Action("inspect", text="the order and names of the columns"),)
     if wrong.kind == "wrong_sign":
@@ -73,8 +73,8 @@ def named_fact(wrong: WrongFact) -> Finding:
         code=wrong.kind,
         severity="warning",
         evidence={"before": Measured(wrong.before), "after": Measured(wrong.after)},
-        cause=f"{texts[wrong.kind]}: {percent(wrong.before)} of a joint's torque stays unexplained as it is, and "
-        f"{percent(wrong.after)} so",
+        cause=f"{texts[wrong.kind]}: {percent(wrong.before)} of the torque of {shown} stays unexplained as it is, "
+        f"and {percent(wrong.after)} so",
         advice=advice,
     )
 
@@ -191,7 +191,12 @@ _WORDED = {
 }
 
 
-def _call(arguments: dict[str, object]) -> Action:
+def _or(wrong: WrongFact) -> str:
+    nearly = " and ".join(f"{each.coupling or 0.0:g}" for each in wrong.others)
+    return f" ({nearly} is nearly as good; the sign rests on little)" if nearly else ""
+
+
+def _call(arguments: Mapping[str, object]) -> Action:
     return Action("call", arguments, function="Robot.from_urdf")
 
 

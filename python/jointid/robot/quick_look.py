@@ -50,16 +50,19 @@ class Look:
     ----------
     balance : Balance
     residual : ndarray, shape (rows,)
+    held : tuple of (int, str)
+        Joint and name of friction that would be negative.
     """
 
     balance: Balance
     residual: Array
+    held: tuple[tuple[int, str], ...]
 
-    def of_motors(self, couplings: Array) -> Array:
-        """Return each motor's residual over its measured torque, shape (n,); NaN where there is none.
+    def of_motors(self, couplings: Array) -> tuple[Array, Array]:
+        """Return residuals and torques of each motor in each window, (n, windows); NaN where there is none.
 
         Torques at the motors do not depend on the couplings that are given; a motor's needs the rows of all joints with
-        which it turns, in the same windows.
+        which it turns, in the same window.
 
         Parameters
         ----------
@@ -67,34 +70,39 @@ class Look:
             Of the robot of this look.
         """
         rows, n = self.balance.rows, len(couplings)
-        windows = int(rows.window.max()) + 1
+        windows = max(summing.windows.edges.size for summing in self.balance.summings)
         key = rows.piece * windows + rows.window
-        table = np.full((3, n, int(key.max()) + 1), np.nan)
+        table = np.full((3, n, windows * len(self.balance.summings)), np.nan)
         table[:, rows.joint, key] = self.residual, rows.torque, rows.duration
         back = np.linalg.inv(couplings).T
-        found = np.full(n, np.nan)
+        found = np.full((2, *table.shape[1:]), np.nan)
         for motor in range(n):
             joints = np.flatnonzero(np.abs(back[motor]) > 1e-12)
-            left, measured, used = table[:, joints]
+            used = table[2, joints]
             whole = np.all(used >= _WHOLE * used.max(axis=0), axis=0)
-            if whole.any():
-                left, measured = (back[motor, joints] @ each[:, whole] for each in (left, measured))
-                found[motor] = np.linalg.norm(left) / (np.linalg.norm(measured) or 1.0)
-        return found
+            for place in range(2):
+                both = back[motor, joints] @ table[place, joints][:, whole]
+                found[place, motor, whole] = both
+        return found[0], found[1]
 
 
-def looked_at(robot: Robot, motions: Sequence[Motion], duration: float) -> Look | None:
-    """Return the fit with the URDF's inertias and linear friction, or None where nothing moves."""
-    balance = balance_of(robot, motions, duration, basis_of(robot, URDF))
+def looked_at(
+    robot: Robot, motions: Sequence[Motion], duration: float, mode: str = URDF
+) -> Look | None:
+    """Return the fit with linear friction and the URDF's inertias, or free ones; None where nothing moves."""
+    balance = balance_of(robot, motions, duration, basis_of(robot, mode))
     rows = balance.rows
     if not rows.torque.size:
         return None
-    wanted = rows.torque - inertia_columns(robot, URDF).known(balance)
-    table = np.column_stack([balance.matrix, wanted])
+    columns = inertia_columns(robot, mode)
+    wanted = rows.torque - columns.known(balance)
+    table = np.column_stack([balance.matrix, columns.columns(balance), wanted])
     products = Products.of([table[place] for place in balance.places], list(balance.places), rows)
-    solution = solved(products, balance.least, Known.nothing(products.columns))
+    least = np.append(balance.least, np.full(len(columns.names), -np.inf))
+    solution = solved(products, least, Known.nothing(products.columns))
     values = solution.values * (products.norms[-1] / products.norms[:-1])
-    return Look(balance=balance, residual=wanted - balance.matrix @ values)
+    held = [label for label, at in zip(balance.labels, solution.at_bound, strict=False) if at]
+    return Look(balance=balance, residual=wanted - table[:, :-1] @ values, held=tuple(held))
 
 
 def thinned(motion: Motion) -> Motion:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.robot.inertia import FREE, URDF
 from jointid.robot.motion import Motion
 from jointid.robot.quick_look import looked_at, thinned
 from jointid.robot.robot import Robot
@@ -22,9 +23,10 @@ Array = NDArray[np.float64]
 _BETTER = (
     0.5  # fall of the logarithms of the motors' residuals, summed: what another fact has to reach
 )
-_BETTER_COUPLED = 0.1  # the same of a coupling, which light joints hardly show
-_CLEARLY = 0.03  # by which it has to be better than the next
+_BETTER_COUPLED = 0.15  # the same of a coupling, which light joints hardly show
+_CLEARLY = 0.05  # by which it has to be better than the next
 _LEAST = 0.01  # of a motor's torque: less residual is not told apart
+_FRICTION = ("coulomb", "viscous", "motor_coulomb", "motor_viscous")
 _SLOW = 0.02  # of a peak speed: standing still, for a quick look
 
 
@@ -46,6 +48,8 @@ class WrongFact:
         With the fact as it should be.
     order, torque_order : ndarray of int or None
         Columns of the recording, if they should be exchanged: of positions, and of torques.
+    others : tuple of WrongFact
+        The same coupling with another factor, which is nearly as good.
     """
 
     kind: str
@@ -56,6 +60,7 @@ class WrongFact:
     robot: Robot
     order: NDArray[np.int64] | None = None
     torque_order: NDArray[np.int64] | None = None
+    others: tuple[WrongFact, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -67,6 +72,15 @@ class _Trial:
     coupling: float | None = None
     order: NDArray[np.int64] | None = None
     torque_order: NDArray[np.int64] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Looked:
+    """Residuals and torques of each motor in each window, and how much friction would be negative."""
+
+    residual: Array
+    torque: Array
+    held: int
 
 
 def wrong_fact(
@@ -84,39 +98,68 @@ def wrong_fact(
         Joints whose balance is poor.
     """
     thin = [thinned(motion) for motion in motions]
-    before = _residuals(robot, thin, duration)
-    falls: list[tuple[float, _Trial, Array]] = []
+    given = {mode: _look(robot, thin, duration, mode) for mode in (URDF, FREE)}
+    falls = []
     for trial in _trials(robot, thin, set(suspects)):
-        after = _residuals(trial.robot, trial.motions, duration)
+        # What a coupling changes is as small as the errors of a light wrist's inertias.
+        mode = FREE if trial.kind == "wrong_coupling" else URDF
+        was, other = given[mode], _look(trial.robot, trial.motions, duration, mode)
+        if was is None or other is None:
+            continue
+        if mode == FREE and other.held > was.held:
+            continue  # friction that takes no power away
+        before, after = _relative(was, other)
         fall = np.log(before / after)
-        falls.append((float(np.nansum(fall)), trial, after))
+        falls.append((float(fall.sum()), trial, before, after))
     if not falls:
         return None
     falls.sort(key=lambda each: each[0], reverse=True)
-    best, trial, after = falls[0]
+    best, trial, before, after = falls[0]
     least = _BETTER_COUPLED if trial.kind == "wrong_coupling" else _BETTER
-    clearly = len(falls) < 2 or best - falls[1][0] > _CLEARLY
-    if best < least or not clearly:
+    if best < least:
         return None
-    told = int(np.nanargmax(np.log(before / after)))
-    return WrongFact(
-        kind=trial.kind,
-        joints=tuple(robot.names[joint] for joint in trial.joints),
-        coupling=trial.coupling,
-        before=float(before[told]),
-        after=float(after[told]),
-        robot=trial.robot,
-        order=trial.order,
-        torque_order=trial.torque_order,
-    )
+    others = [
+        (fall, each) for fall, each, _, _ in falls[1:] if fall > max(best - _CLEARLY, 0.5 * best)
+    ]
+    same = [each for _, each in others if each.joints == trial.joints and each.coupling]
+    if len(same) < len(others):
+        return None
+    told = int(np.argmax(before / after))
+    found = [
+        WrongFact(
+            kind=each.kind,
+            joints=tuple(robot.names[joint] for joint in each.joints),
+            coupling=each.coupling,
+            before=float(before[told]),
+            after=float(after[told]),
+            robot=each.robot,
+            order=each.order,
+            torque_order=each.torque_order,
+        )
+        for each in (trial, *same)
+    ]
+    return replace(found[0], others=tuple(found[1:]))
 
 
-def _residuals(robot: Robot, motions: Sequence[Motion], duration: float) -> Array:
-    look = looked_at(robot, motions, duration)
+def _look(robot: Robot, motions: Sequence[Motion], duration: float, mode: str) -> _Looked | None:
+    look = looked_at(robot, motions, duration, mode)
     if look is None:
-        return np.full(robot.n, np.nan)
+        return None
     couplings = robot.couplings if motions[0].at_motor else np.eye(robot.n)
-    return np.maximum(look.of_motors(couplings), _LEAST)
+    residual, torque = look.of_motors(couplings)
+    held = sum(name in _FRICTION for _, name in look.held)
+    return _Looked(residual=residual, torque=torque, held=held)
+
+
+def _relative(given: _Looked, other: _Looked) -> tuple[Array, Array]:
+    """Each motor's residual over its torque in the windows that two fits have in common."""
+    common = np.isfinite(given.residual) & np.isfinite(other.residual)
+    found = []
+    for look in (given, other):
+        both = (look.residual, look.torque)
+        left, size = (np.linalg.norm(np.where(common, each, 0.0), axis=1) for each in both)
+        found.append(np.maximum(left / np.where(size > 0.0, size, 1.0), _LEAST))
+    return found[0], found[1]
 
 
 def _trials(robot: Robot, motions: list[Motion], suspects: set[int]) -> Iterator[_Trial]:
