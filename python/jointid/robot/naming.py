@@ -54,7 +54,8 @@ def named_fact(wrong: WrongFact, shown: str) -> Finding:
         "wrong_motion_sign": f"{first} is probably recorded with its position of the wrong sign, and its torque of the "
         "right one",
         "wrong_torque_sign": f"the torque of {first} probably has the wrong sign",
-        "wrong_coupling": f"a coupling is probably wrong: if {coupling}, and not as given, more is explained{_or(wrong)}",
+        "wrong_coupling": f"a coupling is probably wrong: if {coupling}, and not as given, more is "
+        f"explained{_or(wrong)}",
     }
     advice: tuple[Action, ...] = (Action("inspect", text="the order and names of the columns"),)
     if wrong.kind == "wrong_sign":
