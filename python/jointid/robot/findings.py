@@ -121,18 +121,12 @@ def _of_inertia(estimate: RobotEstimate, columns: InertiaColumns) -> Iterator[Fi
             advice=(Action("call", {"rotor_inertias": ...}, function="Robot.from_urdf"),),
         )
     if estimate.consistent is False:
-        free = estimate.inertia == FREE
-        nearest = (
-            "of the sets with these base parameters, the one nearest to the URDF's has links"
-            if free
-            else ""
-        )
         yield Finding(
             code="impossible_inertia",
-            severity="info" if free else "warning",
-            cause=f"{nearest or 'there are links'} that no body can be: friction and the torque of motion may be "
-            "right, single inertial parameters are not",
-            advice=() if free else (Action("call", {"inertia": FREE}, function="identify_robot"),),
+            severity="warning",
+            cause="there are links that no body can be: friction and the torque of motion may be right, single "
+            "inertial parameters are not",
+            advice=(Action("call", {"inertia": FREE}, function="identify_robot"),),
         )
     for joint in estimate.joints.values():
         scale = joint.parameters.get("inertia_scale")

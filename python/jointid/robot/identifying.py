@@ -15,9 +15,10 @@ from jointid.robot.aligning import aligned, delays_told
 from jointid.robot.asked import least_speeds, recordings_of
 from jointid.robot.attempt import Asked
 from jointid.robot.diagnosis import diagnosed
-from jointid.robot.inertia import MODES
+from jointid.robot.inertia import FREE, MODES
 from jointid.robot.models import friction_models
 from jointid.robot.naming import turned_zeros
+from jointid.robot.physical_inertia import with_possible_bodies
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
 from jointid.robot.shifts import Shift, told_shift
@@ -106,6 +107,8 @@ def identify_robot(
     found = aligned(runs, robot, asked, shift)
     attempt = found.attempt
     given, robot, estimate = robot, attempt.robot, attempt.estimate
+    if inertia == FREE:
+        estimate = with_possible_bodies(estimate, attempt.fit)
     settings = {
         "model": {name: joint.model for name, joint in estimate.joints.items()},
         "inertia": inertia,
