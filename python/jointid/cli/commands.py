@@ -65,9 +65,7 @@ def identify(arguments: argparse.Namespace) -> int:
         from jointid.cli.robot import identify_whole_robot
 
         return identify_whole_robot(arguments)
-    for name in ("facts", "inertia"):
-        if getattr(arguments, name) is not None:
-            raise InputError("this is for a robot; name its URDF with --robot", argument=name)
+    _for_one_joint(arguments)
     several = joints_wanted(arguments)
     if several is not None and len(several) != 1:
         from jointid.cli.joints import identify_several
@@ -134,6 +132,12 @@ def _with_checks(
     return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
 
 
+def _for_one_joint(arguments: argparse.Namespace) -> None:
+    for name in ("facts", "inertia"):
+        if getattr(arguments, name) is not None:
+            raise InputError("this is for a robot; name its URDF with --robot", argument=name)
+
+
 def compare(arguments: argparse.Namespace) -> int:
     """Compare models by how well they predict held-out motion."""
     from jointid.cli.progress import ComparisonProgress
@@ -141,6 +145,11 @@ def compare(arguments: argparse.Namespace) -> int:
     from jointid.identification.search.search import Search
     from jointid.joint.model import Model
 
+    if arguments.robot is not None:
+        from jointid.cli.robot import compare_whole_robot
+
+        return compare_whole_robot(arguments)
+    _for_one_joint(arguments)
     changes = fixed_values(arguments)
     check_outputs(arguments)
     joint = _joint(arguments)
