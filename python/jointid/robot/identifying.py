@@ -18,7 +18,7 @@ from jointid.robot.diagnosis import diagnosed
 from jointid.robot.inertia import FREE, MODES
 from jointid.robot.models import friction_models
 from jointid.robot.naming import turned_zeros
-from jointid.robot.physical_inertia import with_possible_bodies
+from jointid.robot.physical_inertia import impossible_links, with_possible_bodies
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
 from jointid.robot.shifts import Shift, told_shift
@@ -120,7 +120,11 @@ def identify_robot(
         "version": _core.__version__,
         "recordings": [run.name for run in runs],
     }
-    findings = (*delays_told(found), *diagnosed(runs, given, asked, attempt))
+    findings = (
+        *delays_told(found),
+        *diagnosed(runs, given, asked, attempt),
+        *impossible_links(estimate),
+    )
     zeros = attempt.zeros
     if zeros is not None and zeros.found:
         findings = (turned_zeros(zeros, robot), *findings)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -48,19 +48,20 @@ def with_possible_bodies(estimate: RobotEstimate, fit: Fit) -> RobotEstimate:
             consistent=True,
             impossible_by=found.distance,
         )
-    told = Finding(
+    return replace(estimate, consistent=False, impossible_by=found.distance)
+
+
+def impossible_links(estimate: RobotEstimate) -> Iterator[Finding]:
+    """The finding that no bodies have the identified base parameters."""
+    if estimate.consistent is not False or estimate.impossible_by is None:
+        return
+    yield Finding(
         code="impossible_inertia",
         severity="info",
-        evidence={"distance": Measured(found.distance)},
+        evidence={"distance": Measured(estimate.impossible_by)},
         cause="no bodies have these base parameters: the nearest that bodies can have are "
-        f"{two_digits(found.distance)} standard errors away, all of them together; friction and the torque of motion "
-        "may be right, single inertial parameters are not",
-    )
-    return replace(
-        estimate,
-        consistent=False,
-        impossible_by=found.distance,
-        findings=(*estimate.findings, told),
+        f"{two_digits(estimate.impossible_by)} standard errors away, all of them together; friction and the torque of "
+        "motion may be right, single inertial parameters are not",
     )
 
 
