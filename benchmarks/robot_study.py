@@ -112,9 +112,9 @@ positions and of its error, of the best joint.""",
     "wrong": """The call is not told of it; the largest over the arms, and how often each warning came.""",
     "delays": """Every torque as it was so much before; the call is not told. Errors are the largest over the arms.""",
     "causes": """One fact is wrong, and the call is not told. Counted are the runs in which the cause is named,
-and those in which something else is named as a cause, too or instead. Explained: of the squared residual, in stretches of
-motion from which the cause's size was not taken. Free inertias follow what is wrong with links: then there is
-nothing to name.""",
+and those in which something else is named as a cause, too or instead. Explained: of the squared
+residual, in stretches of motion from which the cause's size was not taken. Free inertias follow what
+is wrong with links: then there is nothing to name.""",
     "speed": """Each in a program of its own, on two cores that may have other work: so the processor's seconds
 stand beside those of the clock. The loop is plain Python over 20 s: pinocchio's four regressors a
 sample, and nothing else; the ratio is of processor seconds. Memory before is that of the program

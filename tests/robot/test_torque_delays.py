@@ -9,6 +9,7 @@ import pytest
 from simulated_arm import JOINTS, URDF, Run, Sensors, random_arm, random_motion, recorded, run
 
 import jointid as jid
+from jointid.estimate.findings import Finding
 
 pytest.importorskip("pinocchio")
 
@@ -46,7 +47,7 @@ def worst(found: jid.RobotEstimate, ran: Run) -> float:
     )
 
 
-def told(found: jid.RobotEstimate, code: str) -> list[jid.Finding]:
+def told(found: jid.RobotEstimate, code: str) -> list[Finding]:
     return [each for each in found.findings if each.code == code]
 
 

@@ -11,6 +11,7 @@ import pytest
 from simulated_arm import JOINTS, URDF, Arm, Run, Sensors, random_arm, random_motion, recorded, run
 
 import jointid as jid
+from jointid.estimate.findings import Finding
 
 pinocchio = pytest.importorskip("pinocchio")
 
@@ -48,7 +49,7 @@ def identified(
     )
 
 
-def only(found: jid.RobotEstimate, code: str) -> jid.Finding:
+def only(found: jid.RobotEstimate, code: str) -> Finding:
     """The only warning."""
     assert [each.code for each in found.warnings] == [code], found.findings
     return found.warnings[0]
