@@ -9,6 +9,7 @@ import pytest
 from simulated_arm import JOINTS, URDF, Run, Sensors, random_arm, random_motion, recorded, run
 
 import jointid as jid
+from jointid.estimate.findings import Finding
 
 pytest.importorskip("pinocchio")
 
@@ -39,14 +40,15 @@ def identified(recording: jid.RobotRecording, **options: Any) -> jid.RobotEstima
 
 
 def worst(found: jid.RobotEstimate, ran: Run) -> float:
-    return max(
+    far: float = max(
         abs(found.joints[name].parameters[key].value / truth - 1.0)
         for key in ("coulomb", "viscous")
         for name, truth in zip(NAMES, ran.arm.values(key), strict=True)
     )
+    return far
 
 
-def told(found: jid.RobotEstimate, code: str) -> list[jid.Finding]:
+def told(found: jid.RobotEstimate, code: str) -> list[Finding]:
     return [each for each in found.findings if each.code == code]
 
 
@@ -65,7 +67,7 @@ def test_one_late_joint_is_told_from_the_others(ran: Run) -> None:
     found = identified(late(ran, [0.0, 0.0, 0.005, 0.0, 0.0, 0.0, 0.0]))
     (shift,) = found.settings["shift"].values()
     assert list(shift) == ["joint_3"]
-    assert shift["joint_3"] == pytest.approx(0.005, abs=3e-4)
+    assert shift["joint_3"] == pytest.approx(0.005, abs=1e-3)
     assert "joint_3" in str(told(found, "delay_removed")[0])
 
 
@@ -84,7 +86,7 @@ def test_a_given_delay_is_taken_away_and_no_other(ran: Run) -> None:
     kept = identified(recording, shift={})
     (said,) = told(kept, "signal_lag")
     (advice, *_) = said.advice
-    assert advice.arguments["shift"]["torque"] == pytest.approx(0.006, abs=5e-4)
+    assert advice.arguments["shift"]["torque"] == pytest.approx(0.006, abs=1e-3)
     assert worst(kept, ran) > worst(given, ran)
     named = identified(recording, shift={"torque": dict.fromkeys(NAMES, 0.006)})
     assert named.settings == given.settings

@@ -59,12 +59,13 @@ def aligned(
     attempt = attempted(recordings, robot, asked, delay)
     left = torque_delay(attempt.balance, attempt.fit, attempt.looks)
     for _ in range(_TURNS if shift is None else 0):
-        if not left.certain or np.abs(left.taken).max() < _SMALL:
+        step = left.taken if left.certain else _short(delay, left)
+        if np.abs(step).max() < _SMALL:
             break
-        if np.any(delay + left.taken < -_period(attempt)):
+        if np.any(delay + step < -_period(attempt)):
             # A torque does not come before its motion: then the position is late, as a coarse one is.
             break
-        delay = delay + left.taken
+        delay = delay + step
         attempt = attempted(recordings, robot, asked, delay)
         left = torque_delay(attempt.balance, attempt.fit, attempt.looks)
     return Aligned(attempt=attempt, left=left, chosen=shift is None)
@@ -123,6 +124,13 @@ def _told(code: str, severity: Severity, away: Array, found: Aligned) -> Finding
         shift = {"shift": told_shift(whole, attempt.robot)}
         advice = (Action("call", shift, function="identify_robot"), *advice)
     return Finding(code=code, severity=severity, evidence=evidence, cause=cause, advice=advice)
+
+
+def _short(delay: Array, left: TorqueDelay) -> Array:
+    """What a step that was certain left short."""
+    values, counts = np.unique(delay, return_counts=True)
+    usual = values[int(np.argmax(counts))]
+    return np.where(delay == 0.0, 0.0, np.where(delay == usual, left.value, left.joints))
 
 
 def _period(attempt: Attempt) -> float:

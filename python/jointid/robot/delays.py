@@ -22,7 +22,8 @@ from jointid.robot.motion import Motion
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-_ROUNDS = 5
+_ROUNDS = 8
+_FAR, _FAR_ERRORS = 5e-4, 3.0  # [s] and standard errors, from where the slope was taken
 _NEAR = 2e-5  # [s], the last step
 _STEP = 5e-4  # [s], for the torque's change with the shift
 _LONGEST_STEP, _LONGEST = 4e-3, 0.05  # [s]
@@ -76,27 +77,36 @@ def torque_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> T
     rows = LookedRows(balance, fit, motions)
     torque = _Shifted(rows, balance, motions)
     n = fit.scatter.size
-    delay, step = np.zeros(n), 0.0
-    measured = torque(delay)
-    rest, change, slope = rows.residual, rows.residual, measured
-    for _ in range(_ROUNDS):
-        rest = rows.residual + rows.rest(torque(delay) - measured)
+    measured = torque(np.zeros(n))
+
+    def at(delay: Array) -> tuple[Array, Array]:
+        """The residual with these delays, and how the torque's integrals change with them."""
         slope = (torque(delay + _STEP) - torque(delay - _STEP)) / (2.0 * _STEP)
-        change = rows.rest(slope)
-        energy = float(change @ change)
-        step = -float(change @ rest) / (energy or np.inf)
-        delay = np.clip(delay + np.clip(step, -_LONGEST_STEP, _LONGEST_STEP), -_LONGEST, _LONGEST)
-        if abs(step) < _NEAR:
+        return rows.residual + rows.rest(torque(delay) - measured), slope
+
+    common, delay = True, np.zeros(n)
+    for turn in range(_ROUNDS):
+        rest, slope = at(delay)
+        if common:
+            change = rows.rest(slope)
+            step = -float(change @ rest) / (float(change @ change) or np.inf)
+            common = abs(step) >= _NEAR and turn < _ROUNDS // 2
+            delay = _within(delay, np.full(n, step))
+            if common:
+                continue
+            rest = rest + step * change
+        each = rows.rest(np.where(rows.joint[:, None] == np.arange(n), slope[:, None], 0.0))
+        inverse = np.linalg.pinv(each.T @ each)
+        own = -inverse @ (each.T @ rest)
+        scores = each * (rest + each @ own)[:, None]
+        sums = np.column_stack([np.bincount(rows.cluster, column) for column in scores.T])
+        errors = np.sqrt(np.diag(inverse @ (sums.T @ sums) @ inverse))
+        errors = np.where(np.any(each, axis=0) & (errors > 0.0), errors, np.inf)
+        far = (np.abs(own) > _FAR) & (np.abs(own) > _FAR_ERRORS * errors)
+        if turn == _ROUNDS - 1 or not far.any():
             break
-    each = rows.rest(np.where(rows.joint[:, None] == np.arange(n), slope[:, None], 0.0))
-    inverse = np.linalg.pinv(each.T @ each)
-    left = rest + step * change
-    own = -inverse @ (each.T @ left)
-    left = left + each @ own
-    scores = each * left[:, None]
-    sums = np.column_stack([np.bincount(rows.cluster, column) for column in scores.T])
-    errors = np.sqrt(np.diag(inverse @ (sums.T @ sums) @ inverse))
-    errors = np.where(np.any(each, axis=0) & (errors > 0.0), errors, np.inf)
+        # Far from where the slope was taken.
+        delay = _within(delay, np.where(far, own, 0.0))
     joints = delay + own
     period = float(np.median(np.diff(next(iter(motions.values())).time)))
     value, stderr, alike = _common(joints, errors, _WITHIN_SAMPLE * period)
@@ -109,6 +119,11 @@ def torque_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> T
     return TorqueDelay(
         value=value, stderr=stderr, joints=joints, errors=errors, taken=taken, certain=bool(better)
     )
+
+
+def _within(delay: Array, step: Array) -> Array:
+    limited = np.clip(step, -_LONGEST_STEP, _LONGEST_STEP)
+    return np.asarray(np.clip(delay + limited, -_LONGEST, _LONGEST))
 
 
 def _common(joints: Array, errors: Array, least: float) -> tuple[float, float, Flags]:

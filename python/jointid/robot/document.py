@@ -73,6 +73,8 @@ def robot_document(robot: Robot) -> dict[str, Any]:
         "couplings": plain(robot.couplings),
         "gear_ratios": plain(robot.gear_ratios),
         "zero_offsets": plain(robot.zero_offsets),
+        "torque_scales": plain(robot.torque_scales),
+        "directions": plain(robot.directions),
         "side": robot.side,
     }
 

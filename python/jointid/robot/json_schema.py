@@ -38,7 +38,8 @@ _ROBOT = Record(
         "gear_ratios": OrNull(ListOf(_SIZE)),
         "zero_offsets": OrNull(ListOf(_SIZE)),
         "side": OrNull(Text(known=("joint", "motor"))),
-    }
+    },
+    {"torque_scales": OrNull(ListOf(_SIZE)), "directions": OrNull(ListOf(_SIZE))},
 )
 # Only what is used again is declared. All else is there for people.
 _SETTINGS = Record(

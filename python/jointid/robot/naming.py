@@ -164,7 +164,7 @@ def _centre(error: SmallError, name: str) -> _Worded:
     way = 1e3 * error.values / mass if mass else error.values
     text = (
         f"the centre of mass of the link that {name} moves is not where the URDF has it, by "
-        f"({', '.join(f'{each:.0f}' for each in way)}) mm in the link's frame, or a later link's, moved alike"
+        f"({', '.join(f'{each:.0f}' for each in way)}) mm in the link's frame"
     )
     evidence = {
         axis: Measured(float(each) * 1e-3, "m") for axis, each in zip("xyz", way, strict=True)

@@ -118,7 +118,13 @@ def _robot(d: Mapping[str, Any], name: str) -> Robot:
         zero_offsets=None if d["zero_offsets"] is None else tuple(d["zero_offsets"]),
         side=d["side"],
         name=name,
+        torque_scales=_factors(d, "torque_scales"),
+        directions=_factors(d, "directions"),
     )
+
+
+def _factors(d: Mapping[str, Any], key: str) -> tuple[float, ...] | None:
+    return None if d.get(key) is None else tuple(d[key])
 
 
 def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -196,8 +202,8 @@ def _of_robot(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "robot.couplings", f"{count} rows of {count} are expected"
     elif not np.linalg.cond(np.array(couplings)) <= _SINGULAR:
         yield "robot.couplings", "the motors' speeds do not give the joints': it is singular"
-    for key in ("gear_ratios", "zero_offsets"):
-        if d[key] is not None and len(d[key]) != count:
+    for key in ("gear_ratios", "zero_offsets", "torque_scales", "directions"):
+        if d.get(key) is not None and len(d[key]) != count:
             yield f"robot.{key}", f"{count} numbers are expected, one a joint"
     if d["gear_ratios"] is not None and 0.0 in d["gear_ratios"]:
         yield "robot.gear_ratios", "a gear ratio is not 0"

@@ -141,7 +141,7 @@ def _shares(attempt: Attempt) -> Iterator[tuple[str, int | None, Share]]:
         ways = tilts(robot.tree.gravity)
         yield TILT, None, rows.share(tilted_gravity(*mechanics, ways))
     zeros = moved_zeros(*mechanics)
-    for joint in range(robot.n):
+    for joint in np.flatnonzero(~np.array(robot.tree.prismatic)).tolist():
         yield ZERO, joint, rows.share(zeros[:, joint : joint + 1])
     # What the fit explains of a joint's torque, were it larger: all of it but friction hangs on other joints.
     explained = (balance.rows.torque - fit.residual)[rows.kept]
