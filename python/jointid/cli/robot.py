@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import argparse
 import json
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from jointid.base.errors import InputError
 from jointid.cli.arguments import as_given, gear_ratios, how_to_read, joints_wanted, with_terms
 from jointid.cli.outputs import check_folder, check_page
 from jointid.cli.wording import ADVICE, Wording
+
+if TYPE_CHECKING:
+    from jointid.robot.result import RobotEstimate
 
 _OF_ONE_JOINT = (
     *("joint", "checkpoint", "resume", "selftest", "causes", "shift", "residual"),
@@ -71,6 +76,28 @@ def identify_whole_robot(arguments: argparse.Namespace) -> int:
         if lines:
             print("", *lines, sep="\n")
     return 0
+
+
+def saved_robot(path: Path) -> RobotEstimate | None:
+    """The estimate of a whole robot that a file holds; None if it is another file.
+
+    Raises
+    ------
+    InputError
+        It is one, and cannot be used.
+    """
+    from jointid.base.schema import read_text
+    from jointid.robot.document import KIND
+    from jointid.robot.result import RobotEstimate
+
+    if path.suffix.lower() != ".json":
+        return None
+    try:
+        document = json.loads(read_text(path))
+    except (ValueError, RecursionError):  # another reader says what is wrong
+        return None
+    kind = document.get("kind") if isinstance(document, dict) else None
+    return RobotEstimate.load(path) if kind == KIND else None
 
 
 def _check(arguments: argparse.Namespace) -> None:

@@ -69,6 +69,7 @@ def noise_of_balance(
         velocity=derived,
         slowest=min(slowest, 0.05 * velocity),
         reversal=_REVERSAL * sampled * _dry_step(setup.joint),
+        sampled=sampled,
     )
 
 

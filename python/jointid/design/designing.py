@@ -210,7 +210,7 @@ class _Designing:
             limits=situation.limits,
             peaks=peaks,
             parameters=errors,
-            reference={} if usual is None else self._shares(rehearsals[-1]),
+            reference={} if usual is None else self._relative(rehearsals[-1].rms()),
             criterion=situation.criterion,
             joints=len(self._values),
             evaluations=self._evaluations,
@@ -228,28 +228,26 @@ class _Designing:
         kept = dict(zip(asked.names, judge.joints[0].weight.tolist(), strict=True))
         return tuple(name for name in asked.wanted if kept[name] > 0.0) or asked.wanted
 
-    def _shares(self, rehearsal: Rehearsal) -> dict[str, float]:
-        """Return the relative errors that a rehearsal counted, of the wanted parameters."""
-        situation, counted, values = self._situation, rehearsal.rms(), self._values[0]
-        return {
-            n: counted[n] / situation.ranges.scale(n, values[n]) for n in situation.asked.wanted
-        }
+    def _relative(self, errors: Mapping[str, float]) -> dict[str, float]:
+        """Return errors of the wanted parameters over these parameters' sizes."""
+        situation, values = self._situation, self._values[0]
+        return {n: errors[n] / situation.ranges.scale(n, values[n]) for n in situation.asked.wanted}
 
     def _worth(self, motion: Trajectory, rehearsal: Rehearsal) -> float:
         """Return what the search minimises, for the nominal joint.
 
-        The information's errors scatter less than those of few rehearsals, which count where they
-        contradict it.
+        The information's errors scatter less than those of few rehearsals, whose mean tells what the information
+        does not know: a bias. Where the errors counted contradict both, they count.
         """
-        told = dict(
-            zip(
-                self._situation.asked.names,
-                self._fine.judge(motion.core)[0].errors.tolist(),
-                strict=True,
-            )
-        )
-        counted = self._shares(rehearsal)
-        shares = [max(told[name], counted[name] / _CONTRADICTED) for name in self._counted]
+        judgement = self._fine.judge(motion.core)[0]
+        bias, counted = self._relative(rehearsal.bias()), self._relative(rehearsal.rms())
+        shares = []
+        for place, name in enumerate(self._situation.asked.names):
+            if name in self._counted:
+                own = float(judgement.bias[place])
+                beside = max(bias[name] ** 2 - own**2, 0.0)
+                told = math.sqrt(float(judgement.errors[place]) ** 2 + beside)
+                shares.append(max(told, counted[name] / _CONTRADICTED))
         if self._situation.criterion == "worst":
             return float(max(shares))
         return float(np.mean(np.log(np.maximum(shares, 1e-12))))

@@ -36,11 +36,12 @@ def expected_errors(
     asked, ranges = situation.asked, situation.ranges
     units = _units(situation)
     counted = rehearsal.rms()
-    alone = _alone(judgements[0].information)
+    known = bool(np.any(situation.known))
+    scales = np.array([ranges.scale(name, values[0][name]) for name in asked.names])
+    alone = _alone(judgements[0].information) if known else scales * judgements[0].errors
     factors = [
         max(1.0, counted[name] / float(alone[place])) for place, name in enumerate(asked.names)
     ]
-    known = bool(np.any(situation.known))
     if known:
         stretch = np.outer(factors, factors)
         errors = [_alone(each.information / stretch + situation.known) for each in judgements]

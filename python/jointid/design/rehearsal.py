@@ -40,6 +40,13 @@ class Rehearsal:
         size = np.sqrt(np.mean(self.errors**2, axis=0))
         return dict(zip(self.names, size.tolist(), strict=True))
 
+    def bias(self) -> dict[str, float]:
+        """Return the magnitude of each parameter's mean error, less what scatter alone makes it; 0 if that is all."""
+        count = len(self.errors)
+        scatter = np.var(self.errors, axis=0) / max(1, count - 1)
+        size = np.sqrt(np.maximum(np.mean(self.errors, axis=0) ** 2 - scatter, 0.0))
+        return dict(zip(self.names, size.tolist(), strict=True))
+
 
 def rehearse(
     situation: Situation,

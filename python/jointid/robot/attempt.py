@@ -25,7 +25,7 @@ from jointid.robot.resampling import RobotDraws
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
 from jointid.robot.shifts import without_delay
-from jointid.robot.solving import solved
+from jointid.robot.solving import Known, solved
 from jointid.robot.zeros import Zeros, zeros_of
 
 Array = NDArray[np.float64]
@@ -47,6 +47,8 @@ class Asked:
     slowest : ndarray, shape (n,)
         Least speeds.
     mask_standstill : bool
+    beside : tuple of str
+        Further modes of inertia that the balance is to hold.
     """
 
     inertia: str
@@ -54,6 +56,7 @@ class Asked:
     windows: float | None
     slowest: Array
     mask_standstill: bool
+    beside: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -129,7 +132,8 @@ def attempted(
             robot = replace(robot, zero_offsets=zeros.offsets)
             looks = {place: motion(place) for place in firsts}
     every = (looks[place] if place in looks else motion(place) for place in range(len(pieces)))
-    balance = balance_of(robot, every, duration, basis_of(robot, asked.inertia))
+    basis = np.hstack([basis_of(robot, mode) for mode in (asked.inertia, *asked.beside)])
+    balance = balance_of(robot, every, duration, basis)
     if not balance.rows.torque.size:
         raise InputError("no joint moves", argument="recordings", value=runs[0].name)
     estimate, fit = _solved(robot, balance, asked.inertia, duration, asked.models, numbers)
@@ -154,6 +158,24 @@ def _solved(
     models: Sequence[str],
     runs: Sequence[int],
 ) -> tuple[RobotEstimate, Fit]:
+    fit, known = fitted(robot, balance, mode, models)
+    estimate = concluded(robot, balance, mode, fit, fit.covariance(balance), duration, runs)
+    return replace(estimate, draws=RobotDraws.of(balance, fit, known)), fit
+
+
+def fitted(robot: Robot, balance: Balance, mode: str, models: Sequence[str]) -> tuple[Fit, Known]:
+    """Return the values of all parameters, and what was known of them beforehand.
+
+    Parameters
+    ----------
+    robot : Robot
+    balance : Balance
+        That holds the mode.
+    mode : str
+        Of the inertia.
+    models : sequence of str
+        One a joint.
+    """
     columns = inertia_columns(robot, mode)
     kept = [
         place
@@ -187,9 +209,7 @@ def _solved(
             start = [float(found.logs[stribeck.index(joint)]) for joint in left]
             decays = Decays(balance=balance, joints=left)
             found = solved_with_decays(decays, products, least, known, start)
-    fit = Fit.of(balance, columns, kept, products, decays, found)
-    estimate = concluded(robot, balance, mode, fit, fit.covariance(balance), duration, runs)
-    return replace(estimate, draws=RobotDraws.of(balance, fit, known)), fit
+    return Fit.of(balance, columns, kept, products, decays, found), known
 
 
 def _pieces(runs: Sequence[RobotRecording]) -> list[tuple[int, int, int]]:

@@ -14,14 +14,15 @@ from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.aligning import aligned, delays_told
 from jointid.robot.asked import least_speeds, recordings_of
 from jointid.robot.attempt import Asked
-from jointid.robot.findings import doubtful_joints, named_fact, turned_zeros, wrong_inertias
-from jointid.robot.inertia import MODES, SCALED, URDF
+from jointid.robot.diagnosis import diagnosed
+from jointid.robot.inertia import FREE, MODES
 from jointid.robot.models import friction_models
+from jointid.robot.naming import turned_zeros
+from jointid.robot.physical_inertia import impossible_links, with_possible_bodies
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
 from jointid.robot.shifts import Shift, told_shift
 from jointid.robot.stamps import all_on_even_clocks
-from jointid.robot.wrong_facts import wrong_fact
 
 
 def identify_robot(
@@ -105,7 +106,9 @@ def identify_robot(
     )
     found = aligned(runs, robot, asked, shift)
     attempt = found.attempt
-    robot, estimate = attempt.robot, attempt.estimate
+    given, robot, estimate = robot, attempt.robot, attempt.estimate
+    if inertia == FREE:
+        estimate = with_possible_bodies(estimate, attempt.fit)
     settings = {
         "model": {name: joint.model for name, joint in estimate.joints.items()},
         "inertia": inertia,
@@ -117,18 +120,14 @@ def identify_robot(
         "version": _core.__version__,
         "recordings": [run.name for run in runs],
     }
-    findings = (*delays_told(found), *estimate.findings)
+    findings = (
+        *delays_told(found),
+        *diagnosed(runs, given, asked, attempt),
+        *impossible_links(estimate),
+    )
     zeros = attempt.zeros
     if zeros is not None and zeros.found:
         findings = (turned_zeros(zeros, robot), *findings)
-    if inertia == URDF:
-        scaled = attempt.solved_as(SCALED, asked.models)
-        findings = (*wrong_inertias(estimate, scaled), *findings)
-    suspects = doubtful_joints(estimate)
-    looks = list(attempt.looks.values())
-    wrong = wrong_fact(robot, looks, attempt.duration, suspects) if suspects else None
-    if wrong is not None:
-        findings = (named_fact(wrong), *findings)
     return replace(
         estimate,
         findings=findings,

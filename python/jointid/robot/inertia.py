@@ -94,8 +94,8 @@ def within(basis: Array, changes: Array) -> Array:
 def basis_of(robot: Robot, mode: str) -> Array:
     """Return the changes of inertial parameters that a mode needs, shape (10 n, directions).
 
-    For the URDF's inertias, as they are or scaled, these are the links one by one; behind them those by which an error of
-    the URDF is named: see `moment_columns`.
+    For the URDF's inertias, as they are or scaled, these are the links one by one; behind them those by which an error
+    of the URDF is named: see `moment_columns`.
     """
     if mode == FREE:
         return inertia_columns(robot, FREE).directions

@@ -25,6 +25,7 @@ _EXPLAINED = 0.03  # of the held-out squared residual
 _CERTAIN = 2.0  # standard errors of that, by its scatter over stretches
 _WALD = 150.0  # of the values per column; errors of a model, too, are no chance
 _AS_GOOD = 0.93  # of what the best explains: a simpler cause is taken
+_SETTLED = 0.02  # of an error: what is left of it
 _MAY_BE = 0.97  # of it: another cause that is told
 TILT, ZERO, TORQUE, LINK, CENTRE, PAYLOAD = (
     *("tilted_base", "wrong_zero", "wrong_torque_scale"),
@@ -56,8 +57,8 @@ class SmallError:
         payload: mass, then first moments.
     share : float
         Of the squared residuals of held-out stretches, weighted by joint, that it explains.
-    robot : Robot
-        With it corrected.
+    given, robot : Robot
+        As it was given, and with it corrected.
     others : tuple of (str, int or None)
         Kinds and joints that explain as much.
     """
@@ -67,6 +68,7 @@ class SmallError:
     values: Array
     errors: Array
     share: float
+    given: Robot
     robot: Robot
     others: tuple[tuple[str, int | None], ...] = ()
 
@@ -99,9 +101,26 @@ def small_error(attempt: Attempt) -> SmallError | None:
         values=told.values,
         errors=told.errors,
         share=told.share,
+        given=attempt.robot,
         robot=_corrected(attempt, kind, joint, told.values),
         others=others,
     )
+
+
+def refined(error: SmallError, attempt: Attempt) -> SmallError | None:
+    """Return the error with what an attempt without it still shows of it, or None where that is next to nothing.
+
+    The balances change with a tilt or a zero by sine and cosine; the first step is along their slope.
+    """
+    if error.kind not in (TILT, ZERO):
+        return None
+    told = next(
+        told for kind, joint, told in _shares(attempt) if (kind, joint) == (error.kind, error.joint)
+    )
+    if np.linalg.norm(told.values) < _SETTLED * np.linalg.norm(error.values):
+        return None
+    other = _corrected(attempt, error.kind, error.joint, told.values)
+    return replace(error, robot=other, errors=told.errors)
 
 
 def tilts(gravity: Array) -> Array:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from jointid.base.advice import Action
 from jointid.base.error_text import printable
+from jointid.base.text_table import aligned
 from jointid.estimate.wording import number, percent, two_digits
 from jointid.joints.tables import value_with_error
 from jointid.robot.columns import MEANINGS
@@ -92,7 +93,7 @@ def base_rows(estimate: RobotEstimate) -> list[list[str]]:
 
 def text_summary(estimate: RobotEstimate) -> str:
     """The table of the joints."""
-    return printable("\n".join(_aligned([head(estimate), *rows(estimate)])))
+    return printable("\n".join(aligned([head(estimate), *rows(estimate)])))
 
 
 def text_report(estimate: RobotEstimate, action: Callable[[Action], str] = str) -> str:
@@ -105,25 +106,14 @@ def text_report(estimate: RobotEstimate, action: Callable[[Action], str] = str) 
         Words the advice of a finding. Default: as at a Python prompt.
     """
     lines = [f"jointid robot estimate — {estimate.robot.name}; value ± standard error", ""]
-    lines += [*_aligned([head(estimate), *rows(estimate)]), ""]
+    lines += [*aligned([head(estimate), *rows(estimate)]), ""]
     width = max(len(label) for label, _ in quality(estimate))
     lines += [f"{label.ljust(width)}  {text}" for label, text in quality(estimate)]
     if estimate.base_parameters:
         table = [["value", "± std. error", "unit", "base parameter"], *base_rows(estimate)]
-        lines += ["", *_aligned(table)]
+        lines += ["", *aligned(table)]
     lines += [
         "",
         *(f"{each.severity} ({each.code}): {each.worded(action)}" for each in estimate.findings),
     ]
     return printable("\n".join(lines).rstrip())
-
-
-def _aligned(table: list[list[str]]) -> list[str]:
-    widths = [max(len(row[column]) for row in table) for column in range(len(table[0]))]
-    lines = []
-    for index, row in enumerate(table):
-        cells = [cell.ljust(width) for cell, width in zip(row, widths, strict=True)]
-        lines.append("  ".join(cells).rstrip())
-        if index == 0:
-            lines.append("  ".join("-" * width for width in widths))
-    return lines
