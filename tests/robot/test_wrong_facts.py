@@ -156,7 +156,7 @@ def test_a_sign_is_no_coupling_beside_static_friction() -> None:
     arm = random_arm(0)
     whole = recorded(run(arm, random_motion(0, duration=10.0)), Sensors(), 0)
     found = identified(changed(whole, "torque", 5, -1.0))
-    assert [each.code for each in found.warnings][0] == "wrong_torque_sign"
+    assert found.warnings[0].code == "wrong_torque_sign"
 
 
 def test_two_wrong_facts_are_both_named(clean: jid.RobotRecording) -> None:
