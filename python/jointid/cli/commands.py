@@ -256,9 +256,9 @@ def _write(estimate: Estimate, arguments: argparse.Namespace) -> str:
 
     The next session reads a joint file and obeys it, so values that cannot be used stay out of it.
     """
-    from jointid.report.html import save_report
-
     if arguments.report is not None:
+        from jointid.report.html import save_report
+
         save_report(estimate, arguments.report, action=ADVICE.of_action)
     blocking = [each.code for each in estimate.findings if each.severity == "blocking"]
     if arguments.save is None:

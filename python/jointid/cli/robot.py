@@ -107,7 +107,6 @@ def _read(arguments: argparse.Namespace, models: Sequence[Any]) -> tuple[Robot, 
             load_robot(
                 path,
                 joints_wanted(arguments) or None,
-                gear_ratio=robot.gear_ratios,
                 torque_hold=arguments.torque_hold,
                 **how_to_read(arguments, models),
             )

@@ -9,7 +9,6 @@ from jointid import _core
 from jointid.design.design import Design
 from jointid.simulation.arguments import law_name
 
-_BELIEVED = ("coulomb", "static", "stribeck", "viscous")
 _GAINS = ("stiffness", "integral", "damping")
 _VELOCITIES = {"counts": "velocity from its counts", "difference": "velocity from differences"}
 
@@ -42,12 +41,14 @@ def _sensors(sensors: _core.Sensors, prismatic: bool) -> Iterator[str]:
 def _controller(controller: Any) -> str:
     """Its law, with what it believes of friction or its gains, and whether it feeds the torque sensor back."""
     settings: Mapping[str, Any] = controller.asdict()
-    named = _BELIEVED if "coulomb" in settings else _GAINS
-    shown = [f"{name} {settings[name]:.4g}" for name in named if name in settings]
+    friction = {term.name for term in _core.terms() if term.friction}
+    friction |= {shape.name for shape in _core.shapes()}
+    believed = [name for name in settings if name in friction]
+    named = believed or [name for name in _GAINS if name in settings]
+    shown = [f"{name} {settings[name]:.4g}" for name in named]
     text = law_name(controller)
     if shown:
-        believes = "that believes " if named is _BELIEVED else "with "
-        text += f" {believes}{', '.join(shown)}"
+        text += f" {'that believes' if believed else 'with'} {', '.join(shown)}"
     fed_back = settings.get("torque_feedback")
     if fed_back is not None:
         text += f", {'with' if fed_back else 'without'} torque feedback"

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
+import numpy as np
+
 from jointid.base.errors import InputError
 from jointid.joint.checks import finite_number, positive_number, set_numbers, suggestion
 from jointid.joint.joint import Joint
@@ -55,7 +57,9 @@ class MotionLimits:
     sensor_range: float | None = None
 
     def __post_init__(self) -> None:
-        window = self.position
+        window: Any = self.position
+        if isinstance(window, np.ndarray):
+            window = window.tolist()
         if not isinstance(window, list | tuple) or len(window) != 2:
             raise InputError(
                 "a lowest and a highest position are expected",

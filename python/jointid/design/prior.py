@@ -79,6 +79,10 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
     InputError
         A name that is no free parameter, a range that is empty, or parameters without any range: all are named.
     """
+    if prior is not None and (not isinstance(prior, Mapping | Sequence) or isinstance(prior, str)):
+        raise InputError(
+            "a range by parameter, or values of joints, are expected", argument="prior", value=prior
+        )
     if prior is not None and not isinstance(prior, Mapping):
         return _given(names, prior)
     stated = {} if prior is None else dict(prior)

@@ -143,7 +143,15 @@ class Robot:
                 "directions": directions,
             }
             stated = {name: value for name, value in given.items() if value is not None}
-            return cls.from_urdf(path, **{**read_facts(require_path("facts", facts)), **stated})
+            place = require_path("facts", facts)
+            read = read_facts(place)
+            try:
+                return cls.from_urdf(path, **{**read, **stated})
+            except InputError as error:
+                said = error.argument.partition(".")[0]
+                raise (
+                    error.at(place.name) if said in read.keys() - stated.keys() else error
+                ) from None
         file = require_path("path", path)
         if side not in (None, *SIDES):
             raise InputError(f"{' or '.join(SIDES)} is expected", argument="side", value=side)

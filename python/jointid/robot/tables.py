@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from jointid.base.advice import Action
 from jointid.base.error_text import printable
@@ -64,10 +64,17 @@ def quality(estimate: RobotEstimate) -> list[tuple[str, str]]:
         "scaled": "the URDF's, scaled link by link",
         "free": f"identified: {len(estimate.base_parameters)} base parameters",
     }[estimate.inertia]
+    if estimate.inertia == "free" and estimate.consistent:
+        inertia += ", which bodies can have"
+        if estimate.impossible_by:
+            inertia += f" within {two_digits(estimate.impossible_by)} standard errors"
+    elif estimate.consistent is False:
+        inertia += ", which no bodies can have"
     windows = sum(joint.residuals.windows for joint in estimate.joints.values())
     duration = 1e3 * float(estimate.settings.get("window_duration", 0.0))
     return [
         ("inertia", inertia),
+        *_turning(estimate),
         (
             "fit",
             f"relative residual {100.0 * estimate.relative_residual:.2f} % of all joints' torque",
@@ -76,6 +83,21 @@ def quality(estimate: RobotEstimate) -> list[tuple[str, str]]:
         ("condition", f"{estimate.condition:.3g}"),
         ("time", f"{estimate.seconds:.2f} s"),
     ]
+
+
+def _turning(estimate: RobotEstimate) -> list[tuple[str, str]]:
+    """Which motors turn with several joints, and what was taken away of zeros and delays."""
+    robot, found = estimate.robot, []
+    for motor in map(int, robot.coupled.nonzero()[0]):
+        row = robot.couplings[motor]
+        shares = [f"{row[joint]:.4g} {robot.names[joint]}" for joint in map(int, row.nonzero()[0])]
+        found.append(("coupling", f"motor {robot.names[motor]} turns with {' + '.join(shares)}"))
+    shift = estimate.settings.get("shift", {}).get("torque")
+    if shift:
+        late = shift.items() if isinstance(shift, Mapping) else [("all joints", shift)]
+        told = ", ".join(f"{1e3 * value:.3g} ms of {name}" for name, value in late)
+        found.append(("delay", f"torques' delay taken away: {told}"))
+    return found
 
 
 def base_rows(estimate: RobotEstimate) -> list[list[str]]:
