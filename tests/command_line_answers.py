@@ -41,6 +41,8 @@ def commands() -> dict[str, argparse.ArgumentParser]:
     (action,) = (
         each for each in command_parser()._actions if isinstance(each, argparse._SubParsersAction)
     )
+    for parser in action.choices.values():
+        parser.complete()
     return dict(action.choices)
 
 

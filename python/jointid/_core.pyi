@@ -65,6 +65,9 @@ __all__: list[str] = [
     "Trajectory",
     "TrialResult",
     "WindowOptions",
+    "chi_square_quantile",
+    "covering_half_width",
+    "find_control_character",
     "friction_basis",
     "inspect",
     "is_parameter",
@@ -76,6 +79,8 @@ __all__: list[str] = [
     "model_names",
     "model_terms",
     "models",
+    "non_negative_least_squares",
+    "number_table",
     "parameter_names",
     "polish",
     "position_noise",
@@ -84,6 +89,7 @@ __all__: list[str] = [
     "shape",
     "shapes",
     "simulate_runs",
+    "student_quantile",
     "term",
     "terms",
     "timing_errors",
@@ -3070,6 +3076,8 @@ class BalanceNoise:
         Slower samples tell nothing [rad/s].
     reversal : default 0.0
         Of a window with a change of sign [N·m·s].
+    sampled : default 0.0
+        Between samples of the recording [s].
     """
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> dict[str, typing.Any]: ...
@@ -3082,6 +3090,7 @@ class BalanceNoise:
         velocity: float = 0.0,
         slowest: float = 0.0,
         reversal: float = 0.0,
+        sampled: float = 0.0,
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
@@ -3097,6 +3106,7 @@ class BalanceNoise:
         velocity: float = ...,
         slowest: float = ...,
         reversal: float = ...,
+        sampled: float = ...,
     ) -> BalanceNoise:
         """
         A copy with the given fields changed.
@@ -3110,6 +3120,11 @@ class BalanceNoise:
     def reversal(self) -> float:
         """
         Of a window with a change of sign [N·m·s].
+        """
+    @property
+    def sampled(self) -> float:
+        """
+        Between samples of the recording [s].
         """
     @property
     def slowest(self) -> float:
@@ -3173,9 +3188,14 @@ class MotionJudgement:
         [rad/s²]
         """
     @property
+    def bias(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        The part of them that each recording shows.
+        """
+    @property
     def errors(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
-        Expected standard errors over their scales.
+        Expected errors (RMS) over their scales.
         """
     @property
     def excess(self) -> float:
@@ -3227,10 +3247,6 @@ class Excitation:
         criterion: str,
         window: typing.SupportsInt | typing.SupportsIndex,
     ) -> None: ...
-    def cost(self, judgements: collections.abc.Sequence[MotionJudgement]) -> float:
-        """
-        The logarithm of what the search minimises.
-        """
     def judge(self, trajectory: Trajectory) -> list[MotionJudgement]:
         """
         One judgement a joint.
@@ -3270,6 +3286,27 @@ class Excitation:
         """
     @property
     def joints(self) -> list[DrawnJoint]: ...
+
+def chi_square_quantile(
+    tail: typing.SupportsFloat | typing.SupportsIndex,
+    freedom: typing.SupportsFloat | typing.SupportsIndex,
+) -> float:
+    """
+    Beyond which this probability of chi-square lies.
+    """
+
+def covering_half_width(
+    probability: typing.SupportsFloat | typing.SupportsIndex,
+    offset: typing.SupportsFloat | typing.SupportsIndex,
+) -> float:
+    """
+    Half the width of the symmetric interval that holds a normal variable of this mean and deviation 1.
+    """
+
+def find_control_character(content: bytes) -> int:
+    """
+    The place of the first byte that no text contains in any encoding; -1 without one.
+    """
 
 def friction_basis(
     key: str,
@@ -3379,6 +3416,24 @@ def models() -> list[Model]:
     All friction models.
     """
 
+def non_negative_least_squares(
+    matrix: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    target: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float]:
+    """
+    The solution without negative entries, and the norm of what is left of the target.
+    """
+
+def number_table(
+    text: str,
+    below: typing.SupportsInt | typing.SupportsIndex,
+    separator: str,
+    columns: typing.SupportsInt | typing.SupportsIndex,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"] | None:
+    """
+    The numbers of all rows below the first lines; None where a cell is not a plain number.
+    """
+
 def parameter_names() -> tuple[typing.Any, ...]:
     """
     All parameters but the harmonics, a shape parameter after its first term.
@@ -3447,6 +3502,14 @@ def simulate_runs(
 ) -> list[Outcome]:
     """
     One Outcome a setup; InputError when a loop is not stable.
+    """
+
+def student_quantile(
+    probability: typing.SupportsFloat | typing.SupportsIndex,
+    freedom: typing.SupportsFloat | typing.SupportsIndex,
+) -> float:
+    """
+    Below which this probability of Student's t lies.
     """
 
 def term(key: str) -> Term:

@@ -1,43 +1,162 @@
-"""`import jointid` is quick: it brings numpy and the extension, and nothing else."""
+"""What is imported when: `import jointid` brings no room, `jointid --help` neither, and neither hides a name."""
 
+import ast
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
-SCRIPT = """
-import json, sys
-before = set(sys.modules)
-import jointid
-print(json.dumps(sorted(set(sys.modules) - before)))
-"""
+import jointid as jid
+from jointid.cli.demo import data_folder
+
+# What the face itself needs; every other module comes with the first name that needs it.
+FACE = {"jointid", "jointid.base", "jointid.base.interruption", "jointid.base.joining"}
+HELP = {
+    *("jointid.__main__", "jointid.cli", "jointid.cli.command_line", "jointid.cli.command_table"),
+    *("jointid.cli.exit_codes", "jointid.cli.parser"),
+}
+HEAVY = {"scipy", "matplotlib", "can", "canopen", "pandas", "tomlkit", "pyarrow", "pinocchio"}
+
+
+def loaded(script: str) -> set[str]:
+    """Names of the modules that a script loads into a fresh interpreter."""
+    program = (
+        "import json, sys\nbefore = set(sys.modules)\n"
+        f"{script}\nprint(json.dumps(sorted(set(sys.modules) - before)))"
+    )
+    command = [sys.executable, "-W", "error", "-c", program]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    modules: list[str] = json.loads(run.stdout.splitlines()[-1])
+    return set(modules)
+
+
+def roots(modules: set[str]) -> set[str]:
+    """Packages that are not of the standard library; numpy's compiled modules leave their runtime's own entries."""
+    found = {name.partition(".")[0] for name in modules} - sys.stdlib_module_names
+    return {root for root in found if "cython" not in root}
+
+
+def test_import_brings_no_room() -> None:
+    modules = loaded("import jointid")
+    assert {name for name in modules if name.startswith("jointid")} == FACE
+    assert roots(modules) == {"jointid"}
+
+
+def test_help_brings_no_room() -> None:
+    script = (
+        "import runpy\nsys.argv = ['jointid', '--help']\n"
+        "try: runpy.run_module('jointid', run_name='__main__')\n"
+        "except SystemExit as end: assert not end.code"
+    )
+    modules = loaded(script)
+    assert {name for name in modules if name.startswith("jointid")} <= FACE | HELP
+    assert roots(modules) == {"jointid"}
+    # They are slow to import, and of no use here.
+    assert not modules & {"dataclasses", "inspect", "traceback", "tempfile", "difflib"}
+
+
+def test_all_names_are_there_and_bring_only_numpy() -> None:
+    names = [name for name in jid.__all__ if name not in {"hardware", "commissioning"}]
+    modules = loaded(f"import jointid\nfor name in {names}: getattr(jointid, name)")
+    assert {"jointid._core", "jointid.plot"} <= modules
+    assert roots(modules) == {"jointid", "numpy"}
+    assert not [name for name in modules if name.startswith("jointid.hardware")]
+
+
+def test_completion_shows_what_is_not_loaded_yet() -> None:
+    assert set(jid.__all__) <= set(dir(jid))
+    assert "hardware" in loaded_names("import jointid; print(*dir(jointid))")
+
+
+def test_a_star_brings_every_name() -> None:
+    found = loaded_names("from jointid import *; print(*globals())")
+    assert set(jid.__all__) <= found
+
+
+def loaded_names(script: str) -> set[str]:
+    """The words that a script prints."""
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
+    return set(done.stdout.split())
+
+
+def test_a_name_that_is_not_there_is_refused() -> None:
+    with pytest.raises(AttributeError, match="module 'jointid' has no attribute 'nonsense'"):
+        getattr(jid, "nonsense")  # noqa: B009 (a type checker knows that it is not there)
+
+
+def test_a_name_is_loaded_once() -> None:
+    assert jid.identify is jid.identify
+    assert "identify" in vars(jid)
+
+
+def test_the_type_checker_sees_what_is_loaded() -> None:
+    """The imports for the type checker and the table of homes say the same."""
+    tree = ast.parse(Path(jid.__file__).read_text(encoding="utf-8"))
+    (checked,) = (
+        node
+        for node in tree.body
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+    )
+    homes = {
+        (alias.asname or alias.name): node.module
+        for node in checked.body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+    homes = {name: home for name, home in homes.items() if name not in jid._FOLDERS}
+    assert homes == jid._HOME_OF
+    assert {*homes, *jid._FOLDERS, "__version__"} == set(jid.__all__)
+
+
+def test_the_missing_core_is_said_at_once(tmp_path: Path) -> None:
+    package = tmp_path / "jointid"
+    source = Path(jid.__file__).parent
+    for name in ("__init__.py", "base/__init__.py", "base/interruption.py", "base/joining.py"):
+        target = package / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes((source / name).read_bytes())
+    script = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import jointid"
+    done = subprocess.run(
+        [sys.executable, "-S", "-c", script], capture_output=True, text=True, check=False
+    )
+    assert "jointid's compiled core is missing" in done.stderr
+
+
+def test_the_room_that_designs_is_loaded_by_the_first_design() -> None:
+    before = "from jointid.estimate.estimate import Estimate\n"
+    after = "from jointid.base.joining import joined\nassert callable(joined('next_motion'))"
+    assert "jointid.design.next_motion" not in loaded(before)
+    assert "jointid.design.next_motion" in loaded(before + after)
 
 
 @pytest.fixture(scope="module")
-def loaded() -> list[str]:
-    """Names of the modules that `import jointid` loads into a fresh interpreter."""
-    command = [sys.executable, "-W", "error", "-c", SCRIPT]
-    run = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert run.returncode == 0, run.stderr
-    modules: list[str] = json.loads(run.stdout)
-    return modules
+def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A plain file of numbers."""
+    path = tmp_path_factory.mktemp("run") / "run.csv"
+    jid.load(data_folder() / "well_excited.csv.gz").save(path)
+    return path
 
 
-def test_import_loads_the_extension(loaded: list[str]) -> None:
-    assert {"jointid", "jointid._core", "numpy"} <= set(loaded)
+def test_identifying_a_file_brings_only_numpy(recording: Path) -> None:
+    script = (
+        "import runpy\n"
+        f"sys.argv = ['jointid', 'identify', {str(recording)!r}, '--quiet']\n"
+        "try: runpy.run_module('jointid', run_name='__main__')\n"
+        "except SystemExit as end: assert not end.code"
+    )
+    modules = loaded(script)
+    assert roots(modules) == {"jointid", "numpy"}
+    others = ("cli.study", "design", "hardware", "online", "plot", "report", "robot", "study")
+    rooms = tuple(f"jointid.{room}" for room in (*others, "exports", "identification.self_test"))
+    assert not [name for name in modules if name.startswith(rooms)]
+    assert not modules & {"numpy.random", "numpy.fft", "numpy.testing", "numpy.polynomial"}
 
 
-@pytest.mark.parametrize("package", ["scipy", "matplotlib", "can", "canopen", "pandas", "tomlkit"])
-def test_import_leaves_out(package: str, loaded: list[str]) -> None:
-    assert package not in {name.partition(".")[0] for name in loaded}
-
-
-def test_import_loads_numpy_and_nothing_else_from_outside(loaded: list[str]) -> None:
-    roots = {name.partition(".")[0] for name in loaded} - sys.stdlib_module_names
-    # The compiled modules of numpy leave their runtime's own entries.
-    assert {root for root in roots if "cython" not in root} == {"jointid", "numpy"}
-
-
-def test_hardware_is_not_loaded(loaded: list[str]) -> None:
-    assert not [name for name in loaded if name.startswith("jointid.hardware")]
+def test_the_first_identify_brings_only_numpy(recording: Path) -> None:
+    modules = loaded(f"from jointid import identify, load\nidentify(load({str(recording)!r}))")
+    assert roots(modules) == {"jointid", "numpy"}

@@ -108,7 +108,7 @@ def test_a_broken_pipe_that_is_not_our_output_is_not_passed_over() -> None:
     program = (
         "import sys\nfrom jointid.cli import commands, main\n"
         "def broken(_):\n    raise BrokenPipeError\n"
-        "commands.COMMANDS['info'] = broken\nsys.exit(main(['info', 'x.csv']))"
+        "commands.info = broken\nsys.exit(main(['info', 'x.csv']))"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert done.returncode == 70

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
-from jointid.cli.arguments import TEXT, decimal, pair, whole, whole_seed
+from jointid.cli.arguments import decimal, pair, whole, whole_seed
 from jointid.cli.outputs import check_folder
 
 if TYPE_CHECKING:
@@ -19,21 +19,16 @@ if TYPE_CHECKING:
 _PICTURES = (".png", ".pdf", ".svg")
 
 
-def add_design(commands: Any) -> None:
+def add_design(design: argparse.ArgumentParser) -> None:
     """Add the command's grammar."""
-    design = commands.add_parser(
-        "design",
-        help="find the motion that identifies a joint best within limits",
-        epilog=(
-            "examples:\n"
-            "  jointid design joint.toml --duration 12 --output motion.toml\n"
-            "  jointid design joint.toml --position -60deg,60deg --velocity 3.4 --torque 160 --output motion.toml\n"
-            "  jointid design joint.toml --after estimate.json --duration 6 --output motion.toml\n"
-            "  jointid design joint.toml --parameter sensor_gain --sensor torque_noise=0.5 --plot motion.png\n"
-            "the joint file needs a value or bounds for each parameter; its table [session], if there is one,\n"
-            'says the controller, the period, the encoder and the limits, and takes the motion as file = "motion.toml"'
-        ),
-        formatter_class=TEXT,
+    design.epilog = (
+        "examples:\n"
+        "  jointid design joint.toml --duration 12 --output motion.toml\n"
+        "  jointid design joint.toml --position -60deg,60deg --velocity 3.4 --torque 160 --output motion.toml\n"
+        "  jointid design joint.toml --after estimate.json --duration 6 --output motion.toml\n"
+        "  jointid design joint.toml --parameter sensor_gain --sensor torque_noise=0.5 --plot motion.png\n"
+        "the joint file needs a value or bounds for each parameter; its table [session], if there is one,\n"
+        'says the controller, the period, the encoder and the limits, and takes the motion as file = "motion.toml"'
     )
     # -60deg,60deg is a value, and no option: none of ours begins with a digit.
     design._negative_number_matcher = re.compile(r"-\.?\d")
@@ -127,7 +122,7 @@ def _sought(design: argparse.ArgumentParser) -> None:
     )
     design.add_argument("--evaluations", type=whole, help="motions to try (default 3600)")
     design.add_argument(
-        "--draws", type=whole, help="joints drawn from what is believed (default 4)"
+        "--joints", type=whole, help="joints drawn from what is believed (default 4)"
     )
     design.add_argument(
         "--rehearsals",
@@ -172,7 +167,7 @@ def _designed(arguments: argparse.Namespace) -> Design:
     limits = limits_of(arguments, joint, bench)
     budget = {
         "evaluations": arguments.evaluations,
-        "joints": arguments.draws,
+        "joints": arguments.joints,
         "rehearsals": arguments.rehearsals,
     }
     search = DesignSearch(
@@ -206,7 +201,7 @@ def _designed(arguments: argparse.Namespace) -> Design:
 
 def _say(found: Design, arguments: argparse.Namespace) -> int:
     """Write what was asked for, and print the design; a motion that keeps no limits is not written."""
-    from jointid.cli.parser import BAD_USAGE
+    from jointid.cli.exit_codes import BAD_INPUT
     from jointid.design.design import COMPLETE
 
     usable = found.status == COMPLETE
@@ -227,7 +222,7 @@ def _say(found: Design, arguments: argparse.Namespace) -> int:
         return 0
     unwritten = f"; {arguments.output} was not written" if arguments.output is not None else ""
     print(f"jointid design: {found.reason or found.status}{unwritten}", file=sys.stderr)
-    return BAD_USAGE
+    return BAD_INPUT
 
 
 def _check_outputs(arguments: argparse.Namespace) -> None:

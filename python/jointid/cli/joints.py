@@ -14,8 +14,8 @@ from jointid.cli.arguments import (
     refinements,
     with_terms,
 )
+from jointid.cli.exit_codes import BAD_INPUT
 from jointid.cli.outputs import check_folder, check_page
-from jointid.cli.parser import BAD_USAGE
 from jointid.cli.progress import JointsProgress
 from jointid.cli.wording import ADVICE, Wording
 
@@ -103,7 +103,7 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
         ]
         if lines:
             print("", *lines, sep="\n")
-    return 0 if len(found) else BAD_USAGE
+    return 0 if len(found) else BAD_INPUT
 
 
 def _check(arguments: argparse.Namespace) -> None:

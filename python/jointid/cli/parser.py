@@ -1,36 +1,15 @@
-"""The command line's grammar: every command and its options."""
+"""The command line's parser: the commands at once, the options of one when it is called."""
 
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
-from typing import Any, NoReturn
 
-from jointid._core import model_names
-from jointid.cli.arguments import (
-    TEXT,
-    file_kinds,
-    pair,
-    reading_arguments,
-    refinement_arguments,
-    several_recordings,
-    term_argument,
-    whole,
-    whole_seed,
-    windows,
-)
-from jointid.cli.designs import add_design
-from jointid.cli.exports import add_export
-from jointid.cli.proof import add_check, add_first_motion
-from jointid.cli.session import add_emulate, add_run
-from jointid.cli.simulation import add_simulate
-from jointid.cli.study import add_sweep
-from jointid.identification.search.search import METHODS
-from jointid.recording.signals import closest
+from jointid.cli.command_table import HELP, options_of
+from jointid.cli.exit_codes import BAD_INPUT
 
-BAD_USAGE = 2
-"""Exit code of a command line that cannot be used."""
-
+TYPE_CHECKING = False  # as in typing, which `jointid --help` does without
+if TYPE_CHECKING:
+    from typing import Any, NoReturn
 
 # What argparse says in the terms of a programmer.
 _PLAIN = {
@@ -40,13 +19,31 @@ _PLAIN = {
 }
 
 
-class _Parser(argparse.ArgumentParser):
-    """One line on bad usage, not a page."""
+class CommandParser(argparse.ArgumentParser):
+    """One line on bad usage, not a page; the options of a command are added when they are needed.
 
-    def __init__(self, **options: Any) -> None:
-        super().__init__(**options | {"exit_on_error": False})
+    Parameters
+    ----------
+    command : str
+        The command whose options it takes. Default: it has no options to add.
+    **options
+        Those of `argparse.ArgumentParser`.
+    """
+
+    def __init__(self, command: str = "", **options: Any) -> None:
+        plain = {"formatter_class": argparse.RawDescriptionHelpFormatter, "exit_on_error": False}
+        super().__init__(**options | plain)
+        self._command = command
+
+    def complete(self) -> None:
+        """Add the options of the command, once."""
+        command, self._command = self._command, ""
+        if command:
+            options_of(command)(self)
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Read arguments, and say what is wrong with them in one line."""
+        self.complete()
         try:
             known, unknown = super().parse_known_args(args, namespace)
         except argparse.ArgumentError as error:
@@ -57,6 +54,8 @@ class _Parser(argparse.ArgumentParser):
 
     def _unknown(self, arguments: list[str]) -> str:
         """What is said of arguments that no option takes; of options, the first."""
+        from jointid.recording.signals import closest
+
         for argument in arguments:
             if argument.startswith("--"):
                 option = argument.partition("=")[0]
@@ -67,215 +66,24 @@ class _Parser(argparse.ArgumentParser):
         return f"unknown: {' '.join(arguments)}"
 
     def error(self, message: str) -> NoReturn:
+        """End with one line on bad usage."""
         sentence = " ".join(message.split())
         for phrase, plain in _PLAIN.items():
             sentence = sentence.replace(phrase, plain)
-        self.exit(BAD_USAGE, f"{self.prog}: {sentence}; see {self.prog} --help\n")
+        self.exit(BAD_INPUT, f"{self.prog}: {sentence}; see {self.prog} --help\n")
 
 
-def command_parser() -> argparse.ArgumentParser:
+def command_parser() -> CommandParser:
     """The command line's grammar."""
-    main_parser = _Parser(
+    main_parser = CommandParser(
         prog="jointid",
         description="Identify a robot joint's friction and torque sensor from a recording of ordinary motion.",
         epilog="example:\n  jointid identify run.csv --joint joint.toml --report report.html",
-        formatter_class=TEXT,
     )
     main_parser.add_argument("--version", action="store_true", help="print the version and exit")
-    commands = main_parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=_Parser)
-    for add in (
-        *(_add_demo, _add_identify, _add_compare, add_simulate, add_sweep, add_design),
-        *(add_check, add_first_motion, add_run, add_emulate, _add_report, add_export, _add_info),
-    ):
-        add(commands)
+    commands = main_parser.add_subparsers(
+        dest="command", metavar="COMMAND", parser_class=CommandParser
+    )
+    for command, purpose in HELP.items():
+        commands.add_parser(command, help=purpose, command=command)
     return main_parser
-
-
-def _add_demo(commands: Any) -> None:
-    demo = commands.add_parser(
-        "demo",
-        help="identify a joint of an industrial robot from a recording that ships with jointid",
-        epilog="example:\n  jointid demo --output demo",
-        formatter_class=TEXT,
-    )
-    demo.add_argument(
-        "--output", default="demo", type=Path, help="folder for report.html and estimate.json"
-    )
-    demo.add_argument("--json", action="store_true", help="print the estimate as JSON")
-    demo.add_argument("--quiet", action="store_true", help="no progress bar")
-
-
-def _add_identify(commands: Any) -> None:
-    identify = commands.add_parser(
-        "identify",
-        help="identify a joint from one recording or several",
-        epilog=(
-            "examples:\n  jointid identify run.csv\n"
-            "  jointid identify run.csv --joint joint.toml --set viscous=12 --report report.html --save joint.toml\n"
-            "  jointid identify log.csv --column position=enc1_rad --unit position=deg --windows 0.05s --json\n"
-            "  jointid identify monday.csv tuesday.csv --joint joint.toml   (one fit, shared parameters)\n"
-            "  jointid identify arm.csv --joints all --gear-ratio 32,32,45,-48,45,32 --report arm.html\n"
-            "  jointid identify arm.csv --robot arm.urdf --facts robot.toml --report arm.html   (all joints together)"
-        ),
-        formatter_class=TEXT,
-    )
-    several_recordings(identify)
-    _identification_arguments(identify, method="ga")
-    identify.add_argument(
-        "--model",
-        metavar="NAME[:OPTION[=VALUE]]",
-        help=(
-            f"friction model: {', '.join(model_names())}, or auto (default where the joint names none): the one of "
-            "the first two, with or without gravity, that predicts held-out torque; with options: "
-            "stribeck:asymmetric:ripple=2,4"
-        ),
-    )
-    identify.add_argument(
-        "--robot",
-        type=Path,
-        metavar="URDF",
-        help="identify all joints together with the links of this URDF; see docs/robots.md",
-    )
-    identify.add_argument(
-        "--facts",
-        type=Path,
-        metavar="TOML",
-        help="with --robot: joints, gear_ratios, couplings, rotor_inertias, zero_offsets, side, gravity",
-    )
-    identify.add_argument(
-        "--inertia",
-        metavar="MODE",
-        help="with --robot: urdf (default), scaled, or free: whether the links' inertias are identified",
-    )
-    identify.add_argument(
-        "--selftest",
-        action="store_true",
-        help="inject the result into the recorded motion, with noise as recorded, and identify it again",
-    )
-    identify.add_argument(
-        "--causes",
-        action="store_true",
-        help="say why the model does not fit: causes by name, what they explain and what they move",
-    )
-    identify.add_argument("--population", type=whole, help="individuals of the genetic algorithm")
-    identify.add_argument("--generations", type=whole, help="generations of the genetic algorithm")
-    identify.add_argument(
-        "--checkpoint", type=Path, help="write the state of a long search to this file"
-    )
-    identify.add_argument("--resume", type=Path, help="continue from a checkpoint")
-    identify.add_argument(
-        "--bootstrap",
-        type=whole,
-        nargs="?",
-        const=1000,
-        metavar="DRAWS",
-        help="check the standard errors by drawing stretches of the recording anew (default 1000 draws)",
-    )
-    _output_arguments(identify)
-
-
-def _add_compare(commands: Any) -> None:
-    compare = commands.add_parser(
-        "compare",
-        help="compare friction models by how well they predict held-out motion",
-        epilog=(
-            "examples:\n  jointid compare run.csv\n"
-            "  jointid compare run.csv --model stribeck --model stribeck:ripple=2 --folds 8 --json\n"
-            "  jointid compare monday.csv tuesday.csv wednesday.csv --joint joint.toml --save joint.toml\n"
-            "one recording is cut into blocks; of several, whole recordings are held out"
-        ),
-        formatter_class=TEXT,
-    )
-    several_recordings(compare)
-    _identification_arguments(compare, method="separable")
-    compare.add_argument(
-        "--model",
-        action="append",
-        dest="models",
-        metavar="NAME[:OPTION[=VALUE]]",
-        help="a model to compare; may be repeated; default: the models that suit the recording",
-    )
-    compare.add_argument(
-        "--folds", type=whole, default=5, help="number of parts, held out in turn (default 5)"
-    )
-    _output_arguments(compare)
-
-
-def _add_report(commands: Any) -> None:
-    report = commands.add_parser(
-        "report",
-        help="write the HTML report of a saved estimate",
-        epilog=(
-            "example:\n  jointid identify run.csv --save estimate.json\n"
-            "  jointid report estimate.json --output report.html"
-        ),
-        formatter_class=TEXT,
-    )
-    report.add_argument(
-        "estimate", type=Path, help="estimate (.json), from identify --save or estimate.save"
-    )
-    report.add_argument(
-        "--joints", metavar="JOINT", help="of the estimates of several joints: which one"
-    )
-    report.add_argument(
-        "--output",
-        type=Path,
-        default=Path("report.html"),
-        help="file to write (default report.html)",
-    )
-    report.add_argument("--json", action="store_true", help="print JSON")
-
-
-def _add_info(commands: Any) -> None:
-    info = commands.add_parser(
-        "info",
-        help="show what a recording holds",
-        epilog="example:\n  jointid info run.csv",
-        formatter_class=TEXT,
-    )
-    info.add_argument("recording", type=Path, help=f"recording: {file_kinds()}")
-    reading_arguments(info)
-    info.add_argument("--json", action="store_true", help="print JSON")
-
-
-def _identification_arguments(command: argparse.ArgumentParser, *, method: str) -> None:
-    others = " or ".join(name for name in METHODS if name != method)
-    command.add_argument("--joint", type=Path, help="joint file (.toml)")
-    command.add_argument("--method", default=method, help=f"{method} (default), {others}")
-    command.add_argument("--residual", help="instruments, sensor or torque")
-    command.add_argument(
-        "--torque-hold", help="torque between samples: zoh (held command) or linear (measured)"
-    )
-    command.add_argument(
-        "--windows",
-        type=windows,
-        help="number of windows (default 400), duration (0.05s) or cumulative",
-    )
-    refinement_arguments(command)
-    term_argument(command)
-    command.add_argument(
-        "--set",
-        action="append",
-        type=pair,
-        default=[],
-        metavar="PARAMETER=VALUE",
-        help="fix a parameter (SI)",
-    )
-    command.add_argument(
-        "--seed",
-        type=whole_seed,
-        default=0,
-        help="seed; the same seed gives the same result (default 0)",
-    )
-    command.add_argument(
-        "--threads", type=whole, default=0, help="number of threads (default 0: all cores)"
-    )
-
-
-def _output_arguments(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--report", type=Path, help="write the HTML report to this file")
-    command.add_argument(
-        "--save", type=Path, help="write the estimate to a joint file (.toml) or .json"
-    )
-    command.add_argument("--json", action="store_true", help="print the result as JSON")
-    command.add_argument("--quiet", action="store_true", help="no progress bar")

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
-from jointid.cli.arguments import TEXT, decimal, whole_seed
+from jointid.cli.arguments import decimal, whole_seed
 
 if TYPE_CHECKING:
     from jointid.hardware.bench.bench import Bench
@@ -19,36 +19,26 @@ REFUSED = 3
 """Exit code when a bench is refused."""
 
 
-def add_check(commands: Any) -> None:
+def add_check(check: argparse.ArgumentParser) -> None:
     """Add the command's grammar."""
-    check = commands.add_parser(
-        "check",
-        help="show which drive is connected, how it is set, and what differs from the joint file",
-        epilog=(
-            "examples:\n"
-            "  jointid check joint.toml\n"
-            "  jointid check joint.toml --emulate\n"
-            "reads only, the motor stays off. Exit code 3: something speaks against moving the joint."
-        ),
-        formatter_class=TEXT,
+    check.epilog = (
+        "examples:\n"
+        "  jointid check joint.toml\n"
+        "  jointid check joint.toml --emulate\n"
+        "reads only, the motor stays off. Exit code 3: something speaks against moving the joint."
     )
     _add_common(check, "print what was found as JSON")
 
 
-def add_first_motion(commands: Any) -> None:
+def add_first_motion(first: argparse.ArgumentParser) -> None:
     """Add the command's grammar."""
-    first = commands.add_parser(
-        "first-motion",
-        help="move a joint for the first time, by less than half a degree: signs, breakaway, scales",
-        epilog=(
-            "examples:\n"
-            "  jointid first-motion joint.toml --emulate\n"
-            "  jointid first-motion joint.toml\n"
-            "  jointid first-motion joint.toml --unknown-friction --largest-torque 20\n"
-            "a real bench that passes gets the certificate that `jointid run` asks for, beside the joint\n"
-            "file. Before: docs/hardware.md and `jointid check`. Exit code 3: the bench is refused."
-        ),
-        formatter_class=TEXT,
+    first.epilog = (
+        "examples:\n"
+        "  jointid first-motion joint.toml --emulate\n"
+        "  jointid first-motion joint.toml\n"
+        "  jointid first-motion joint.toml --unknown-friction --largest-torque 20\n"
+        "a real bench that passes gets the certificate that `jointid run` asks for, beside the joint\n"
+        "file. Before: docs/hardware.md and `jointid check`. Exit code 3: the bench is refused."
     )
     _add_common(first, "print passed, reason, travel, torques, signs and what is unchecked as JSON")
     first.add_argument("--yes", action="store_true", help="do not ask before a real joint moves")

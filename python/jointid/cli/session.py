@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
-from jointid.cli.arguments import TEXT, decimal, whole, whole_seed
+from jointid.cli.arguments import decimal, whole, whole_seed
 from jointid.cli.endings import (
     document,
     motor_and_recording,
@@ -32,20 +32,15 @@ STOPPED = 3
 """Exit code when a limit, a fault or the user stopped a session, or it was refused."""
 
 
-def add_run(commands: Any) -> None:
+def add_run(run: argparse.ArgumentParser) -> None:
     """Add the command's grammar."""
-    run = commands.add_parser(
-        "run",
-        help="move a joint over CAN, identify it, and move it again with the result",
-        epilog=(
-            "examples:\n"
-            "  jointid run joint.toml --cycles 2 --emulate --output runs\n"
-            "  jointid run joint.toml --dry-run\n"
-            "  jointid run joint.toml --cycles 2 --output runs --save joint.toml\n"
-            "the joint file has a table [session]: examples/hardware/joint.toml; before the first motion\n"
-            "of a real joint: docs/hardware.md. Exit code 3: stopped by a limit, a fault or you, or refused."
-        ),
-        formatter_class=TEXT,
+    run.epilog = (
+        "examples:\n"
+        "  jointid run joint.toml --cycles 2 --emulate --output runs\n"
+        "  jointid run joint.toml --dry-run\n"
+        "  jointid run joint.toml --cycles 2 --output runs --save joint.toml\n"
+        "the joint file has a table [session]: examples/hardware/joint.toml; before the first motion\n"
+        "of a real joint: docs/hardware.md. Exit code 3: stopped by a limit, a fault or you, or refused."
     )
     run.add_argument("joint", type=Path, help="joint file (.toml) with a table [session]")
     run.add_argument(
@@ -86,18 +81,13 @@ def add_run(commands: Any) -> None:
     run.add_argument("--quiet", action="store_true", help="no progress messages")
 
 
-def add_emulate(commands: Any) -> None:
+def add_emulate(emulate: argparse.ArgumentParser) -> None:
     """Add the command's grammar."""
-    emulate = commands.add_parser(
-        "emulate",
-        help="an emulated drive and joint on a CAN bus, for other programs to move",
-        epilog=(
-            "examples:\n"
-            "  jointid emulate joint.toml --interface socketcan --channel vcan0\n"
-            "  jointid emulate joint.toml --interface udp_multicast --channel 239.74.163.2 --duration 60\n"
-            "the joint file has a table [session.emulated]; it runs in real time until Ctrl-C"
-        ),
-        formatter_class=TEXT,
+    emulate.epilog = (
+        "examples:\n"
+        "  jointid emulate joint.toml --interface socketcan --channel vcan0\n"
+        "  jointid emulate joint.toml --interface udp_multicast --channel 239.74.163.2 --duration 60\n"
+        "the joint file has a table [session.emulated]; it runs in real time until Ctrl-C"
     )
     emulate.add_argument("joint", type=Path, help="joint file (.toml) with [session.emulated]")
     emulate.add_argument(
@@ -181,6 +171,8 @@ def run(arguments: argparse.Namespace) -> int:
     bench = Bench.load(arguments.joint)
     _check_motion(arguments)
     as_json, output = arguments.json, arguments.output
+    if bench.motion_warning:
+        print(f"jointid run: warning: {bench.motion_warning}", file=sys.stderr)
     if arguments.dry_run and not as_json:
         print(in_force(arguments.joint, bench).text())
     try:
@@ -261,7 +253,11 @@ def _say_passed(arguments: argparse.Namespace, bench: Bench) -> None:
     from jointid.cli.bench_settings import in_force
 
     if arguments.json:
-        found = {"status": "passed", "in_force": in_force(arguments.joint, bench).to_dict()}
+        found = {
+            "status": "passed",
+            "motion_warning": bench.motion_warning,
+            "in_force": in_force(arguments.joint, bench).to_dict(),
+        }
         print(json.dumps(found, indent=1, ensure_ascii=False))
     else:
         print("all pre-flight checks passed")

@@ -5,27 +5,21 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
-from typing import Any
 
-from jointid.cli.arguments import TEXT, whole_seed
+from jointid.cli.arguments import whole_seed
 from jointid.cli.outputs import check_recording_file
 from jointid.cli.scenario import scenario_arguments, scenario_of
 
 
-def add_simulate(commands: Any) -> None:
+def add_simulate(simulate: argparse.ArgumentParser) -> None:
     """Add the command's grammar."""
-    simulate = commands.add_parser(
-        "simulate",
-        help="simulate a joint that a controller moves",
-        epilog=(
-            "examples:\n"
-            "  jointid simulate joint.toml --trajectory thesis:amplitude=60deg,cycle=3 --output run.csv\n"
-            "  jointid simulate joint.toml --believe guess.toml --sensor torque_noise=0.5 --output run.csv\n"
-            "  jointid simulate joint.toml --controller pd --gain stiffness=8000 --gain damping=400 \\\n"
-            "      --trajectory sine:amplitude=0.3,frequency=0.5,duration=10 --output run.csv\n"
-            "the joint file needs a value for each parameter, as `identify --save joint.toml` writes them"
-        ),
-        formatter_class=TEXT,
+    simulate.epilog = (
+        "examples:\n"
+        "  jointid simulate joint.toml --trajectory thesis:amplitude=60deg,cycle=3 --output run.csv\n"
+        "  jointid simulate joint.toml --believe guess.toml --sensor torque_noise=0.5 --output run.csv\n"
+        "  jointid simulate joint.toml --controller pd --gain stiffness=8000 --gain damping=400 \\\n"
+        "      --trajectory sine:amplitude=0.3,frequency=0.5,duration=10 --output run.csv\n"
+        "the joint file needs a value for each parameter, as `identify --save joint.toml` writes them"
     )
     simulate.add_argument("joint", type=Path, help="joint file (.toml) with its parameters' values")
     scenario_arguments(simulate)
@@ -60,13 +54,14 @@ def simulate(arguments: argparse.Namespace) -> None:
     if arguments.json:
         print(json.dumps(outcome, indent=1, ensure_ascii=False))
         return
+    unit = "m" if recording.kind == "prismatic" else "rad"
     print(f"{len(recording)} samples in {recording.duration:g} s")
     if tracked:
         print(
-            f"tracking error after the first sixth: rms {outcome['tracking_error']:.3g} rad, "
-            f"largest {outcome['peak_error']:.3g} rad"
+            f"tracking error after the first sixth: rms {outcome['tracking_error']:.3g} {unit}, "
+            f"largest {outcome['peak_error']:.3g} {unit}"
         )
-    print(f"largest velocity {outcome['peak_velocity']:.3g} rad/s")
+    print(f"largest velocity {outcome['peak_velocity']:.3g} {unit}/s")
     if outcome["saturations"]:
         print(f"the torque limit cut the command in {outcome['saturations']} control periods")
     if arguments.output is not None:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
 from jointid.cli.arguments import (
-    TEXT,
     by_name,
     fixed_values,
     load_all,
@@ -35,20 +34,15 @@ if TYPE_CHECKING:
     from jointid.study.study_result import Study
 
 
-def add_sweep(commands: Any) -> None:
+def add_sweep(sweep: argparse.ArgumentParser) -> None:
     """Add the command's grammar."""
-    sweep = commands.add_parser(
-        "sweep",
-        help="identify with many settings, several times each",
-        epilog=(
-            "examples:\n"
-            "  jointid sweep run.csv --joint joint.toml --grid ga.population=20,50,100 --grid ga.generations=50,500\n"
-            "  jointid sweep run.csv --joint joint.toml --grid windows=100,400,1600 --trials 1 --table sweep.csv\n"
-            "  jointid sweep --simulate joint.toml --trajectory thesis:amplitude=60deg,cycle=3 \\\n"
-            "      --grid sensors.torque_noise=0.1,0.5,2 --trials 20 --output study.jsonl\n"
-            "  jointid sweep --simulate joint.toml … --output study.jsonl --resume   (continues)"
-        ),
-        formatter_class=TEXT,
+    sweep.epilog = (
+        "examples:\n"
+        "  jointid sweep run.csv --joint joint.toml --grid ga.population=20,50,100 --grid ga.generations=50,500\n"
+        "  jointid sweep run.csv --joint joint.toml --grid windows=100,400,1600 --trials 1 --table sweep.csv\n"
+        "  jointid sweep --simulate joint.toml --trajectory thesis:amplitude=60deg,cycle=3 \\\n"
+        "      --grid sensors.torque_noise=0.1,0.5,2 --trials 20 --output study.jsonl\n"
+        "  jointid sweep --simulate joint.toml … --output study.jsonl --resume   (continues)"
     )
     several_recordings(sweep, nargs="*", use="fitted as one")
     sweep.add_argument(

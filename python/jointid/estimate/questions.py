@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, cast
 
 from numpy.typing import ArrayLike
 
 from jointid.base.argument_checks import whole_number
 from jointid.base.errors import InputError
+from jointid.base.joining import joined
 
 if TYPE_CHECKING:
     from jointid.estimate.bootstrap import Bootstrap
@@ -22,8 +23,6 @@ class Questions:
     """The questions of an `Estimate`."""
 
     __slots__ = ()
-    # The room that designs identifies what it rehearses, and so stands above this one: the package's face joins them.
-    _design: ClassVar[Callable[..., Any]]
     if TYPE_CHECKING:
         follow_up: FollowUp | None
 
@@ -167,7 +166,8 @@ class Questions:
         --------
         >>> design = estimate.next_motion({"position": (-1.0, 1.0), "velocity": 3.4})  # doctest: +SKIP
         """
-        return self._design(limits, duration, **options)
+        # The room that designs identifies what it rehearses, and so stands above this one.
+        return joined("next_motion")(self, limits, duration, **options)
 
     def _with_recordings(self, question: str) -> FollowUp:
         """Return what answers questions that need the recordings."""

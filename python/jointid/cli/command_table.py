@@ -1,0 +1,91 @@
+"""The commands: what each is for, where its options are, and what runs it. Nothing of them is imported here."""
+
+from collections.abc import Callable
+from importlib import import_module
+
+# By command: its help, what adds its options, and what runs it.
+_TABLE = {
+    "demo": (
+        "identify a joint of an industrial robot from a recording that ships with jointid",
+        "jointid.cli.grammar:add_demo",
+        "jointid.cli.commands:demo",
+    ),
+    "identify": (
+        "identify a joint from one recording or several",
+        "jointid.cli.grammar:add_identify",
+        "jointid.cli.commands:identify",
+    ),
+    "compare": (
+        "compare friction models by how well they predict held-out motion",
+        "jointid.cli.grammar:add_compare",
+        "jointid.cli.commands:compare",
+    ),
+    "simulate": (
+        "simulate a joint that a controller moves",
+        "jointid.cli.simulation:add_simulate",
+        "jointid.cli.simulation:simulate",
+    ),
+    "sweep": (
+        "identify with many settings, several times each",
+        "jointid.cli.study:add_sweep",
+        "jointid.cli.study:sweep",
+    ),
+    "design": (
+        "find the motion that identifies a joint best within limits",
+        "jointid.cli.designs:add_design",
+        "jointid.cli.designs:design",
+    ),
+    "check": (
+        "show which drive is connected, how it is set, and what differs from the joint file",
+        "jointid.cli.proof:add_check",
+        "jointid.cli.proof:check",
+    ),
+    "first-motion": (
+        "move a joint for the first time, by less than half a degree: signs, breakaway, scales",
+        "jointid.cli.proof:add_first_motion",
+        "jointid.cli.proof:first_motion",
+    ),
+    "run": (
+        "move a joint over CAN, identify it, and move it again with the result",
+        "jointid.cli.session:add_run",
+        "jointid.cli.session:run",
+    ),
+    "emulate": (
+        "an emulated drive and joint on a CAN bus, for other programs to move",
+        "jointid.cli.session:add_emulate",
+        "jointid.cli.session:emulate",
+    ),
+    "report": (
+        "write the HTML report of a saved estimate",
+        "jointid.cli.grammar:add_report",
+        "jointid.cli.commands:report",
+    ),
+    "export": (
+        "write an identified joint for a simulator, a controller, a PLC or Simulink",
+        "jointid.cli.exports:add_export",
+        "jointid.cli.exports:export",
+    ),
+    "info": (
+        "show what a recording holds",
+        "jointid.cli.grammar:add_info",
+        "jointid.cli.commands:info",
+    ),
+}
+HELP = {command: row[0] for command, row in _TABLE.items()}
+"""What each command is for, in the order of `jointid --help`."""
+
+
+def options_of(command: str) -> Callable[..., object]:
+    """Return what adds a command's options to its parser."""
+    return _imported(_TABLE[command][1])
+
+
+def runner_of(command: str) -> Callable[..., int | None]:
+    """Return what runs a command; it returns the exit code, None for 0."""
+    return _imported(_TABLE[command][2])
+
+
+def _imported(place: str) -> Callable[..., int | None]:
+    module, _, name = place.partition(":")
+    found: Callable[..., int | None] = getattr(import_module(module), name)
+    return found

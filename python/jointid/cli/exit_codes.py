@@ -1,0 +1,7 @@
+"""Exit codes of the command line."""
+
+DONE = 0
+BAD_INPUT = 2
+"""A command line, or a file that it names, cannot be used."""
+BUG = 70
+"""An error in jointid itself."""

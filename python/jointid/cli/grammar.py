@@ -1,0 +1,202 @@
+"""The options of `demo`, `identify`, `compare`, `report` and `info`."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from jointid._core import model_names
+from jointid.cli.arguments import (
+    file_kinds,
+    pair,
+    reading_arguments,
+    refinement_arguments,
+    several_recordings,
+    term_argument,
+    whole,
+    whole_seed,
+    windows,
+)
+from jointid.identification.search.search import METHODS
+
+
+def add_demo(demo: argparse.ArgumentParser) -> None:
+    """Add the command's grammar."""
+    demo.epilog = "example:\n  jointid demo --output demo"
+    demo.add_argument(
+        "--output", default="demo", type=Path, help="folder for report.html and estimate.json"
+    )
+    demo.add_argument("--json", action="store_true", help="print the estimate as JSON")
+    demo.add_argument("--quiet", action="store_true", help="no progress bar")
+
+
+def add_identify(identify: argparse.ArgumentParser) -> None:
+    """Add the command's grammar."""
+    identify.epilog = (
+        "examples:\n  jointid identify run.csv\n"
+        "  jointid identify run.csv --joint joint.toml --set viscous=12 --report report.html --save joint.toml\n"
+        "  jointid identify log.csv --column position=enc1_rad --unit position=deg --windows 0.05s --json\n"
+        "  jointid identify monday.csv tuesday.csv --joint joint.toml   (one fit, shared parameters)\n"
+        "  jointid identify arm.csv --joints all --gear-ratio 32,32,45,-48,45,32 --report arm.html\n"
+        "  jointid identify arm.csv --robot arm.urdf --facts robot.toml --report arm.html   (all joints together)"
+    )
+    several_recordings(identify)
+    _identification_arguments(identify, method="ga")
+    identify.add_argument(
+        "--model",
+        metavar="NAME[:OPTION[=VALUE]]",
+        help=(
+            f"friction model: {', '.join(model_names())}, or auto (default where the joint names none): the one of "
+            "the first two, with or without gravity, that predicts held-out torque; with options: "
+            "stribeck:asymmetric:ripple=2,4"
+        ),
+    )
+    _robot_arguments(identify)
+    identify.add_argument(
+        "--inertia",
+        metavar="MODE",
+        help="with --robot: urdf (default), scaled, or free: whether the links' inertias are identified",
+    )
+    identify.add_argument(
+        "--selftest",
+        action="store_true",
+        help="inject the result into the recorded motion, with noise as recorded, and identify it again",
+    )
+    identify.add_argument(
+        "--causes",
+        action="store_true",
+        help="say why the model does not fit: causes by name, what they explain and what they move",
+    )
+    identify.add_argument("--population", type=whole, help="individuals of the genetic algorithm")
+    identify.add_argument("--generations", type=whole, help="generations of the genetic algorithm")
+    identify.add_argument(
+        "--checkpoint", type=Path, help="write the state of a long search to this file"
+    )
+    identify.add_argument("--resume", type=Path, help="continue from a checkpoint")
+    identify.add_argument(
+        "--bootstrap",
+        type=whole,
+        nargs="?",
+        const=1000,
+        metavar="DRAWS",
+        help="check the standard errors by drawing stretches of the recording anew (default 1000 draws)",
+    )
+    _output_arguments(identify)
+
+
+def _robot_arguments(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--robot",
+        type=Path,
+        metavar="URDF",
+        help="all joints together with the links of this URDF; see docs/robots.md",
+    )
+    command.add_argument(
+        "--facts",
+        type=Path,
+        metavar="TOML",
+        help="with --robot: joints, gear_ratios, couplings, rotor_inertias, zero_offsets, side, gravity",
+    )
+
+
+def add_compare(compare: argparse.ArgumentParser) -> None:
+    """Add the command's grammar."""
+    compare.epilog = (
+        "examples:\n  jointid compare run.csv\n"
+        "  jointid compare run.csv --model stribeck --model stribeck:ripple=2 --folds 8 --json\n"
+        "  jointid compare monday.csv tuesday.csv wednesday.csv --joint joint.toml --save joint.toml\n"
+        "  jointid compare arm.csv --robot arm.urdf --facts robot.toml --report arm.html   (all joints together)\n"
+        "one recording is cut into blocks; of several, whole recordings are held out"
+    )
+    several_recordings(compare)
+    _identification_arguments(compare, method="separable")
+    _robot_arguments(compare)
+    compare.add_argument(
+        "--inertia",
+        action="append",
+        metavar="MODE",
+        help="with --robot: of urdf, scaled and free one to compare; may be repeated; default: all",
+    )
+    compare.add_argument(
+        "--model",
+        action="append",
+        dest="models",
+        metavar="NAME[:OPTION[=VALUE]]",
+        help="a model to compare; may be repeated; default: the models that suit the recording",
+    )
+    compare.add_argument(
+        "--folds", type=whole, default=5, help="number of parts, held out in turn (default 5)"
+    )
+    _output_arguments(compare)
+
+
+def add_report(report: argparse.ArgumentParser) -> None:
+    """Add the command's grammar."""
+    report.epilog = (
+        "example:\n  jointid identify run.csv --save estimate.json\n"
+        "  jointid report estimate.json --output report.html"
+    )
+    report.add_argument(
+        "estimate", type=Path, help="estimate (.json), from identify --save or estimate.save"
+    )
+    report.add_argument(
+        "--joints", metavar="JOINT", help="of the estimates of several joints: which one"
+    )
+    report.add_argument(
+        "--output",
+        type=Path,
+        default=Path("report.html"),
+        help="file to write (default report.html)",
+    )
+    report.add_argument("--json", action="store_true", help="print JSON")
+
+
+def add_info(info: argparse.ArgumentParser) -> None:
+    """Add the command's grammar."""
+    info.epilog = "example:\n  jointid info run.csv"
+    info.add_argument("recording", type=Path, help=f"recording: {file_kinds()}")
+    reading_arguments(info)
+    info.add_argument("--json", action="store_true", help="print JSON")
+
+
+def _identification_arguments(command: argparse.ArgumentParser, *, method: str) -> None:
+    others = " or ".join(name for name in METHODS if name != method)
+    command.add_argument("--joint", type=Path, help="joint file (.toml)")
+    command.add_argument("--method", default=method, help=f"{method} (default), {others}")
+    command.add_argument("--residual", help="instruments, sensor or torque")
+    command.add_argument(
+        "--torque-hold", help="torque between samples: zoh (held command) or linear (measured)"
+    )
+    command.add_argument(
+        "--windows",
+        type=windows,
+        help="number of windows (default 400), duration (0.05s) or cumulative",
+    )
+    refinement_arguments(command)
+    term_argument(command)
+    command.add_argument(
+        "--set",
+        action="append",
+        type=pair,
+        default=[],
+        metavar="PARAMETER=VALUE",
+        help="fix a parameter (SI)",
+    )
+    command.add_argument(
+        "--seed",
+        type=whole_seed,
+        default=0,
+        help="seed; the same seed gives the same result (default 0)",
+    )
+    command.add_argument(
+        "--threads", type=whole, default=0, help="number of threads (default 0: all cores)"
+    )
+
+
+def _output_arguments(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--report", type=Path, help="write the HTML report to this file")
+    command.add_argument(
+        "--save", type=Path, help="write the estimate to a joint file (.toml) or .json"
+    )
+    command.add_argument("--json", action="store_true", help="print the result as JSON")
+    command.add_argument("--quiet", action="store_true", help="no progress bar")

@@ -1,0 +1,73 @@
+"""One command run to its exit code, whatever ends it."""
+
+from __future__ import annotations
+
+import argparse
+import errno
+import select
+import sys
+
+from jointid.base.errors import InputError
+from jointid.base.interruption import INTERRUPTED, raise_on_interruption
+from jointid.cli.command_table import runner_of
+from jointid.cli.exit_codes import BAD_INPUT, BUG, DONE
+
+# Errors of a disk, which name no file when they are raised by a write.
+_DISK = {errno.ENOSPC, errno.EIO, errno.EROFS, errno.EFBIG, getattr(errno, "EDQUOT", -1)}
+
+
+def run_command(arguments: argparse.Namespace) -> int:
+    """Run the command of a command line that was read.
+
+    Returns
+    -------
+    int
+        The exit code.
+    """
+    try:
+        from jointid.cli.outputs import check_distinct
+
+        run = runner_of(arguments.command)
+        raise_on_interruption()
+        check_distinct(arguments)
+        code = run(arguments)
+    except KeyboardInterrupt as stop:
+        reason = f": {stop}" if str(stop) else ""
+        print(f"jointid: interrupted{reason}", file=sys.stderr)
+        return INTERRUPTED
+    except InputError as error:
+        from jointid.cli.wording import Wording
+
+        sentence = Wording.of(arguments).of_error(error)
+        print(f"jointid {arguments.command}: {sentence}", file=sys.stderr)
+        return BAD_INPUT
+    except Exception as error:
+        if isinstance(error, BrokenPipeError) and _reader_left():
+            sys.stderr.close()  # the reader of our output left: not our failure
+            return DONE
+        if isinstance(error, OSError) and (error.filename is not None or error.errno in _DISK):
+            reason = error.strerror or str(error)
+            place = "the output" if error.filename is None else str(error.filename)
+            print(f"jointid {arguments.command}: {place}: {reason}", file=sys.stderr)
+            return BAD_INPUT
+        import traceback
+
+        traceback.print_exception(error)
+        notes = "; ".join(getattr(error, "__notes__", ()))
+        print(
+            f"jointid {arguments.command}: this is an error in the program, not bad input; please "
+            f"report it with the lines above{f' ({notes})' if notes else ''}",
+            file=sys.stderr,
+        )
+        return BUG
+    return DONE if code is None else int(code)
+
+
+def _reader_left() -> bool:
+    """Whether it is our own output that nobody reads any more, not another pipe."""
+    try:
+        pipe = select.poll()
+        pipe.register(sys.stdout.fileno(), select.POLLERR)
+        return any(event & select.POLLERR for _, event in pipe.poll(0))
+    except (AttributeError, OSError, ValueError):  # no poll on this system; no file behind stdout
+        return True
