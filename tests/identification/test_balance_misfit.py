@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 import jointid as jid
+from jointid.identification.causes.fitted import Fitted
 from jointid.identification.prepared import prepare
 from jointid.identification.refinements.balance_misfit import fits_better
 from jointid.problem.problem import Problem
@@ -56,3 +57,26 @@ def test_reversals_and_the_decay_of_friction_do_not_hide_a_late_reading(number: 
 
     assert fits_better(problem, without(LATE), 0.2, reversals=False)
     assert not fits_better(without(LATE), without(2.0 * LATE), 0.0, reversals=False)
+
+
+def test_a_torque_that_was_removed_adds_its_blocks_to_the_errors() -> None:
+    problem, run = slow_motion(0)
+    joint = jid.Joint(inertia=2.5, sensor=True, model="stribeck")
+    penalty = problem.penalty(None)
+    parameters = jid.identify(run, joint, search="separable", shift={}).parameters
+    best = np.array([parameters[name].value for name in penalty.names])
+    free = tuple(i for i, name in enumerate(penalty.names) if parameters[name].vary)
+    fit = Fitted.of(problem, penalty, best, free)
+    # What a parameter takes up adds nothing.
+    taken = fit.errors_beside(fit.jacobian[:, 0])
+    assert max(taken.values()) < 1e-6
+    size = np.sqrt(np.mean(fit.residual**2))
+    noise = np.random.default_rng(1).normal(0.0, size, len(fit.residual))
+    chance = size * np.sqrt(np.diag(np.linalg.inv(fit.jacobian.T @ fit.jacobian)))
+    drift = fit.jacobian[:, 0] * np.linspace(-1.0, 1.0, len(noise))
+    slow = drift * size / np.sqrt(np.mean(drift**2))
+    by_chance, by_misfit = fit.errors_beside(noise), fit.errors_beside(slow)
+    for error, index in zip(chance, free, strict=True):
+        name = penalty.names[index]
+        assert 0.5 * error < by_chance[name] < 2.0 * error, name
+    assert max(by_misfit[name] / by_chance[name] for name in by_misfit) > 2.0

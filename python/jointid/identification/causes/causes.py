@@ -116,7 +116,7 @@ def cause_of(
             coefficients=-steps[len(fit.free) :],
             shifts=steps[: len(fit.free)],
         )
-        more = {}
+        more: dict[str, float] | None = None
         if removed and size is not None:
             more = fit.errors_beside(size * each.columns[:, 0])
         return _cause(fit, found, parameters, torque_level, {}, _LEAST_OF_MEASURED, more=more)
@@ -226,7 +226,7 @@ def _cause(
     }
     harm = {
         name: _harm(
-            float(np.hypot(_error_of(parameters[name]), (more or {}).get(name, 0.0))),
+            _error_of(parameters[name], more),
             shifts[name],
             share,
             1.0 - each.share,
@@ -284,8 +284,13 @@ def _harm(
     return max(harm, moved / errors) if abs(share) > least else harm
 
 
-def _error_of(p: ParameterEstimate) -> float:
-    """Its error with what is systematic: a shift that the interval states already is nothing new."""
+def _error_of(p: ParameterEstimate, more: Mapping[str, float] | None = None) -> float:
+    """Its error with what is systematic: a shift that the interval states already is nothing new.
+
+    Of what was removed the interval states nothing: chance is what hides it, with `more` by the removed itself.
+    """
+    if more is not None:
+        return float(np.hypot(p.stderr or 0.0, more.get(p.name, 0.0)))
     return (p.interval[1] - p.interval[0]) / (2.0 * _NORMAL) if p.interval is not None else 0.0
 
 
