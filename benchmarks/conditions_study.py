@@ -1,7 +1,8 @@
 """`make study`: 46 conditions with random joints each; writes docs/conditions.md.
 
 Clean conditions show errors, coverage and false findings; mismatches and defects show whether a finding names every
-parameter that is off.
+parameter that is off. Outcomes are kept in `results/conditions_study.jsonl`, which the next call continues: delete it
+when the code has changed. `--page` writes the tables of what is there.
 """
 
 from __future__ import annotations
@@ -16,11 +17,14 @@ from pathlib import Path
 import numpy as np
 from conditions import CONDITIONS, DURATION, Condition
 from plants import Bench, simulate
+from store import Record, Store
 
 import jointid as jid
 
+PATH = Path(__file__).resolve().parent / "results" / "conditions_study.jsonl"
 OFF = 0.05  # a relative error above this one has to be named
-_SIDE_BY_SIDE = 240  # runs of one simulation
+_SIDE_BY_SIDE = 250  # runs of one simulation
+_ROUND = 10  # joints of each condition
 _NEAR_ZERO = ("torque_offset", "sensor_offset", "gravity_cos", "gravity_sin")
 
 
@@ -77,9 +81,11 @@ def outcome(condition: Condition, recording: jid.Recording) -> Outcome:
         scale = abs(true)
         if name in _NEAR_ZERO:
             scale = max(scale, truth["coulomb"])  # these may be near 0
-        errors[name] = np.inf if parameter is None else (parameter.value - true) / scale
+        error = np.inf if parameter is None else (parameter.value - true) / scale
+        errors[name] = float(error)
         if parameter is not None and parameter.interval is not None:
-            inside[name] = parameter.interval[0] <= true <= parameter.interval[1]
+            low, high = parameter.interval
+            inside[name] = bool(low <= true <= high)
     serious = [f for f in estimate.findings if f.severity != "info"]
     named = {name for finding in serious for name in finding.parameters}
     if any(finding.severity == "blocking" for finding in serious):
@@ -122,28 +128,44 @@ def _uncertain(estimate: jid.Estimate, truth: Mapping[str, float]) -> bool:
     return False
 
 
-def outcomes(conditions: Sequence[Condition], joints: int, seed: int) -> dict[str, list[Outcome]]:
-    """The runs of each condition, by its name; they are simulated side by side."""
-    jobs: list[tuple[Condition, Bench]] = []
-    for condition in conditions:
-        # A condition's joints do not depend on which other conditions run.
-        rng = np.random.default_rng([seed, CONDITIONS.index(condition)])
-        sizes = [min(joints - begin, _SIDE_BY_SIDE) for begin in range(0, joints, _SIDE_BY_SIDE)]
-        jobs += [(condition, condition.bench(size, rng)) for size in sizes]
-    found: dict[str, list[Outcome]] = {condition.name: [] for condition in conditions}
-    number = 0
-    while jobs:
-        together = [jobs.pop(0)]
-        while jobs and sum(b.runs for _, b in [*together, jobs[0]]) <= _SIDE_BY_SIDE:
-            together.append(jobs.pop(0))
-        benches = Bench.stack([bench for _, bench in together])
-        recordings = iter(simulate(benches, duration=DURATION, seed=1000 * seed + number))
-        number += 1
-        for condition, bench in together:
-            for _ in range(bench.runs):
-                recording = _cut(condition, next(recordings))
-                found[condition.name].append(outcome(condition, recording))
-    return found
+def measure(store: Store, conditions: Sequence[Condition], joints: int, seed: int) -> None:
+    """Add rounds of ten joints of each condition to the store, all of a round simulated side by side."""
+    for number in range((joints + _ROUND - 1) // _ROUND):
+        size = min(_ROUND, joints - number * _ROUND)
+        missing = [c for c in conditions if not store.of("round", condition=c.name, round=number)]
+        for begin in range(0, len(missing), _SIDE_BY_SIDE // _ROUND):
+            together = missing[begin : begin + _SIDE_BY_SIDE // _ROUND]
+            # A condition's joints do not depend on which others run.
+            draws = [np.random.default_rng([seed, CONDITIONS.index(c), number]) for c in together]
+            benches = [c.bench(size, rng) for c, rng in zip(together, draws, strict=True)]
+            noise = int(np.random.SeedSequence([seed, number, begin]).generate_state(1)[0])
+            recordings = iter(simulate(Bench.stack(benches), duration=DURATION, seed=noise))
+            for condition in together:
+                found = [outcome(condition, _cut(condition, next(recordings))) for _ in range(size)]
+                whole = [_record(each) for each in found]
+                store.append(
+                    {"kind": "round", "condition": condition.name, "round": number, "joints": whole}
+                )
+
+
+def _record(found: Outcome) -> Record:
+    lists = {name: sorted(getattr(found, name)) for name in ("named", "codes", "false")}
+    return {"errors": found.errors, "inside": found.inside, **lists}
+
+
+def outcomes(store: Store, condition: Condition) -> list[Outcome]:
+    """The kept runs of a condition."""
+    return [
+        Outcome(
+            errors=each["errors"],
+            inside=each["inside"],
+            named=frozenset(each["named"]),
+            codes=frozenset(each["codes"]),
+            false=frozenset(each["false"]),
+        )
+        for record in store.of("round", condition=condition.name)
+        for each in record["joints"]
+    ]
 
 
 def _cut(condition: Condition, recording: jid.Recording) -> jid.Recording:
@@ -204,16 +226,22 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--only", default="", help="conditions whose name contains this")
     parser.add_argument("--output", type=Path, help="a file to write instead of printing")
+    parser.add_argument("--page", action="store_true", help="only the tables, of what is kept")
     given = parser.parse_args()
     began = time.perf_counter()
     chosen = [c for c in CONDITIONS if given.only in c.name]
-    found: dict[str, list[Outcome]] = {}
-    for clean in (True, False):
-        joints = (given.clean_joints if clean else 0) or given.joints
-        some = [c for c in chosen if c.clean == clean]
-        found |= outcomes(some, joints, given.seed)
-    clean = given.clean_joints or given.joints
-    lines = [_TEXT.format(joints=given.joints, clean=clean, one=100.0 / clean)]
+    store = Store(PATH, {"seed": given.seed, "version": jid.__version__})
+    if not given.page:
+        for clean in (False, True):
+            joints = (given.clean_joints if clean else 0) or given.joints
+            measure(store, [c for c in chosen if c.clean == clean], joints, given.seed)
+    found = {c.name: outcomes(store, c) for c in chosen}
+    chosen = [c for c in chosen if found[c.name]]
+    joints, clean = (
+        min((len(found[c.name]) for c in chosen if c.clean == kind), default=0)
+        for kind in (False, True)
+    )
+    lines = [_TEXT.format(joints=joints, clean=clean, one=100.0 / max(clean, 1))]
     for title, clean in (("Clean conditions", True), ("Mismatches and defects", False)):
         lines += [f"\n## {title}\n", HEAD]
         lines += [row(c, found[c.name]) for c in chosen if c.clean == clean]

@@ -90,7 +90,7 @@ void Pool::for_each(std::size_t count, const std::function<void(std::size_t, std
   wake_.notify_all();
   const auto finished = [&] { return next_ >= count_ && running_ == 0; };
   std::exception_ptr interruption;
-  while (!done_.wait_for(lock, std::chrono::milliseconds(50), finished)) {
+  while (!done_.wait_for(lock, std::chrono::milliseconds(20), finished)) {
     if (!poll_ || interruption) continue;
     lock.unlock();
     try {

@@ -14,7 +14,7 @@
 
 namespace jointid::base {
 
-/// Called by the waiting thread at least every 50 ms; it throws to end the work (Ctrl-C).
+/// Called by the waiting thread at least every 20 ms; it throws to end the work (Ctrl-C).
 using Poll = std::function<void()>;
 
 /// Splits index ranges over worker threads while the calling thread polls.

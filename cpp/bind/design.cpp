@@ -55,7 +55,8 @@ void bind_values(py::module_& m) {
         Field{"position", &Noise::position, "At a window's end [rad]."},
         Field{"velocity", &Noise::velocity, "At a window's end [rad/s]."},
         Field{"slowest", &Noise::slowest, "Slower samples tell nothing [rad/s]."},
-        Field{"reversal", &Noise::reversal, "Of a window with a change of sign [N·m·s]."});
+        Field{"reversal", &Noise::reversal, "Of a window with a change of sign [N·m·s]."},
+        Field{"sampled", &Noise::sampled, "Between samples of the recording [s]."});
 }
 
 void bind_results(py::module_& m) {
@@ -79,7 +80,8 @@ void bind_results(py::module_& m) {
            py::arg("weight"), py::arg("known"), py::arg("inertia"), py::arg("viscous"))
       .def_readonly("weight", &Drawn::weight, "1: asked for, 0: not.");
   py::class_<Judgement>(m, "MotionJudgement", "What a motion is worth for one joint.")
-      .def_readonly("errors", &Judgement::errors, "Expected standard errors over their scales.")
+      .def_readonly("errors", &Judgement::errors, "Expected errors (RMS) over their scales.")
+      .def_readonly("bias", &Judgement::bias, "The part of them that each recording shows.")
       .def_readonly("information", &Judgement::information, "Of this motion alone.")
       .def_readonly("lowest", &Judgement::lowest, "Position that the joint reaches [rad].")
       .def_readonly("highest", &Judgement::highest, "Position that the joint reaches [rad].")
@@ -117,8 +119,6 @@ void bind_excitation(py::module_& m) {
             return found;
           },
           py::arg("trajectory"), "One judgement a joint.")
-      .def("cost", &Excitation::cost, py::arg("judgements"),
-           "The logarithm of what the search minimises.")
       .def(
           "motion",
           [](const Excitation& self, const Eigen::VectorXd& genes) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "base/elementary.hpp"
 #include "base/require.hpp"
@@ -23,14 +24,16 @@ double largest(const Family& family, const Sines& sines) {
   const simulate::Trajectory trajectory = moved.trajectory();
   const double apart =
       std::min(kTwoPi / (kPerPeriod * sines.frequency.maxCoeff()), family.fade / kPerPeriod);
-  const auto count = static_cast<int>(std::ceil(family.duration / apart));
+  const auto count = static_cast<std::size_t>(std::ceil(family.duration / apart));
+  thread_local std::vector<simulate::Reference> wanted;
+  wanted.resize(count + 1);
+  trajectory.sample(family.duration / static_cast<double>(count), wanted);
   double high = 0.0;
   double low = 0.0;
   double speed = 0.0;
   double acceleration = 0.0;
   double effort = 0.0;
-  for (int i = 0; i <= count; ++i) {
-    const auto at = trajectory.at(family.duration * i / count);
+  for (const simulate::Reference& at : wanted) {
     high = std::max(high, at.position);
     low = std::min(low, at.position);
     speed = std::max(speed, std::fabs(at.velocity));

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "base/elementary.hpp"
@@ -27,8 +28,10 @@ void hold(Judgement& j, const Held& held) {
                        beyond(j.torque, held.torque), beyond(j.link_torque, held.link_torque)});
 }
 
-/// Standard errors by an information matrix; kUnknown where it tells nothing.
-Eigen::VectorXd errors_of(const Eigen::MatrixXd& information) {
+/// Root-mean-square errors by an information matrix and what misleads it, and the bias in them;
+/// kUnknown where it tells nothing.
+std::pair<Eigen::VectorXd, Eigen::VectorXd> errors_of(const Eigen::MatrixXd& information,
+                                                      const Eigen::VectorXd& misled) {
   const Eigen::VectorXd told = information.diagonal().cwiseMax(0.0).cwiseSqrt();
   const Eigen::VectorXd size = (told.array() > 0.0).select(told, 1.0);
   const Eigen::MatrixXd correlation =
@@ -36,12 +39,16 @@ Eigen::VectorXd errors_of(const Eigen::MatrixXd& information) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
   const Eigen::VectorXd strength = solver.eigenvalues().cwiseMax(kWeakest);
   const Eigen::MatrixXd& directions = solver.eigenvectors();
-  Eigen::VectorXd errors =
-      (directions.cwiseAbs2() * strength.cwiseInverse()).cwiseSqrt().cwiseQuotient(size);
+  const Eigen::VectorXd along =
+      (directions.transpose() * misled.cwiseQuotient(size)).cwiseQuotient(strength);
+  const Eigen::VectorXd bias = (directions * along).cwiseQuotient(size);
+  const Eigen::VectorXd scatter =
+      (directions.cwiseAbs2() * strength.cwiseInverse()).cwiseQuotient(size.cwiseAbs2());
+  Eigen::VectorXd errors = (scatter + bias.cwiseAbs2()).cwiseSqrt();
   for (Eigen::Index i = 0; i < errors.size(); ++i) {
     if (!(told[i] > 0.0) || !(errors[i] < kUnknown)) errors[i] = kUnknown;
   }
-  return errors;
+  return {errors, bias};
 }
 
 }  // namespace
@@ -89,7 +96,8 @@ std::vector<Judgement> Excitation::judge(const simulate::Trajectory& trajectory,
       setups.back().position = wanted.front().position;
     }
     outcomes.resize(setups.size());
-    simulate::simulate_on_this_thread(scenario_, wanted, setups, outcomes, true, cancel);
+    simulate::simulate_on_this_thread(scenario_, wanted, setups, outcomes, simulate::Kept::truth,
+                                      cancel);
     for (std::size_t i = first; i < last; ++i) {
       result.push_back(judged(joints_[i], outcomes[i - first].signals));
     }
@@ -113,11 +121,12 @@ Judgement Excitation::judged(const Drawn& joint, const simulate::Signals& s) con
   j.link_torque = magnitude(s.link_torque);
   hold(j, held_);
   const double period = scenario_.control_period * scenario_.sample_every;
-  j.information =
-      information(s, joint.columns, joint.noise, joint.inertia, joint.viscous, period, window_);
-  Eigen::MatrixXd scaled = j.information + joint.known;
+  const Told told = information(s, joint.columns, joint.noise, joint.setup.joint, joint.inertia,
+                                joint.viscous, period, window_);
+  j.information = told.information;
+  Eigen::MatrixXd scaled = told.information + joint.known;
   scaled = (joint.scale.asDiagonal() * scaled * joint.scale.asDiagonal()).eval();
-  j.errors = errors_of(scaled);
+  std::tie(j.errors, j.bias) = errors_of(scaled, joint.scale.cwiseProduct(told.misled));
   return j;
 }
 

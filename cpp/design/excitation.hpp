@@ -41,7 +41,8 @@ struct Held {
 
 /// Of one motion and one joint.
 struct Judgement {
-  Eigen::VectorXd errors;  ///< expected standard errors over their scales
+  Eigen::VectorXd errors;  ///< expected root-mean-square errors over their scales
+  Eigen::VectorXd bias;    ///< the part of them that every recording of the motion shows
   Eigen::MatrixXd information;
   double lowest = 0.0;  ///< what the joint reaches
   double highest = 0.0;

@@ -2,25 +2,44 @@
 
 #include <cmath>
 
+#include "base/elementary.hpp"
 #include "base/require.hpp"
+#include "model/dry_friction.hpp"
 
 namespace jointid::design {
 
 namespace {
 
+/// How fast static friction changes [N·m/s].
+double fading_rate(const model::Joint& joint, double velocity, double acceleration) {
+  const double speed = std::fabs(velocity);
+  if (joint.decay == model::Decay::none || speed == 0.0) return 0.0;
+  const double excess = velocity > 0.0 ? joint.static_positive : joint.static_negative;
+  const double faded = excess * model::fading(joint, speed);
+  if (joint.decay == model::Decay::gaussian) {
+    return -2.0 * joint.stribeck * speed * acceleration * faded;
+  }
+  const double ratio = speed / joint.stribeck_velocity;
+  return -joint.stribeck_exponent * base::pow(ratio, joint.stribeck_exponent) / speed *
+         acceleration * faded;
+}
+
 /// Adds the windows of one run.
 class Windows {
  public:
   Windows(const simulate::Signals& signals, const std::vector<Column>& columns, const Noise& noise,
-          double inertia, double viscous, double period)
+          const model::Joint& joint, double inertia, double viscous, double period)
       : signals_(signals),
         columns_(columns),
+        joint_(joint),
         period_(period),
         torque_(noise.torque * noise.torque * period * period),
         ends_(2.0 * (inertia * inertia * noise.velocity * noise.velocity +
                      viscous * viscous * noise.position * noise.position)),
         reversal_(noise.reversal * noise.reversal),
+        quadrature_(noise.sampled * noise.sampled / 12.0),
         row_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(columns.size()))),
+        misled_(Eigen::VectorXd::Zero(row_.size())),
         sum_(Eigen::MatrixXd::Zero(row_.size(), row_.size())) {
     rates(signals, columns, rates_);
   }
@@ -45,8 +64,11 @@ class Windows {
     const auto count = static_cast<double>(last - first);
     const double variance = torque_ * count + ends_ + (reverses(first, last) ? reversal_ : 0.0);
     sum_.selfadjointView<Eigen::Lower>().rankUpdate(row_, 1.0 / variance);
+    if (quadrature_ > 0.0) {  // the rule's first error term, by Euler and Maclaurin
+      misled_ += row_ * (-quadrature_ * (fading(last) - fading(first)) / variance);
+    }
   }
-  [[nodiscard]] Eigen::MatrixXd total() const { return sum_.selfadjointView<Eigen::Lower>(); }
+  [[nodiscard]] Told total() const { return {sum_.selfadjointView<Eigen::Lower>(), misled_}; }
 
  private:
   [[nodiscard]] bool reverses(std::size_t first, std::size_t last) const {
@@ -57,14 +79,23 @@ class Windows {
     return false;
   }
 
+  /// Static friction acts against the motion, and so does its change: the rule's error has the
+  /// sign of the velocity twice.
+  [[nodiscard]] double fading(std::size_t k) const {
+    return fading_rate(joint_, signals_.true_velocity[k], signals_.true_acceleration[k]);
+  }
+
   const simulate::Signals& signals_;
   const std::vector<Column>& columns_;
+  const model::Joint& joint_;
   double period_;
   double torque_;
   double ends_;
   double reversal_;
+  double quadrature_;
   Eigen::VectorXd row_;
   Eigen::MatrixXd rates_;
+  Eigen::VectorXd misled_;
   Eigen::MatrixXd sum_;
 };
 
@@ -77,12 +108,13 @@ void Noise::validate() const {
   require.at_least_zero("velocity", velocity);
   require.at_least_zero("slowest", slowest);
   require.at_least_zero("reversal", reversal);
+  require.at_least_zero("sampled", sampled);
 }
 
-Eigen::MatrixXd information(const simulate::Signals& signals, const std::vector<Column>& columns,
-                            const Noise& noise, double inertia, double viscous, double period,
-                            int samples) {
-  Windows windows(signals, columns, noise, inertia, viscous, period);
+Told information(const simulate::Signals& signals, const std::vector<Column>& columns,
+                 const Noise& noise, const model::Joint& joint, double inertia, double viscous,
+                 double period, int samples) {
+  Windows windows(signals, columns, noise, joint, inertia, viscous, period);
   const std::size_t count = signals.true_velocity.size();
   const auto length = static_cast<std::size_t>(samples);
   std::size_t first = 0;

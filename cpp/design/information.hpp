@@ -17,14 +17,22 @@ struct Noise {
   double slowest = 0.0;   ///< slower samples tell nothing [rad/s]
   /// Of a window in which the velocity changes its sign: when exactly, samples do not tell [N·m·s].
   double reversal = 0.0;
+  double sampled = 0.0;  ///< between samples of the recording [s]
 
   void validate() const;
 };
 
-/// Sum over windows of row' row / variance. A window of `samples` ends early where the joint is
-/// slower than `noise.slowest`. `period` is between samples [s].
-Eigen::MatrixXd information(const simulate::Signals& signals, const std::vector<Column>& columns,
-                            const Noise& noise, double inertia, double viscous, double period,
-                            int samples);
+/// What the windows of a run tell.
+struct Told {
+  Eigen::MatrixXd information;  ///< sum of row' row / variance
+  Eigen::VectorXd misled;       ///< sum of row' (what the balance misses) / variance
+};
+
+/// A window of `samples` ends early where the joint is slower than `noise.slowest`. `period` is
+/// between samples [s]. The balance misses what the trapezoidal rule over the recording's samples
+/// does of static friction that fades fast.
+Told information(const simulate::Signals& signals, const std::vector<Column>& columns,
+                 const Noise& noise, const model::Joint& joint, double inertia, double viscous,
+                 double period, int samples);
 
 }  // namespace jointid::design

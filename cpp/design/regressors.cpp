@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/clones.hpp"
 #include "base/elementary.hpp"
 #include "base/input_error.hpp"
 
@@ -29,7 +30,32 @@ bool acts(model::Direction direction, double velocity) {
   return true;
 }
 
+/// exp(-s v^2), with the sign of the velocity.
+JOINTID_CLONES void gaussian(double shape, const double* velocity, std::size_t count,
+                             double* result) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const double v = velocity[k];
+    const double value = base::exp_decay(shape * v * v);
+    result[k] = v > 0.0 ? value : (v < 0.0 ? -value : 0.0);
+  }
+}
+
 void friction(const Column& column, const std::vector<double>& velocity, double* result) {
+  if (column.shape < 0 && column.term.direction == model::Direction::both) {
+    switch (column.term.basis) {  // what every joint has, without a choice at each sample
+      case model::SpeedBasis::one:
+        std::transform(velocity.begin(), velocity.end(), result, sign_of);
+        return;
+      case model::SpeedBasis::speed:
+        std::copy(velocity.begin(), velocity.end(), result);
+        return;
+      case model::SpeedBasis::stribeck:
+        gaussian(column.shapes[0], velocity.data(), velocity.size(), result);
+        return;
+      case model::SpeedBasis::stribeck_general:
+        break;
+    }
+  }
   const auto& term = column.term;
   const double* shapes = column.shapes.data();
   for (std::size_t k = 0; k < velocity.size(); ++k) {

@@ -31,7 +31,7 @@ struct AdaptiveRobust : Estimates {
         input.wanted.acceleration - 2.0 * bandwidth * error_rate - bandwidth * bandwidth * error;
     const double velocity = friction_speed(input);
     const double sign = sign_of(velocity);
-    const double faded = fading(velocity);
+    const double faded = fading(velocity, input.faded);
     double torque = inertia * pulled + viscous * velocity +
                     (coulomb + static_excess * faded) * sign + link_torque(input);
     if (adaptation) {

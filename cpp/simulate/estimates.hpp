@@ -16,6 +16,14 @@ namespace jointid::simulate {
 /// sticks; the desired one already says where it is to go.
 enum class FrictionVelocity { measured, reference };
 
+/// The last share of the static excess that was asked for: runs side by side often ask for the
+/// same.
+struct Faded {
+  double stribeck = -1.0;
+  double velocity = 0.0;
+  double share = 1.0;
+};
+
 /// What a controller sees at one instant.
 struct ControlInput {
   double time = 0.0;
@@ -24,6 +32,7 @@ struct ControlInput {
   double reading = 0.0;  ///< raw, of the torque sensor
   Reference wanted{};
   double period = 0.0;  ///< between instants
+  Faded* faded = nullptr;
 };
 
 /// Estimates of the joint, output side, SI.
@@ -45,8 +54,12 @@ struct Estimates {
   [[nodiscard]] double link_torque(const ControlInput& input) const {
     return torque_feedback ? sensor_gain * input.reading + sensor_offset : 0.0;
   }
-  [[nodiscard]] double fading(double velocity) const {
-    return base::exp(-(stribeck * velocity * velocity));
+  [[nodiscard]] double fading(double velocity, Faded* known = nullptr) const {
+    if (known == nullptr) return base::exp(-(stribeck * velocity * velocity));
+    if (!(known->stribeck == stribeck && known->velocity == velocity)) {
+      *known = {stribeck, velocity, base::exp(-(stribeck * velocity * velocity))};
+    }
+    return known->share;
   }
   void validate_estimates(const base::Requirement& require) const {
     require.at_least_zero("inertia", inertia);

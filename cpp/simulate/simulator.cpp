@@ -44,13 +44,13 @@ JointOf<Number> joined(std::span<const Setup> setups) {
 /// One run's part of the loop: what is sampled, commanded and kept at a control instant.
 class Loop {
  public:
-  Loop(const Scenario& scenario, const Setup& setup, Outcome& outcome, bool signals)
+  Loop(const Scenario& scenario, const Setup& setup, Outcome& outcome, Kept kept)
       : sensors_(scenario.sensors, setup.gear_ratio, setup.sensor_gain, setup.sensor_offset,
                  scenario.control_period, setup.seed),
         control_(setup.controller, scenario.control_period, setup.joint.torque_limit),
         outcome_(&outcome),
-        signals_(signals) {
-    if (signals_) {
+        kept_(kept) {
+    if (kept_ != Kept::nothing) {
       const auto every = static_cast<std::size_t>(scenario.sample_every);
       const std::size_t samples = (scenario.instants() + every - 1) / every;
       outcome.signals.each([&](std::vector<double>& signal) {
@@ -60,15 +60,15 @@ class Loop {
     }
   }
 
-  double command(double time, const Reference& wanted, double position, double velocity,
-                 const Dynamics<double>& acting, bool sample, bool settled) {
+  double command(double time, const Reference& wanted, Faded* faded, double position,
+                 double velocity, const Dynamics<double>& acting, bool sample, bool settled) {
     if (!(std::fabs(position) < kOutOfBounds && std::fabs(velocity) < kOutOfBounds)) {
       throw base::InputError("the motion leaves all bounds " + std::to_string(time) +
                              " s after its start: the loop is not stable");
     }
     const Observation shown = sensors_.observe({time, position, velocity, acting.link_torque});
     const double torque = control_.step(
-        {time, shown.position, shown.velocity, shown.reading, wanted, control_.period()});
+        {time, shown.position, shown.velocity, shown.reading, wanted, control_.period(), faded});
     outcome_->saturations = control_.saturations();
     if (settled) {
       const double error = position - wanted.position;
@@ -76,21 +76,23 @@ class Loop {
       ++count_;
       outcome_->peak_error = std::max(outcome_->peak_error, std::fabs(error));
     }
-    if (!signals_) return torque;
+    if (kept_ == Kept::nothing) return torque;
     Signals& s = outcome_->signals;
     if (sample) {
       held_ = 0.0;
       commands_ = 0;
-      s.position.push_back(shown.position);
-      s.velocity.push_back(shown.velocity);
       s.torque.push_back(torque);
       s.reading.push_back(shown.reading);
-      s.reference.push_back(wanted.position);
       s.true_position.push_back(position);
       s.true_velocity.push_back(velocity);
       s.true_acceleration.push_back(acting.acceleration);
-      s.friction.push_back(acting.friction);
       s.link_torque.push_back(acting.link_torque);
+      if (kept_ == Kept::all) {
+        s.position.push_back(shown.position);
+        s.velocity.push_back(shown.velocity);
+        s.reference.push_back(wanted.position);
+        s.friction.push_back(acting.friction);
+      }
     }
     // Over a sample the drive gave the mean of what was commanded until the next.
     held_ += torque;
@@ -106,7 +108,7 @@ class Loop {
   SensorChain sensors_;
   ControlRun control_;
   Outcome* outcome_;
-  bool signals_;
+  Kept kept_;
   double sum_ = 0.0;
   std::int64_t count_ = 0;
   double held_ = 0.0;  ///< commands since the last sample, summed
@@ -117,7 +119,7 @@ class Loop {
 /// `reference(k)` is what is wanted at control instant k.
 template <class Number, class Wanted>
 void run(const Scenario& scenario, const Wanted& reference, std::span<const Setup> setups,
-         std::span<Outcome> outcomes, bool signals, const base::Cancel& cancel) {
+         std::span<Outcome> outcomes, Kept kept, const base::Cancel& cancel) {
   const JointOf<Number> joint = joined<Number>(setups);
   std::vector<Loop> loops;
   loops.reserve(setups.size());
@@ -126,7 +128,7 @@ void run(const Scenario& scenario, const Wanted& reference, std::span<const Setu
     const Setup& setup = setups[std::min(i, setups.size() - 1)];
     base::set_lane(motion.position, i, setup.position);
     base::set_lane(motion.velocity, i, setup.velocity);
-    if (i < setups.size()) loops.emplace_back(scenario, setup, outcomes[i], signals);
+    if (i < setups.size()) loops.emplace_back(scenario, setup, outcomes[i], kept);
   }
   motion.fading = model::fading(joint, base::absolute(motion.velocity));
   const int substeps = scenario.substeps();
@@ -134,6 +136,7 @@ void run(const Scenario& scenario, const Wanted& reference, std::span<const Setu
   const auto every = static_cast<std::size_t>(scenario.sample_every);
   const std::size_t instants = scenario.instants();
   Number torque = 0.0;
+  Faded faded;  // laws that look at the reference ask for the same share in each run
   for (std::size_t k = 0; k < instants; ++k) {
     if (k % kBlock == 0) cancel.check();
     const double time = static_cast<double>(k) * scenario.control_period;
@@ -143,7 +146,7 @@ void run(const Scenario& scenario, const Wanted& reference, std::span<const Setu
       const Dynamics<double> own{base::lane(acting.acceleration, i), base::lane(acting.friction, i),
                                  base::lane(acting.link_torque, i),
                                  base::lane(acting.drive_torque, i)};
-      const double command = loops[i].command(time, wanted, base::lane(motion.position, i),
+      const double command = loops[i].command(time, wanted, &faded, base::lane(motion.position, i),
                                               base::lane(motion.velocity, i), own, k % every == 0,
                                               time >= scenario.settling);
       base::set_lane(torque, i, command);
@@ -155,13 +158,13 @@ void run(const Scenario& scenario, const Wanted& reference, std::span<const Setu
 
 template <class Wanted>
 void run_group(const Scenario& scenario, const Wanted& reference, std::span<const Setup> setups,
-               std::span<Outcome> outcomes, bool signals, const base::Cancel& cancel) {
+               std::span<Outcome> outcomes, Kept kept, const base::Cancel& cancel) {
   if (setups.size() == 1) {
-    run<double>(scenario, reference, setups, outcomes, signals, cancel);
+    run<double>(scenario, reference, setups, outcomes, kept, cancel);
   } else if (setups.size() <= Narrow::width) {
-    run<Narrow>(scenario, reference, setups, outcomes, signals, cancel);
+    run<Narrow>(scenario, reference, setups, outcomes, kept, cancel);
   } else {
-    run<Wide>(scenario, reference, setups, outcomes, signals, cancel);
+    run<Wide>(scenario, reference, setups, outcomes, kept, cancel);
   }
 }
 
@@ -227,6 +230,7 @@ std::vector<Outcome> simulate(const Scenario& scenario, const Trajectory& trajec
   for (const auto& setup : setups) setup.validate();
   std::vector<Outcome> outcomes(setups.size());
   const auto parts = groups(setups);
+  const Kept kept = signals ? Kept::all : Kept::nothing;
   const auto reference = [&](std::size_t k) {
     return trajectory.at(static_cast<double>(k) * scenario.control_period);
   };
@@ -234,19 +238,19 @@ std::vector<Outcome> simulate(const Scenario& scenario, const Trajectory& trajec
     for (std::size_t i = begin; i < end; ++i) {
       const auto first = static_cast<std::size_t>(parts[i].data() - setups.data());
       const std::span<Outcome> own(outcomes.data() + first, parts[i].size());
-      run_group(scenario, reference, parts[i], own, signals, pool.cancel());
+      run_group(scenario, reference, parts[i], own, kept, pool.cancel());
     }
   });
   return outcomes;
 }
 
 void simulate_on_this_thread(const Scenario& scenario, std::span<const Reference> wanted,
-                             std::span<const Setup> setups, std::span<Outcome> outcomes,
-                             bool signals, const base::Cancel& cancel) {
+                             std::span<const Setup> setups, std::span<Outcome> outcomes, Kept kept,
+                             const base::Cancel& cancel) {
   const auto reference = [&](std::size_t k) { return wanted[k]; };
   for (const auto& part : groups(setups)) {
     const auto first = static_cast<std::size_t>(part.data() - setups.data());
-    run_group(scenario, reference, part, outcomes.subspan(first, part.size()), signals, cancel);
+    run_group(scenario, reference, part, outcomes.subspan(first, part.size()), kept, cancel);
   }
 }
 

@@ -65,14 +65,21 @@ struct Outcome {
   std::int64_t saturations = 0;
 };
 
+/// What a run keeps of its signals.
+enum class Kept {
+  nothing,
+  all,
+  truth,  ///< true_position, true_velocity, true_acceleration, torque, reading and link_torque
+};
+
 /// Most runs that advance side by side.
 inline constexpr std::size_t kSideBySide = 8;
 
 /// The same runs on the calling thread, along references that are known at each control instant.
 /// Scenario and setups are taken as valid.
 void simulate_on_this_thread(const Scenario& scenario, std::span<const Reference> wanted,
-                             std::span<const Setup> setups, std::span<Outcome> outcomes,
-                             bool signals, const base::Cancel& cancel);
+                             std::span<const Setup> setups, std::span<Outcome> outcomes, Kept kept,
+                             const base::Cancel& cancel);
 
 /// One Outcome a setup, in order. Throws base::InputError when a motion leaves all bounds.
 std::vector<Outcome> simulate(const Scenario& scenario, const Trajectory& trajectory,

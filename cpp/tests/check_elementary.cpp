@@ -1,12 +1,16 @@
 // exp, log, sin and cos against the long double libm, in units in the last place.
 
+#include <bit>
 #include <cfloat>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <vector>
 
 #include "base/elementary.hpp"
+#include "base/lanes.hpp"
 #include "base/random.hpp"
 #include "check.hpp"
 
@@ -194,6 +198,37 @@ CHECK_CASE("elementary: pow is good to its exponent") {
   }
   CHECK(base::pow(0.0, 0.5) == 0.0);
   CHECK(base::pow(1.0, 1e300) == 1.0);
+}
+
+bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+CHECK_CASE("elementary: lanes have the bits of single numbers") {
+  base::Random draw(12, 0, 0, 0);
+  std::vector<double> special{0.0,    -0.0,   kNan,  kInfinity, -kInfinity, 709.78, 709.79,
+                              -708.0, -708.1, 1.6e6, -1.6e6,    1e300,      1.0,    DBL_MIN};
+  int different = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    base::Lanes<2> x;
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      const double size = std::exp(18.0 * draw.uniform() - 4.0);
+      const bool odd = i < 2'000 && draw.uniform() < 0.3;
+      const auto which = static_cast<std::size_t>(draw.uniform() * 14.0);
+      x.set(lane, odd ? special[which] : (draw.uniform() < 0.5 ? -size : size));
+    }
+    const auto exps = base::exp(x);
+    const auto sines = base::sin(x);
+    const auto cosines = base::cos(x);
+    const auto sizes = base::absolute(x);
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      different += same_bits(exps[lane], base::exp(x[lane])) ? 0 : 1;
+      different += same_bits(sines[lane], base::sin(x[lane])) ? 0 : 1;
+      different += same_bits(cosines[lane], base::cos(x[lane])) ? 0 : 1;
+      different += same_bits(sizes[lane], std::fabs(x[lane])) ? 0 : 1;
+    }
+  }
+  CHECK(different == 0);
 }
 
 }  // namespace

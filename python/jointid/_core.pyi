@@ -3076,6 +3076,8 @@ class BalanceNoise:
         Slower samples tell nothing [rad/s].
     reversal : default 0.0
         Of a window with a change of sign [N·m·s].
+    sampled : default 0.0
+        Between samples of the recording [s].
     """
     def __eq__(self, arg0: typing.Any) -> bool: ...
     def __getstate__(self) -> dict[str, typing.Any]: ...
@@ -3088,6 +3090,7 @@ class BalanceNoise:
         velocity: float = 0.0,
         slowest: float = 0.0,
         reversal: float = 0.0,
+        sampled: float = 0.0,
     ) -> None: ...
     def __repr__(self) -> str: ...
     def __setstate__(self, arg0: dict[str, typing.Any]) -> None: ...
@@ -3103,6 +3106,7 @@ class BalanceNoise:
         velocity: float = ...,
         slowest: float = ...,
         reversal: float = ...,
+        sampled: float = ...,
     ) -> BalanceNoise:
         """
         A copy with the given fields changed.
@@ -3116,6 +3120,11 @@ class BalanceNoise:
     def reversal(self) -> float:
         """
         Of a window with a change of sign [N·m·s].
+        """
+    @property
+    def sampled(self) -> float:
+        """
+        Between samples of the recording [s].
         """
     @property
     def slowest(self) -> float:
@@ -3179,9 +3188,14 @@ class MotionJudgement:
         [rad/s²]
         """
     @property
+    def bias(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        The part of them that each recording shows.
+        """
+    @property
     def errors(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
         """
-        Expected standard errors over their scales.
+        Expected errors (RMS) over their scales.
         """
     @property
     def excess(self) -> float:
@@ -3233,10 +3247,6 @@ class Excitation:
         criterion: str,
         window: typing.SupportsInt | typing.SupportsIndex,
     ) -> None: ...
-    def cost(self, judgements: collections.abc.Sequence[MotionJudgement]) -> float:
-        """
-        The logarithm of what the search minimises.
-        """
     def judge(self, trajectory: Trajectory) -> list[MotionJudgement]:
         """
         One judgement a joint.

@@ -17,6 +17,8 @@ from pathlib import Path
 from typing import Any
 
 PATIENCE = 60.0  # [s] for what takes a fraction of one
+_BEGINNINGS = 5  # of a session that its drive does not answer
+_NO_REPLY = "not started: no reply to"
 
 
 class Program:
@@ -190,25 +192,33 @@ class HostSession(Program):
         bench = replace(bench, bus=replace(bench.bus, channel=channel))
         if changes is not None:
             bench = changes(bench)
-        outcome: dict[str, Any] = {"ended": "done", "said": "", "stop": None}
-        recording = None
-        with jid.hardware.open_drive(bench) as drive:
-            session = Session(
-                drive,
-                bench.controller,
-                bench.trajectory,
-                bench.limits,
-                options=bench.options,
-                output=self.folder / f"{self.name}.csv",
-                observer=tell,
-            )
-            try:
-                recording = session.run()
-            except SessionRefusedError as error:
-                outcome |= {"ended": "refused", "said": str(error)}
-            except SessionStoppedError as error:
-                outcome |= {"ended": "stopped", "said": str(error), "stop": error.stop.to_dict()}
-                recording = error.recording
+        # The guest may stand still for longer than a session waits for its drive: as its user would, begin again.
+        for _ in range(_BEGINNINGS):
+            outcome: dict[str, Any] = {"ended": "done", "said": "", "stop": None}
+            recording = None
+            with jid.hardware.open_drive(bench) as drive:
+                session = Session(
+                    drive,
+                    bench.controller,
+                    bench.trajectory,
+                    bench.limits,
+                    options=bench.options,
+                    output=self.folder / f"{self.name}.csv",
+                    observer=tell,
+                )
+                try:
+                    recording = session.run()
+                except SessionRefusedError as error:
+                    outcome |= {"ended": "refused", "said": str(error)}
+                except SessionStoppedError as error:
+                    outcome |= {
+                        "ended": "stopped",
+                        "said": str(error),
+                        "stop": error.stop.to_dict(),
+                    }
+                    recording = error.recording
+            if not outcome["said"].startswith(_NO_REPLY):
+                break
         outcome["rows"] = 0 if recording is None else len(recording)
         if recording is not None:
             outcome["motor_off"] = recording.metadata["motor_off"]

@@ -16,7 +16,7 @@ from jointid.cli.progress import MotionProgress
 from jointid.hardware.bench.bench import Bench
 
 Printed = pytest.CaptureFixture[str]
-QUICK = ["--duration", "4", "--evaluations", "100", "--draws", "2", "--rehearsals", "10"]
+QUICK = ["--duration", "4", "--evaluations", "100", "--joints", "2", "--rehearsals", "10"]
 WITHIN = ["--position", "-60deg,60deg", "--velocity", "3.4"]
 TRUTH = {"coulomb": 25.0, "static": 20.0, "stribeck": 100.0, "viscous": 20.0}
 TRUTH |= {"sensor_gain": 2.4, "sensor_offset": 15.0}
@@ -132,6 +132,31 @@ def test_a_session_with_narrower_limits_refuses_the_motion(bench: Path, capsys: 
     assert "joint.toml: [session.trajectory]: file is motion.toml: in this motion joints go" in said
     assert "outside the session's -0.2000 to 0.2000 rad" in said
     assert not Path("runs").exists()
+
+
+def test_a_session_names_in_what_its_bench_is_another(bench: Path, capsys: Printed) -> None:
+    words = ["design", "joint.toml", *QUICK, *WITHIN, "--output", "motion.toml", "--quiet"]
+    assert main(words) == 0
+    capsys.readouterr()
+    run = ["run", "joint.toml", "--emulate", "--cycles", "0", "--quiet", "--output"]
+    assert main([*run, "same"]) == 0
+    assert "designed for" not in "".join(capsys.readouterr())
+    assert "motion_warning" not in jid.load("same/initial.csv").metadata
+    text = bench.read_text(encoding="utf-8")
+    text = text.replace("coulomb = { value = 20.0,", "coulomb = { value = 12.0,", 1)
+    bench.write_text(text.replace("mass = 3.0", "mass = 3.5", 1), "utf-8")
+    warning = Bench.load(bench).motion_warning
+    assert "motion.toml was designed for link mass 3 (here 3.5)" in warning
+    assert "the controller's coulomb 20 (here 12)" in warning
+    assert main([*run, "other"]) == 0
+    said = capsys.readouterr()
+    assert said.err == f"jointid run: warning: {warning}\n"
+    assert warning in said.out
+    assert jid.load("other/initial.csv").metadata["motion_warning"] == warning
+    assert main(["run", "joint.toml", "--emulate", "--dry-run", "--json"]) == 0
+    said = capsys.readouterr()
+    assert json.loads(said.out)["motion_warning"] == warning
+    assert warning in said.err
 
 
 def test_a_copy_of_the_bench_is_not_parted_from_its_motion(bench: Path, capsys: Printed) -> None:

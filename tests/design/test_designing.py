@@ -4,6 +4,7 @@ import _thread
 import dataclasses
 import math
 import threading
+import time
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 from closed_loop import TRUTH, thesis_joint, wrong_controller
 
 import jointid as jid
+from jointid.design import designing, holding
 from jointid.design.asked import free_parameters
 from jointid.design.judging import Situation
 from jointid.design.motion_limits import MotionLimits
@@ -136,7 +138,7 @@ def test_the_determinant_is_another_criterion(found: jid.Design) -> None:
     assert sum(math.log(each.relative) for each in other.parameters.values()) < usual - 1.0
 
 
-def test_progress_is_told_and_true_ends_the_search() -> None:
+def test_progress_is_reported_and_true_ends_the_search() -> None:
     steps: list[jid.DesignProgress] = []
     design(callback=steps.append)
     assert [step.number for step in steps] == sorted(step.number for step in steps)
@@ -146,13 +148,50 @@ def test_progress_is_told_and_true_ends_the_search() -> None:
     assert short.evaluations < 0.5 * steps[-1].total
 
 
-def test_ctrl_c_ends_a_design() -> None:
-    # Hours of the core, were it not interrupted.
-    threading.Timer(0.5, _thread.interrupt_main).start()
+@pytest.mark.parametrize("phase", ["search", "rehearsal", "limits"])
+def test_little_is_done_after_ctrl_c(phase: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each phase would take minutes. What counts is the work behind the signal: no other load can add to it."""
+    settings = {"evaluations": 64, "rehearsals": 10, "joints": 2}
+    settings |= {"search": {"evaluations": 5_000_000}, "rehearsal": {"rehearsals": 100_000}}.get(
+        phase, {}
+    )
+    if phase == "limits":
+        monkeypatch.setattr(holding, "_JOINTS", 20_000)
+    begun = threading.Event()
+    asked: list[float] = []
+    for name in ("rehearse", "held_by_all"):
+        original = getattr(designing, name)
+
+        def marked(*given: Any, original: Any = original, name: str = name, **more: Any) -> Any:
+            if (name, phase) in (("held_by_all", "limits"), ("rehearse", "rehearsal")):
+                begun.set()
+            return original(*given, **more)
+
+        monkeypatch.setattr(designing, name, marked)
+
+    def interrupt() -> None:
+        begun.wait(120.0)
+        # A moment later, at any place of the phase.
+        threading.Event().wait(0.3)
+        asked.append(time.process_time())
+        _thread.interrupt_main()
+
+    def observe(_: jid.DesignProgress) -> bool:
+        if phase == "search":
+            begun.set()
+        return False
+
+    threading.Thread(target=interrupt, daemon=True).start()
     with pytest.raises(KeyboardInterrupt):
         jid.design_excitation(
-            thesis_joint(), LIMITS, sensors=SENSORS, search=jid.DesignSearch(evaluations=5_000_000)
+            thesis_joint(),
+            LIMITS,
+            sensors=SENSORS,
+            search=jid.DesignSearch(**settings, threads=2),
+            callback=observe,
         )
+    # Two threads that go on for a tenth of a second.
+    assert time.process_time() - asked[0] < 0.2
 
 
 def test_information_says_what_simulated_recordings_show() -> None:
@@ -279,10 +318,10 @@ def test_more_torque_than_the_drive_has_is_refused() -> None:
         )
 
 
-def test_a_loop_that_rattles_at_its_limits_is_told() -> None:
+def test_a_loop_that_rattles_at_its_limits_is_named() -> None:
     found = design(controller=jid.Pd(stiffness=1e12))
     assert found.status == "limits exceeded"
-    assert "exceeds a limit" in found.reason
+    assert found.reason.startswith("the torque is cut at the limit of 160 N·m, for a joint with ")
     assert found.reason in found.summary()
 
 

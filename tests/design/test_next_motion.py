@@ -154,7 +154,7 @@ def test_what_cannot_be_asked_for(poor: jid.Estimate, first: jid.Recording) -> N
         bare.next_motion(LIMITS | {"torque": 160.0})
 
 
-def test_a_link_may_be_told(first: jid.Recording, handed: dict[str, Any]) -> None:
+def test_a_link_may_be_given(first: jid.Recording, handed: dict[str, Any]) -> None:
     bare = jid.identify(first)
     with pytest.raises(CalledError):
         bare.next_motion(LIMITS, joint=THESIS)
@@ -188,7 +188,7 @@ def test_the_command_does_what_the_finding_says(
         .replace("LOW,HIGH", "-1,1")
         .replace("SPEED", "1.12")
     )
-    quick = ["--evaluations", "100", "--draws", "2", "--seed", "4", "--quiet"]
+    quick = ["--evaluations", "100", "--joints", "2", "--seed", "4", "--quiet"]
     assert main([*command, *quick]) == 0
     design = jid.load_design("motion.toml")
     assert design.duration == pytest.approx(6.0)

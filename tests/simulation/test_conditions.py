@@ -26,12 +26,20 @@ def test_joints_differ_and_do_not_depend_on_what_else_runs() -> None:
     assert np.unique(np.asarray(first.plant.coulomb)).size == 4
 
 
-def test_a_clean_condition_and_a_mismatch_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_clean_condition_and_a_mismatch_are_counted(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     monkeypatch.setattr(study, "DURATION", 4.0)
     clean = Condition(name="clean", clean=True, duration=4.0)
     wrong = Condition(name="wrong", duration=4.0, plant={"torque_scale": 1.3})
     monkeypatch.setattr(study, "CONDITIONS", (clean, wrong))
-    found = study.outcomes((clean, wrong), 2, 5)
+    store = study.Store(tmp_path / "kept.jsonl", {"seed": 5})
+    study.measure(store, (clean, wrong), 2, 5)
+    # What is kept is not measured again.
+    monkeypatch.setattr(study, "simulate", None)
+    again = study.Store(tmp_path / "kept.jsonl", {"seed": 5})
+    study.measure(again, (clean, wrong), 2, 5)
+    found = {each.name: study.outcomes(again, each) for each in (clean, wrong)}
     assert [len(found[name]) for name in ("clean", "wrong")] == [2, 2]
     for each in found["clean"]:
         assert each.off == []

@@ -84,6 +84,7 @@ def document(result: Commissioning, output: Path | None) -> dict[str, Any]:
         "recording": _files(output),
         "output": None if output is None else str(output),
         **found,
+        "motion_warning": result.motion_warning,
         "warnings": [
             {"code": each.code, "severity": each.severity, "message": each.message}
             for estimate in result.estimates[-1:]

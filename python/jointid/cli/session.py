@@ -171,6 +171,8 @@ def run(arguments: argparse.Namespace) -> int:
     bench = Bench.load(arguments.joint)
     _check_motion(arguments)
     as_json, output = arguments.json, arguments.output
+    if bench.motion_warning:
+        print(f"jointid run: warning: {bench.motion_warning}", file=sys.stderr)
     if arguments.dry_run and not as_json:
         print(in_force(arguments.joint, bench).text())
     try:
@@ -251,7 +253,11 @@ def _say_passed(arguments: argparse.Namespace, bench: Bench) -> None:
     from jointid.cli.bench_settings import in_force
 
     if arguments.json:
-        found = {"status": "passed", "in_force": in_force(arguments.joint, bench).to_dict()}
+        found = {
+            "status": "passed",
+            "motion_warning": bench.motion_warning,
+            "in_force": in_force(arguments.joint, bench).to_dict(),
+        }
         print(json.dumps(found, indent=1, ensure_ascii=False))
     else:
         print("all pre-flight checks passed")

@@ -16,6 +16,8 @@ def text_report(result: Commissioning) -> str:
         lines += ["", *_parameters(result)]
     if result.without_ripple is not None and result.truth:
         lines += ["", _ripple(result)]
+    if result.motion_warning:
+        lines += ["", f"The motion: {result.motion_warning}."]
     warned = [
         f"- {found.code}: {found.message}"
         for estimate in result.estimates[-1:]

@@ -82,6 +82,11 @@ class Commissioning:
         return None if not self.estimates else _blocking(self.estimates[-1])
 
     @property
+    def motion_warning(self) -> str:
+        """In what the bench differs from the one its motion was designed for; empty where it does not."""
+        return str(self.runs[0].recording.metadata.get("motion_warning", ""))
+
+    @property
     def improvement(self) -> float:
         """How many times smaller the tracking error of the last run is than that of the first."""
         return self.runs[0].tracking_error / self.runs[-1].tracking_error
@@ -206,6 +211,7 @@ def commission(
                 observer=observer,
                 real_time=None if emulate else bench.real_time,
                 joint=found,
+                designed_for=bench.designed_for,
             )
             try:
                 recording = session.run()

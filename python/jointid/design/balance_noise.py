@@ -59,8 +59,8 @@ def noise_of_balance(
     if sensors.encoder_counts > 0.0:
         turn = sensors.encoder_counts * abs(joint.gear_ratio)
         position = 2.0 * math.pi / turn / math.sqrt(12.0)
-    # Of a straight line through so many positions.
-    derived = position * math.sqrt(12.0 / _SMOOTHED**3) / period
+    # Of a straight line through so many of the recording's positions, however long the steps of the judge are.
+    derived = position * math.sqrt(12.0 / _SMOOTHED**3) / sampled
     slowest = max(_STANDING * velocity, 3.0 * derived, _SLOW * _fading_speed(setup.joint))
     return _core.BalanceNoise(
         # White in the recording's samples; fewer of them are as good as their means.
@@ -69,6 +69,7 @@ def noise_of_balance(
         velocity=derived,
         slowest=min(slowest, 0.05 * velocity),
         reversal=_REVERSAL * sampled * _dry_step(setup.joint),
+        sampled=sampled,
     )
 
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 COMPLETE = "complete"
+CRITERIA = ("worst", "determinant")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,6 +58,8 @@ class Design:
     seed : int
     duration : float
         [s]
+    believed : mapping of str to (float, float)
+        The range of each free parameter, from which joints were drawn. Default: not known.
     control_period : float
         Of the controller [s]. Default 1 ms.
     weakest : str
@@ -81,6 +84,7 @@ class Design:
     weakest: str
     limited_by: str
     reference: Mapping[str, float] = field(default_factory=dict)
+    believed: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     control_period: float = 1e-3
     reason: str = ""
 

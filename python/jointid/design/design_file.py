@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
@@ -13,15 +12,21 @@ from jointid import _core
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
-from jointid.base.schema import Flag, Kind, ListOf, Number, Plain, Record, TableOf, Text
+from jointid.base.schema import ListOf, Number, Plain, Record, TableOf, Text
 from jointid.base.toml_file import read_toml
 from jointid.base.toml_text import toml_of
-from jointid.design.design import Design
+from jointid.design.design import CRITERIA, Design
 from jointid.design.expected_error import ExpectedError
 from jointid.design.motion_limits import MotionLimits
 from jointid.joint.joint_file import joint_document, joint_from_document
-from jointid.simulation.arguments import LAWS, law_name
 from jointid.simulation.motion_file import COMMENTS, motion_of, motion_table
+from jointid.simulation.setting_tables import (
+    controller_table,
+    plain,
+    read_controller,
+    read_sensors,
+    sensors_table,
+)
 
 SCHEMA = 1
 """Increased when a reader of the earlier format would misread the new one."""
@@ -30,7 +35,8 @@ _SIZE, _ERROR = Number(low=0.0), Number(low=0.0, infinite=True)
 _COUNT = Number(low=0, high=2**63 - 1, whole=True)  # as TOML's whole numbers
 _DESIGN = Record(
     {
-        **dict.fromkeys(("status", "criterion", "weakest", "limited_by"), Text()),
+        **dict.fromkeys(("status", "weakest", "limited_by"), Text()),
+        "criterion": Text(known=CRITERIA),
         **dict.fromkeys(("joints", "evaluations"), _COUNT),
         "seed": Number(low=0, high=2**64 - 1, whole=True),
         "control_period": Number(low=1e-6, high=1.0),
@@ -62,10 +68,14 @@ _FILE = Record(
         "sensors": Plain(),
         "joint": Plain(),
     },
-    {"reference": TableOf(_ERROR, 1000)},
+    {
+        "reference": TableOf(_ERROR, 1000),
+        "believed": TableOf(ListOf(Number(), 2, 2), 1000),
+    },
 )
 _SAYS = COMMENTS | {
     "trajectory": "a sum of sines: amplitude · sin(frequency · t + phase)",
+    "believed": "the ranges from which joints were drawn that keep the limits",
     "limits": "what the motion keeps",
     "peaks": "what joints drawn from what is believed reach",
     "reference": "largest relative errors in the thesis's motion, for comparison",
@@ -83,15 +93,20 @@ def document_of(design: Design) -> dict[str, Any]:
         "trajectory": motion_table(design.trajectory),
         "expected": {
             name: {
-                key: _plain(value)
+                key: plain(value)
                 for key, value in asdict(each).items()
                 if key in own and value is not None
             }
             for name, each in design.parameters.items()
         },
         **(
-            {"reference": {name: _plain(share) for name, share in design.reference.items()}}
+            {"reference": {name: plain(share) for name, share in design.reference.items()}}
             if design.reference
+            else {}
+        ),
+        **(
+            {"believed": {name: list(ends) for name, ends in design.believed.items()}}
+            if design.believed
             else {}
         ),
         "limits": {
@@ -101,8 +116,8 @@ def document_of(design: Design) -> dict[str, Any]:
         "peaks": {
             name: value for name, value in design.peaks.to_dict().items() if value is not None
         },
-        "controller": {"law": law_name(design.controller), **_settings(design.controller)},
-        "sensors": _settings(design.sensors),
+        "controller": controller_table(design.controller),
+        "sensors": sensors_table(design.sensors),
         "joint": joint_document(design.joint),
         "design": {
             "status": design.status,
@@ -173,47 +188,24 @@ def _design(document: Mapping[str, Any], place: Path) -> Design:
     expected = {name: ExpectedError(name=name, **each) for name, each in tables["expected"].items()}
     about = tables["design"]
     del about["jointid"]
+    if about["weakest"] not in expected:
+        raise InputError(
+            "one of the parameters in [expected] is expected",
+            value=about["weakest"],
+            place="design.weakest",
+        )
     return Design(
         **about,
         trajectory=motion.trajectory,
         duration=motion.trajectory.duration,
-        joint=joint_from_document(tables["joint"], f"{place}: [joint]"),
-        controller=_made(LAWS, tables["controller"], "controller"),
-        sensors=_made({"": _core.Sensors}, tables["sensors"], "sensors"),
+        joint=joint_from_document(
+            TableOf(Plain()).read(tables["joint"], "joint"), f"{place}: [joint]"
+        ),
+        controller=read_controller(tables["controller"], "controller"),
+        sensors=read_sensors(tables["sensors"], "sensors"),
         limits=MotionLimits(**tables["limits"]),
         peaks=motion.peaks,
         parameters=expected,
         reference=tables.get("reference", {}),
+        believed={name: (low, high) for name, (low, high) in tables.get("believed", {}).items()},
     )
-
-
-def _settings(value: Any) -> dict[str, Any]:
-    """The settings of a controller or of sensors."""
-    return {name: _plain(each) for name, each in value.asdict().items()}
-
-
-def _made(kinds: Mapping[str, Callable[..., Any]], table: Any, place: str) -> Any:
-    """The controller or the sensors that a table describes."""
-    named: dict[str, Kind] = {} if "" in kinds else {"law": Text(known=tuple(kinds))}
-    read = Record(named, other=Plain()).read(table, place)
-    make = kinds[read.pop("law") if named else ""]
-    usual: Mapping[str, Any] = make().asdict()
-    settings = Record({}, {name: _kind(value) for name, value in usual.items()})
-    try:
-        return make(**settings.read(read, place))
-    except InputError as error:
-        raise (error if error.place else error.at(place)) from None
-
-
-def _kind(usual: Any) -> Kind:
-    """What may stand in the place of a default."""
-    if isinstance(usual, bool):
-        return Flag()
-    if isinstance(usual, int):
-        return Number(low=-(2**31), high=2**31 - 1, whole=True)
-    return Number(infinite=True) if isinstance(usual, float) else Text()
-
-
-def _plain(value: Any) -> Any:
-    """A number that is not finite as the text that a schema reads."""
-    return str(value) if isinstance(value, float) and not math.isfinite(value) else value

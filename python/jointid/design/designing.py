@@ -24,6 +24,7 @@ from jointid.design.known import Known
 from jointid.design.motion_limits import MotionLimits
 from jointid.design.prior import Prior, ranges_of, with_room
 from jointid.design.rehearsal import Rehearsal, rehearse
+from jointid.design.stated import check_signs, check_stated
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller, positive
 from jointid.simulation.plant import control_estimates, torque_limit
@@ -118,6 +119,7 @@ def design_excitation(
     >>> design.save("motion.toml")  # doctest: +SKIP
     """
     require_kind("joint", joint, Joint)
+    check_stated(joint, controller, sensors, parameters, callback)
     settings = DesignSearch() if search is None else search
     require_kind("search", settings, DesignSearch)
     held = MotionLimits.of(limits, joint)
@@ -131,16 +133,10 @@ def design_excitation(
         )
     if criterion not in ("worst", "determinant"):
         raise InputError("known are worst and determinant", argument="criterion", value=criterion)
-    if isinstance(controller, _core.OpenLoop):
-        raise InputError(
-            "a motion is designed for a controller that follows it",
-            argument="controller",
-            value="open_loop",
-            remedy="give another, or none",
-        )
     joint = _with_model(joint)
     asked = free_parameters(joint, parameters)
     ranges = ranges_of(joint, asked.names, prior)
+    check_signs(asked, ranges)
     joint = with_room(joint, ranges.ranges)
     nominal = joint.with_parameters(ranges.nominal)
     assert held.torque is not None
@@ -208,12 +204,13 @@ class _Designing:
             reason=problem,
             trajectory=trajectory,
             joint=nominal,
+            believed=dict(situation.ranges.ranges),
             controller=situation.controller,
             sensors=situation.sensors,
             limits=situation.limits,
             peaks=peaks,
             parameters=errors,
-            reference={} if usual is None else self._shares(rehearsals[-1]),
+            reference={} if usual is None else self._relative(rehearsals[-1].rms()),
             criterion=situation.criterion,
             joints=len(self._values),
             evaluations=self._evaluations,
@@ -231,28 +228,26 @@ class _Designing:
         kept = dict(zip(asked.names, judge.joints[0].weight.tolist(), strict=True))
         return tuple(name for name in asked.wanted if kept[name] > 0.0) or asked.wanted
 
-    def _shares(self, rehearsal: Rehearsal) -> dict[str, float]:
-        """Return the relative errors that a rehearsal counted, of the wanted parameters."""
-        situation, counted, values = self._situation, rehearsal.rms(), self._values[0]
-        return {
-            n: counted[n] / situation.ranges.scale(n, values[n]) for n in situation.asked.wanted
-        }
+    def _relative(self, errors: Mapping[str, float]) -> dict[str, float]:
+        """Return errors of the wanted parameters over these parameters' sizes."""
+        situation, values = self._situation, self._values[0]
+        return {n: errors[n] / situation.ranges.scale(n, values[n]) for n in situation.asked.wanted}
 
     def _worth(self, motion: Trajectory, rehearsal: Rehearsal) -> float:
         """Return what the search minimises, for the nominal joint.
 
-        The information's errors scatter less than those of few rehearsals, which count where they
-        contradict it.
+        The information's errors scatter less than those of few rehearsals, whose mean tells what the information
+        does not know: a bias. Where the errors counted contradict both, they count.
         """
-        told = dict(
-            zip(
-                self._situation.asked.names,
-                self._fine.judge(motion.core)[0].errors.tolist(),
-                strict=True,
-            )
-        )
-        counted = self._shares(rehearsal)
-        shares = [max(told[name], counted[name] / _CONTRADICTED) for name in self._counted]
+        judgement = self._fine.judge(motion.core)[0]
+        bias, counted = self._relative(rehearsal.bias()), self._relative(rehearsal.rms())
+        shares = []
+        for place, name in enumerate(self._situation.asked.names):
+            if name in self._counted:
+                own = float(judgement.bias[place])
+                beside = max(bias[name] ** 2 - own**2, 0.0)
+                told = math.sqrt(float(judgement.errors[place]) ** 2 + beside)
+                shares.append(max(told, counted[name] / _CONTRADICTED))
         if self._situation.criterion == "worst":
             return float(max(shares))
         return float(np.mean(np.log(np.maximum(shares, 1e-12))))

@@ -36,11 +36,12 @@ def expected_errors(
     asked, ranges = situation.asked, situation.ranges
     units = _units(situation)
     counted = rehearsal.rms()
-    alone = _alone(judgements[0].information)
+    known = bool(np.any(situation.known))
+    scales = np.array([ranges.scale(name, values[0][name]) for name in asked.names])
+    alone = _alone(judgements[0].information) if known else scales * judgements[0].errors
     factors = [
         max(1.0, counted[name] / float(alone[place])) for place, name in enumerate(asked.names)
     ]
-    known = bool(np.any(situation.known))
     if known:
         stretch = np.outer(factors, factors)
         errors = [_alone(each.information / stretch + situation.known) for each in judgements]
@@ -95,11 +96,11 @@ def _partner(situation: Situation, judgement: _core.MotionJudgement, weakest: st
 
 def _alone(information: Array) -> Array:
     """Standard errors by an information matrix alone; infinite where it tells nothing."""
-    told = np.sqrt(np.maximum(np.diag(information), 0.0))
-    size = np.where(told > 0.0, told, 1.0)
+    seen = np.sqrt(np.maximum(np.diag(information), 0.0))
+    size = np.where(seen > 0.0, seen, 1.0)
     strength, directions = np.linalg.eigh(information / np.outer(size, size))
     errors = np.sqrt(directions**2 @ (1.0 / np.maximum(strength, _WEAKEST))) / size
-    return np.where(told > 0.0, errors, np.inf)
+    return np.where(seen > 0.0, errors, np.inf)
 
 
 def _units(situation: Situation) -> dict[str, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -35,7 +36,7 @@ def fade_of(duration: float) -> float:
     return min(_FADE, 0.05 * duration)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Situation:
     """All that a motion is judged by, but the motion.
 
@@ -95,12 +96,18 @@ class Situation:
 
     def with_values(self, values: Mapping[str, float]) -> Joint:
         """Return the joint with the torque limit of the motion and these values, without bounds."""
+        return self._free.with_parameters(values)
+
+    @functools.cached_property
+    def _free(self) -> Joint:
+        """The joint with the torque limit of the motion, without its free parameters."""
         torque = self.limits.torque
         limited = self.joint
         if torque is not None:
             limited = limited.replace(limits=replace(limited.limits, torque=torque, current=None))
-        free = {name: limited.parameters[name] for name in limited.parameters if name not in values}
-        return limited.replace(parameters=free).with_parameters(values)
+        names = self.asked.names
+        kept = {name: own for name, own in limited.parameters.items() if name not in names}
+        return limited.replace(parameters=kept)
 
     def setup(
         self, values: Mapping[str, float], scenario: _core.Scenario, seed: int = 0

@@ -40,19 +40,19 @@ class Known:
     def stderr(self) -> dict[str, float]:
         """The standard errors that this information alone leaves, by name; infinite where it does not determine."""
         scale = np.sqrt(np.diag(self.information))
-        told = scale > 0.0
+        seen = scale > 0.0
         errors = dict.fromkeys(self.names, float("inf"))
-        if not told.any():
+        if not seen.any():
             return errors
-        scale = scale[told]
+        scale = scale[seen]
         values, vectors = np.linalg.eigh(
-            self.information[np.ix_(told, told)] / np.outer(scale, scale)
+            self.information[np.ix_(seen, seen)] / np.outer(scale, scale)
         )
         weak = values <= 1e-10 * values[-1]
         lost = np.abs(vectors[:, weak]).max(axis=1, initial=0.0) > 1e-3
         inverse = np.where(weak, 0.0, 1.0 / np.where(weak, 1.0, values))
         found = np.sqrt((vectors**2) @ inverse) / scale
-        names = [name for name, each in zip(self.names, told, strict=True) if each]
+        names = [name for name, each in zip(self.names, seen, strict=True) if each]
         for name, error, unknown in zip(names, found, lost, strict=True):
             errors[name] = float("inf") if unknown else float(error)
         return errors

@@ -13,9 +13,9 @@ from jointid.base.errors import InputError
 from jointid.design.design import Design
 from jointid.design.design_search import DesignSearch
 from jointid.design.designing import design_excitation
+from jointid.design.given import given_by, joint_of, sensors_of
 from jointid.design.motion_limits import MotionLimits
 from jointid.design.prior import Prior
-from jointid.design.told import joint_of, sensors_of, told_by
 from jointid.estimate.estimate import Estimate
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller
@@ -46,11 +46,11 @@ def motion_after(
     joint : Joint, optional
         Facts that the estimate's joint lacks.
     """
-    told = told_by(estimate)
-    wanted = told.names if parameters is None else tuple(parameters)
+    given = given_by(estimate)
+    wanted = given.names if parameters is None else tuple(parameters)
     for name in wanted:
-        if name not in told.names:
-            free = f"free are {', '.join(told.names)}" if told.names else "none is free"
+        if name not in given.names:
+            free = f"free are {', '.join(given.names)}" if given.names else "none is free"
             raise InputError(
                 f"the estimate has no free parameter of this name; {free}",
                 argument="parameters",
@@ -58,7 +58,7 @@ def motion_after(
             )
     if not wanted:
         raise InputError("nothing is free that a motion could tell more of", argument="parameters")
-    believed = joint_of(estimate, told, joint)
+    believed = joint_of(estimate, given, joint)
     if believed.sensor and believed.link is None and {"sensor_gain", "sensor_offset"} & set(wanted):
         raise InputError(
             "what loads the torque sensor is not known: the joint has no link",
@@ -75,11 +75,11 @@ def motion_after(
         sensors=sensors_of(estimate) if sensors is None else sensors,
         parameters=wanted,
         search=settings,
-        known=told.known,
-        prior=told.joints(max(_HELD, settings.joints), settings.seed) if prior is None else prior,
+        known=given.known,
+        prior=given.joints(max(_HELD, settings.joints), settings.seed) if prior is None else prior,
         **options,
     )
-    before = told.known.stderr()
+    before = given.known.stderr()
     rows = {
         name: replace(row, before=before.get(name, math.inf))
         for name, row in design.parameters.items()

@@ -10,9 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.error_text import printable
+from jointid.base.text_table import aligned
 from jointid.estimate.wording import number, percent, two_digits
 
 Array = NDArray[np.float64]
+
+_LONGEST_NAME = 40  # letters, in a table
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,15 +92,15 @@ class Bootstrap:
             interval = f"{p.interval[0]:.5g} … {p.interval[1]:.5g}"
             interval += " (percentiles)" if p.near_bound else ""
             error = f"{two_digits(p.stderr)}{share}"
-            table.append((p.name, number(p.value), error, interval, p.unit, remark))
-        widths = [max(len(row[column]) for row in table) for column in range(6)]
-        lines = [
-            "  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip()
-            for row in table
-        ]
-        lines.insert(1, "  ".join("-" * w for w in widths))
+            table.append((_short(p.name), number(p.value), error, interval, p.unit, remark))
+        lines = aligned(table)
         lines += [
             "",
             f"{len(self.samples)} draws of {self.blocks} blocks of {self.block:.2g} s, seed {self.seed}",
         ]
         return printable("\n".join(lines))
+
+
+def _short(name: str) -> str:
+    """A name that leaves room for the table; a base parameter of a robot is a long sum."""
+    return name if len(name) <= _LONGEST_NAME else f"{name[: _LONGEST_NAME - 1]}…"

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.robot.columns import Column, Summing, linear_columns, rotor_values
-from jointid.robot.integrals import Windows, held_between, inertia_integrals
+from jointid.robot.integrals import Windows, inertia_integrals, torque_integrals
 from jointid.robot.motion import Motion
 from jointid.robot.robot import Robot
 
@@ -160,7 +160,8 @@ def _part(robot: Robot, motion: Motion, number: int, duration: float, basis: Arr
             if joint in values:
                 sure += value * values[joint][kept]
         travel = summing(joint, np.diff(motion.position[joint]))[kept]
-        torque = summing(joint, held_between(motion.torque[joint], summing.step))[kept]
+        pushed = torque_integrals(motion.torque[joint], summing.step, motion.torque_held)
+        torque = summing(joint, pushed)[kept]
         rows.append(
             Rows(
                 joint=np.full(kept.size, joint),

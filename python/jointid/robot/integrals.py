@@ -107,9 +107,11 @@ def inertia_integrals(
     return found
 
 
-def held_between(values: Array, step: Array) -> Array:
-    """Integrals over the intervals of a signal that is straight between samples, along the last axis."""
-    return 0.5 * step * (values[..., 1:] + values[..., :-1])
+def torque_integrals(torque: Array, step: Array, held: bool) -> Array:
+    """Integrals over the intervals of a torque that is held from its sample on, or straight between samples."""
+    if held:
+        return np.asarray(step * torque[..., :-1])
+    return np.asarray(0.5 * step * (torque[..., 1:] + torque[..., :-1]))
 
 
 def direction_integrals(velocity: Array, step: Array) -> Array:

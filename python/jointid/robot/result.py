@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from jointid.base.argument_checks import require_kind
+from jointid.base.argument_checks import require_kind, require_path
 from jointid.base.errors import InputError
 from jointid.estimate.findings import Finding
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
@@ -19,7 +19,9 @@ from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.robot import Robot
 
 if TYPE_CHECKING:
+    from jointid.estimate.bootstrap import Bootstrap
     from jointid.robot.prediction import RobotPrediction
+    from jointid.robot.resampling import RobotDraws
 
 Array = NDArray[np.float64]
 
@@ -68,9 +70,13 @@ class RobotEstimate:
         With ``inertia="free"``: the combinations of inertial parameters that motion shows.
     inertial : ndarray, shape (n, 10)
         Inertial parameters of all links, as far as they are known: m, m·c, I about the joint's frame. With
-        ``inertia="free"`` one set of many with these base parameters; its single values mean nothing.
+        ``inertia="free"`` one set of many with these base parameters: one that bodies can have and that is like the
+        URDF's, where there is one within the errors; its single values mean nothing.
     consistent : bool or None
-        Whether a body can have these inertial parameters; None: not known.
+        Whether bodies can have these inertial parameters; None: the URDF's are used as they are.
+    impossible_by : float
+        With ``inertia="free"``, the distance of the identified base parameters from the nearest that bodies can
+        have, in standard errors (Mahalanobis distance of all together). Default 0: bodies can have them.
     relative_residual : float
         Norm of all joints' residuals over the norm of their measured integrals.
     free : tuple of str
@@ -82,6 +88,8 @@ class RobotEstimate:
     settings : mapping
     seconds : float
         Wall time.
+    draws : RobotDraws or None
+        What `bootstrap` needs; None where the estimate was read from a file.
     """
 
     joints: Mapping[str, RobotJoint]
@@ -97,6 +105,18 @@ class RobotEstimate:
     robot: Robot = field(repr=False)
     settings: Mapping[str, Any] = field(repr=False)
     seconds: float = field(default=0.0, repr=False)
+    draws: RobotDraws | None = field(default=None, repr=False)
+    impossible_by: float = 0.0
+
+    @property
+    def parameters(self) -> dict[str, ParameterEstimate]:
+        """All parameters by the names that `free` has: "joint.name", and base parameters by their combination."""
+        of_joints = {
+            f"{joint.name}.{name}": p
+            for joint in self.joints.values()
+            for name, p in joint.parameters.items()
+        }
+        return {**of_joints, **self.base_parameters}
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
@@ -158,6 +178,40 @@ class RobotEstimate:
         require_kind("recording", recording, RobotRecording)
         return predict_robot(self, recording)
 
+    def bootstrap(self, n: int = 1000, seed: int = 0) -> Bootstrap:
+        """Draw stretches of the recordings anew, and refit all joints to each draw (block bootstrap).
+
+        A check of the standard errors that does not rest on their formula. A block holds all joints; it is as long as
+        a segment of motion: an eighth of the recordings, between 0.25 and 1 s, and longer on recordings over 10 min. A
+        draw is refitted inside the parameters' bounds, with the balance linearised at the estimate, and with what is
+        known beforehand of base parameters.
+
+        Parameters
+        ----------
+        n : int
+            Draws, 20 to 1,000,000. Default 1000.
+        seed : int
+            The same seed gives the same bits, on any number of threads. Default 0.
+
+        Returns
+        -------
+        Bootstrap
+            Its parameters are named as in `parameters`.
+
+        Raises
+        ------
+        InputError
+            The estimate was read from a file, which does not hold the recordings; or another number.
+
+        Examples
+        --------
+        >>> found.bootstrap().parameters["joint_1.coulomb"].ratio  # doctest: +SKIP
+        1.02
+        """
+        from jointid.robot.resampling import bootstrapped
+
+        return bootstrapped(self, n, seed)
+
     def report(self) -> str:
         """Return the table of the joints and the findings as text."""
         from jointid.robot.tables import text_report
@@ -195,6 +249,46 @@ class RobotEstimate:
         from jointid.robot.document import save_json
 
         return save_json(self, path)
+
+    @classmethod
+    def from_json(cls, text: str) -> RobotEstimate:
+        """Return the estimate that a JSON text holds.
+
+        Raises
+        ------
+        InputError
+            Not JSON, not a robot's estimate, another schema, or a field that cannot be used; names the place in it.
+        """
+        from jointid.robot.reading_back import read_robot_estimate
+
+        return read_robot_estimate(text)
+
+    @classmethod
+    def load(cls, path: str | Path) -> RobotEstimate:
+        """Return the estimate that a .json file holds; everything but `bootstrap` works with it.
+
+        Parameters
+        ----------
+        path : path-like
+
+        Raises
+        ------
+        InputError
+            No such file, or as `from_json`; names the file and the place in it.
+
+        Examples
+        --------
+        >>> jid.RobotEstimate.load("arm.json").friction([0.5, -0.5])  # doctest: +SKIP
+        array([ 5.5, -2.75])
+        """
+        from jointid.base.schema import read_text
+
+        place = require_path("path", path)
+        text = read_text(place)
+        try:
+            return cls.from_json(text)
+        except InputError as error:
+            raise error.at(str(place)) from error
 
     def __str__(self) -> str:
         return self.report()

@@ -133,11 +133,7 @@ def time_segments(start: Array, stop: Array, piece: Whole) -> Segments:
 
     What one joint's model misses acts on its neighbours in the same stretch.
     """
-    first = np.flatnonzero(np.diff(piece, prepend=-1))
-    spans = [
-        float(stop[low:high].max() - start[low])
-        for low, high in zip(first, [*first[1:], len(start)], strict=True)
-    ]
+    first, spans = _spans(start, stop, piece)
     length = usual_length(sum(spans))
     cuts, between = [0], [0]
     for low, high, span in zip(first, [*first[1:], len(start)], spans, strict=True):
@@ -147,3 +143,18 @@ def time_segments(start: Array, stop: Array, piece: Whole) -> Segments:
             found += [int(low + each) for each in np.searchsorted(start[low:high], ends)]
             found.append(int(high))
     return Segments(length=length, cuts=(np.unique(cuts), np.unique(between)))
+
+
+def segment_length(start: Array, stop: Array, piece: Whole) -> float:
+    """Return what a segment of rows in the order of time should last [s]."""
+    return usual_length(sum(_spans(start, stop, piece)[1]))
+
+
+def _spans(start: Array, stop: Array, piece: Whole) -> tuple[Whole, list[float]]:
+    """First row of each piece, and how long each lasts [s]."""
+    first = np.flatnonzero(np.diff(piece, prepend=-1))
+    spans = [
+        float(stop[low:high].max() - start[low])
+        for low, high in zip(first, [*first[1:], len(start)], strict=True)
+    ]
+    return first, spans

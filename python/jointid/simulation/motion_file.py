@@ -10,10 +10,13 @@ from typing import Any
 
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
-from jointid.base.schema import Kind, ListOf, Number, Plain, Record, Text
+from jointid.base.schema import Kind, ListOf, Number, Plain, Record, TableOf, Text
 from jointid.base.toml_file import read_toml
 from jointid.joint.angles import in_radians
+from jointid.joint.joint_file import joint_from_document
+from jointid.simulation.designed_for import DesignedFor
 from jointid.simulation.peaks import Peaks
+from jointid.simulation.setting_tables import read_controller
 from jointid.simulation.trajectory import Trajectory
 
 _SINES = "sines"
@@ -30,7 +33,14 @@ _PEAKS = Record(
     },
     {"sensor_torque": _SIZE},
 )
-# Other tables of the file belong to the design that wrote it.
+_PERIOD = Number(low=1e-6, high=1.0)  # s
+# A table [design] says that a design wrote the file: then it names the joint and the controller, too.
+_ABOUT = Record({"control_period": _PERIOD}, other=Plain())
+_DESIGNED = Record(
+    {"design": _ABOUT, "joint": Plain(), "controller": Plain()},
+    {"believed": TableOf(ListOf(_VALUE, 2, 2), 1000)},
+    other=Plain(),
+)
 _TRAJECTORY = Record({"form": Text(known=_FORMS)}, other=Plain())
 _FILE = Record({"trajectory": Plain()}, {"peaks": _PEAKS}, other=Plain())
 
@@ -54,10 +64,13 @@ class Motion:
     trajectory : Trajectory
     peaks : Peaks or None
         What the joints that it was designed for reach; None where the file does not say it.
+    designed_for : DesignedFor or None
+        The joint and the controller; None of a motion that was written by hand.
     """
 
     trajectory: Trajectory
     peaks: Peaks | None = None
+    designed_for: DesignedFor | None = None
 
 
 def load_motion(path: str | Path) -> Motion:
@@ -73,13 +86,19 @@ def load_motion(path: str | Path) -> Motion:
     """
     place = require_path("path", path)
     try:
-        return motion_of(read_toml(place))
+        return motion_of(read_toml(place), place.name)
     except InputError as error:
         raise (error if error.place.startswith(str(place)) else error.at(str(place))) from None
 
 
-def motion_of(document: Mapping[str, Any]) -> Motion:
+def motion_of(document: Mapping[str, Any], source: str = "the motion") -> Motion:
     """Return the motion of a file's tables.
+
+    Parameters
+    ----------
+    document : mapping
+    source : str
+        The file's name, for later messages. Default: a word for it.
 
     Raises
     ------
@@ -88,9 +107,11 @@ def motion_of(document: Mapping[str, Any]) -> Motion:
     """
     tables = _FILE.read(dict(document), "")
     peaks = tables.get("peaks")
+    trajectory = _trajectory(tables["trajectory"])
     return Motion(
-        trajectory=_trajectory(tables["trajectory"]),
+        trajectory=trajectory,
         peaks=None if peaks is None else Peaks(**peaks | {"position": tuple(peaks["position"])}),
+        designed_for=_designed_for(tables, trajectory, source) if "design" in tables else None,
     )
 
 
@@ -111,6 +132,18 @@ def motion_table(trajectory: Trajectory) -> dict[str, Any]:
         for name, value in trajectory.arguments
     }
     return {"form": _SINES, **arguments}
+
+
+def _designed_for(tables: Mapping[str, Any], trajectory: Trajectory, source: str) -> DesignedFor:
+    read = _DESIGNED.read(dict(tables), "")
+    return DesignedFor(
+        source=source,
+        trajectory=trajectory,
+        joint=joint_from_document(TableOf(Plain()).read(read["joint"], "joint"), "[joint]"),
+        controller=read_controller(read["controller"], "controller"),
+        control_period=read["design"]["control_period"],
+        believed={name: (low, high) for name, (low, high) in read.get("believed", {}).items()},
+    )
 
 
 def _trajectory(table: Any) -> Trajectory:

@@ -17,6 +17,7 @@ from jointid.hardware.session.options import SessionOptions
 from jointid.hardware.session.realtime import RealTimeOptions
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller
+from jointid.simulation.designed_for import DesignedFor
 from jointid.simulation.trajectory import Trajectory
 
 
@@ -103,6 +104,8 @@ class Bench:
     drive_type : str
         Name of the drive's type, see `DriveType`. Default: that of a joint file that names none.
     first_motion : FirstMotionOptions
+    designed_for : DesignedFor or None
+        What the trajectory was designed for, where a file says it. Default None.
     """
 
     joint: Joint
@@ -116,6 +119,16 @@ class Bench:
     emulation: Emulation | None = None
     drive_type: str = DEFAULT_TYPE
     first_motion: FirstMotionOptions = field(default_factory=FirstMotionOptions)
+    designed_for: DesignedFor | None = None
+
+    @property
+    def motion_warning(self) -> str:
+        """In what this bench differs from the one its motion was designed for; empty where it does not."""
+        if self.designed_for is None:
+            return ""
+        return self.designed_for.warning(
+            self.trajectory, self.joint, self.controller, self.options.period
+        )
 
     @property
     def address(self) -> str:

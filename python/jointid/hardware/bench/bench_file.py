@@ -108,6 +108,7 @@ def load_bench(path: str | Path, *, with_motion: bool = True) -> Bench:
         else None,
         drive_type=name,
         first_motion=session.table("first_motion").make(FirstMotionOptions),
+        designed_for=motion.designed_for,
     )
 
 

@@ -18,6 +18,7 @@ from jointid.hardware.session.options import SessionOptions
 from jointid.joint.joint import Joint
 from jointid.joint.joint_file import joint_document
 from jointid.simulation.arguments import Controller
+from jointid.simulation.designed_for import DesignedFor
 from jointid.simulation.trajectory import Trajectory
 
 _LONGEST = 100  # numbers of an argument; a trajectory of samples is in the reference anyway
@@ -56,6 +57,21 @@ def session_metadata(
         },
     }
     return {name: value for name, value in values.items() if value is not None}
+
+
+def motion_metadata(
+    designed_for: DesignedFor | None,
+    trajectory: Trajectory,
+    joint: object,
+    controller: Controller,
+    period: float,
+) -> dict[str, Any]:
+    """Return the key `motion_warning` where the motion was designed for something else."""
+    if designed_for is None:
+        return {}
+    moved = joint if isinstance(joint, Joint) else None
+    warning = designed_for.warning(trajectory, moved, controller, period)
+    return {"motion_warning": warning} if warning else {}
 
 
 def plain(value: Any) -> Any:

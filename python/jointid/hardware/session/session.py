@@ -20,7 +20,7 @@ from jointid.hardware.session.foresight import foresight_of
 from jointid.hardware.session.guard import Guard
 from jointid.hardware.session.interruptions import Interruptions
 from jointid.hardware.session.limits import SessionLimits
-from jointid.hardware.session.metadata import plain, session_metadata
+from jointid.hardware.session.metadata import motion_metadata, plain, session_metadata
 from jointid.hardware.session.moving_joint import MovingJoint, breakaway
 from jointid.hardware.session.options import SessionOptions, check_cycles, with_resolution
 from jointid.hardware.session.outcome import ending_of, recording_of, stop_of
@@ -38,10 +38,12 @@ from jointid.hardware.session.stop import (
     SessionStoppedError,
     Stop,
     is_bug,
+    noted,
 )
 from jointid.joint.joint import Joint
 from jointid.recording.recording import Recording
 from jointid.simulation.arguments import Controller
+from jointid.simulation.designed_for import DesignedFor
 from jointid.simulation.trajectory import Trajectory
 
 __all__ = [
@@ -78,6 +80,8 @@ class Session:
         recording's metadata. Default: nothing.
     joint : Joint, optional
         What limits that look ahead believe of inertia, friction and weight. Default: the drive's `joint`.
+    designed_for : DesignedFor, optional
+        A bench's; the recording's metadata say in what the session differs. Default: not known.
 
     Attributes
     ----------
@@ -103,6 +107,7 @@ class Session:
         observer: Observer | None = None,
         real_time: RealTimeOptions | None = None,
         joint: Joint | None = None,
+        designed_for: DesignedFor | None = None,
     ) -> None:
         check_drive(drive)
         self._drive, self._controller, self._trajectory = drive, controller, trajectory
@@ -110,6 +115,9 @@ class Session:
         moved = getattr(drive, "joint", None) if joint is None else joint
         self._moved, self._breakaway = MovingJoint.of(moved), breakaway(moved)
         self._options = with_resolution(options if options is not None else SessionOptions(), drive)
+        self._designed = motion_metadata(
+            designed_for, trajectory, moved, controller, self._options.period
+        )
         self._output = None if output is None else Path(output)
         self._observer = observer
         self._real_time = RealTime(real_time)
@@ -248,9 +256,9 @@ class Session:
             self._bug.add_note(
                 "the session was completed" if stop is None else f"the session was {stop}"
             )
-            raise _noted(self._bug, unmade)
+            raise noted(self._bug, unmade)
         if stop is not None:
-            raise _noted(SessionStoppedError(stop, self.recording), unmade) from cause
+            raise noted(SessionStoppedError(stop, self.recording), unmade) from cause
         return self.recording
 
     def _recorder(self, output: Path) -> Recorder:
@@ -377,9 +385,10 @@ class Session:
     # Recording and metadata.
 
     def _metadata(self) -> dict[str, Any]:
-        return session_metadata(
+        known = session_metadata(
             self._drive, self._controller, self._trajectory, self._limits, self._options
         )
+        return known | self._designed
 
     def _ending(self, stop: Stop | None) -> dict[str, Any]:
         ending = ending_of(self._follower, self._end, stop, self._real_time.notes)
@@ -389,10 +398,3 @@ class Session:
         metadata = {**self._metadata(), "session": True, **self._ending(stop)}
         name = "" if self._output is None else self._output.stem
         return recording_of(self._follower, name, metadata)
-
-
-def _noted(error: Exception, note: str) -> Exception:
-    """The exception, with a note if there is one."""
-    if note:
-        error.add_note(note)
-    return error

@@ -99,3 +99,10 @@ def is_bug(error: BaseException) -> bool:
     """
     expected = (LimitError, DriveFaultError, InputError, OSError, KeyboardInterrupt)
     return not isinstance(error, expected)
+
+
+def noted(error: Exception, note: str) -> Exception:
+    """Return the exception, with a note if there is one."""
+    if note:
+        error.add_note(note)
+    return error

@@ -45,7 +45,9 @@ def block_bootstrap(
     freedom = max(1, cells.blocks - 1)
     return Bootstrap(
         parameters={
-            name: _parameter(estimate.parameters[name], moved[:, i], (below[i], above[i]), freedom)
+            name: drawn_parameter(
+                estimate.parameters[name], moved[:, i], (below[i], above[i]), freedom
+            )
             for i, name in enumerate(names)
         },
         samples=here + moved,
@@ -55,9 +57,21 @@ def block_bootstrap(
     )
 
 
-def _parameter(
+def drawn_parameter(
     p: ParameterEstimate, moved: Array, room: tuple[float, float], freedom: int
 ) -> BootstrapParameter:
+    """Return one parameter over the draws.
+
+    Parameters
+    ----------
+    p : ParameterEstimate
+    moved : ndarray, shape (n,)
+        Its change in each draw.
+    room : (float, float)
+        How far it may move: below 0 and above.
+    freedom : int
+        Of Student's t.
+    """
     # Not their standard deviation: a draw that lacks a direction of motion may end anywhere.
     left, right = np.quantile(moved, _MIDDLE)
     stderr = 0.5 * float(right - left)

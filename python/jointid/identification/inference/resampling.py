@@ -35,11 +35,15 @@ class Cells:
         Their products with the residual.
     starts : ndarray of int
         Cells at which a block may begin.
+    sure_square, sure_gradient : ndarray, shape (p, p) and (p,), optional
+        The same sums of what is in every draw: known beforehand, and no motion. Default: nothing.
     """
 
     square: Array
     gradient: Array
     starts: Whole
+    sure_square: Array | None = None
+    sure_gradient: Array | None = None
 
     @property
     def blocks(self) -> int:
@@ -107,6 +111,10 @@ def draws(cells: Cells, lower: Array, upper: Array, count: int, seed: int) -> Ar
         weight = _weights(cells, first, last, seed)
         square = np.einsum("nc,cij->nij", weight, cells.square)
         gradient = np.einsum("nc,ci->ni", weight, cells.gradient)
+        if cells.sure_square is not None:
+            square += cells.sure_square
+        if cells.sure_gradient is not None:
+            gradient += cells.sure_gradient
         result[first:last] = bounded_minima(square, gradient, lower, upper)
     return result
 

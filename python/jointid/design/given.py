@@ -1,4 +1,4 @@
-"""What an estimate tells of its joint: information, joints that it leaves possible, the sensor's noise."""
+"""What an estimate says of its joint: information, joints that it leaves possible, the sensor's noise."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ _SIGNED = ("offset", "gravity", "ripple", "position")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Told:
-    """What an estimate tells of a joint's parameters.
+class Given:
+    """What an estimate says of a joint's parameters.
 
     Attributes
     ----------
@@ -67,9 +67,9 @@ class Told:
             The same seed gives the same joints. Default 0.
         """
         width, lower, upper = self._box()
-        told, vectors = np.linalg.eigh(self.known.information * np.outer(width, width))
+        strength, vectors = np.linalg.eigh(self.known.information * np.outer(width, width))
         # Not determined at all is drawn as badly determined: a joint ten times the estimate is another joint.
-        lengths = 1.0 / np.sqrt(np.maximum(told, 1.0))
+        lengths = 1.0 / np.sqrt(np.maximum(strength, 1.0))
         drawn = np.random.default_rng(seed).standard_normal((max(count - 1, 0), len(self.names)))
         found = [dict(zip(self.names, self.values.tolist(), strict=True))]
         for each in drawn:
@@ -97,8 +97,8 @@ class Told:
         return _WIDEST * size, lower, upper
 
 
-def told_by(estimate: Estimate) -> Told:
-    """Return what an estimate tells of the parameters that another motion can tell more of.
+def given_by(estimate: Estimate) -> Given:
+    """Return what an estimate says of the parameters that another motion can tell more of.
 
     It is as uncertain as the intervals: by chance and by what the recordings show besides. An offset
     that no motion divides from the friction of the two directions is taken as it is, and so is what a bound holds,
@@ -114,7 +114,7 @@ def told_by(estimate: Estimate) -> Told:
     table = estimate.joint.parameters
     values = {name: estimate.parameters[name].value for name in names} | assumed
     friction = float(np.max(np.abs(estimate.windows.friction), initial=0.0))
-    return Told(
+    return Given(
         known=Known(names=names, information=_information(estimate, names, held, {*assumed, *own})),
         values=np.array([values[name] for name in names]),
         bounds={name: (table[name].min, table[name].max) for name in names if name in table},
@@ -131,13 +131,13 @@ def _information(
     free = estimate.free
     kept = [free.index(name) for name in names if name in free and name not in unknown]
     lost = [free.index(name) for name in free if name in unknown and name not in held]
-    told = whole[np.ix_(kept, kept)]
+    left = whole[np.ix_(kept, kept)]
     if lost:
         across = whole[np.ix_(kept, lost)]
-        told = told - across @ np.linalg.pinv(whole[np.ix_(lost, lost)], hermitian=True) @ across.T
+        left = left - across @ np.linalg.pinv(whole[np.ix_(lost, lost)], hermitian=True) @ across.T
     matrix = np.zeros((len(names), len(names)))
     places = [names.index(free[place]) for place in kept]
-    matrix[np.ix_(places, places)] = told
+    matrix[np.ix_(places, places)] = left
     return matrix
 
 
@@ -169,25 +169,25 @@ def sensors_of(estimate: Estimate) -> _core.Sensors | None:
     return _core.Sensors(torque_noise=noise) if noise > 0.0 else None
 
 
-def joint_of(estimate: Estimate, told: Told, given: Joint | None) -> Joint:
+def joint_of(estimate: Estimate, given: Given, facts: Joint | None) -> Joint:
     """Return the joint of a design: the estimate's values, free where another motion can tell more of them.
 
     Parameters
     ----------
-    given : Joint, optional
-        With facts that the joint of the identification lacked: a link, limits. Default: none.
+    facts : Joint, optional
+        A joint with what that of the identification lacked: a link, limits. Default: none.
     """
-    if given is not None:
-        require_kind("joint", given, Joint)
-    base = estimate.joint if given is None else given
+    if facts is not None:
+        require_kind("joint", facts, Joint)
+    base = estimate.joint if facts is None else facts
     own = estimate.joint
-    if given is not None and (given.kind, given.sensor) != (own.kind, own.sensor):
+    if facts is not None and (facts.kind, facts.sensor) != (own.kind, own.sensor):
         raise InputError(
             "its kind and its sensor must be those of the estimate's joint",
             argument="joint",
         )
     table = dict(base.parameters)
-    values = dict(zip(told.names, told.values.tolist(), strict=True))
+    values = dict(zip(given.names, given.values.tolist(), strict=True))
     for name, parameter in own.parameters.items():
         if parameter.value is None:  # of another model
             continue
@@ -197,6 +197,6 @@ def joint_of(estimate: Estimate, told: Told, given: Joint | None) -> Joint:
             value=values.get(name, parameter.value),
             min=known.min,
             max=known.max,
-            vary=name in told.names,
+            vary=name in given.names,
         )
     return base.replace(parameters=table, model=own.model, torque_offset=own.torque_offset)

@@ -1,0 +1,154 @@
+"""The block bootstrap of a robot's estimate: stretches of time, with all joints in them, are drawn anew."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.argument_checks import whole_number
+from jointid.base.errors import InputError
+from jointid.estimate.bootstrap import Bootstrap
+from jointid.identification.inference.bootstrap import drawn_parameter
+from jointid.identification.inference.resampling import CELLS, Cells, draws
+from jointid.robot.solving import segment_length
+
+if TYPE_CHECKING:
+    from jointid.robot.balance import Balance, Rows
+    from jointid.robot.fit import Fit
+    from jointid.robot.result import RobotEstimate
+    from jointid.robot.solving import Known
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RobotDraws:
+    """The fit's sums over quarters of blocks: what is drawn from. No recording is kept.
+
+    Attributes
+    ----------
+    cells : Cells
+    block : float
+        Length of a block [s].
+    lower, upper : ndarray, shape (p,)
+        Bounds of the parameters, in the order of `RobotEstimate.parameters`' labels.
+    values : ndarray, shape (p,)
+    labels : tuple of (int or None, str)
+    """
+
+    cells: Cells
+    block: float
+    lower: Array
+    upper: Array
+    values: Array
+    labels: tuple[tuple[int | None, str], ...]
+
+    @classmethod
+    def of(cls, balance: Balance, fit: Fit, known: Known) -> Self:
+        """Return the sums of a fit.
+
+        Parameters
+        ----------
+        balance : Balance
+        fit : Fit
+        known : Known
+            What is known beforehand of the parameters; further ones stand behind them.
+        """
+        rows = balance.rows
+        weight = 1.0 / fit.scatter[rows.joint]
+        length = segment_length(rows.start, rows.stop, rows.piece)
+        limits, starts = _limits(rows, length)
+        count = fit.values.size
+        square = np.empty((len(limits), count, count))
+        gradient = np.empty((len(limits), count))
+        for number, (first, last) in enumerate(limits):
+            part = fit.jacobian[first:last] * weight[first:last, None]
+            square[number] = np.einsum("ij,ik->jk", part, part)
+            gradient[number] = -np.einsum(
+                "ij,i->j", part, fit.residual[first:last] * weight[first:last]
+            )
+        sure = known.padded(count - known.matrix.shape[1])
+        missed = sure.matrix @ fit.values - sure.wanted
+        lower, upper = np.array(fit.bounds).T
+        return cls(
+            cells=Cells(
+                square=square,
+                gradient=gradient,
+                starts=starts,
+                sure_square=sure.matrix.T @ sure.matrix,
+                sure_gradient=sure.matrix.T @ missed,
+            ),
+            block=length,
+            lower=lower,
+            upper=upper,
+            values=fit.values,
+            labels=fit.labels,
+        )
+
+    def __reduce__(self) -> tuple[Callable[[], None], tuple[()]]:
+        """Leave the sums out of a pickled estimate."""
+        return _nothing, ()
+
+
+def bootstrapped(estimate: RobotEstimate, count: int, seed: int) -> Bootstrap:
+    """Return the block bootstrap of an estimate; see `RobotEstimate.bootstrap`."""
+    count = whole_number("n", count, 20, 1_000_000)
+    seed = whole_number("seed", seed, 0, 2**64 - 1)
+    source = estimate.draws
+    if source is None:
+        raise InputError(
+            "this estimate was read from a file, which does not hold the recordings",
+            argument="bootstrap",
+            remedy="identify again, and ask the new estimate",
+        )
+    below, above = source.lower - source.values, source.upper - source.values
+    moved = draws(source.cells, below, above, count, seed)
+    freedom = max(1, source.cells.blocks - 1)
+    names = [
+        name if joint is None else f"{estimate.robot.names[joint]}.{name}"
+        for joint, name in source.labels
+    ]
+    every = estimate.parameters
+    return Bootstrap(
+        parameters={
+            name: replace(
+                drawn_parameter(every[name], moved[:, i], (below[i], above[i]), freedom), name=name
+            )
+            for i, name in enumerate(names)
+        },
+        samples=source.values + moved,
+        block=source.block,
+        blocks=source.cells.blocks,
+        seed=seed,
+    )
+
+
+def _limits(rows: Rows, length: float) -> tuple[list[tuple[int, int]], NDArray[np.int64]]:
+    """First row and end of each quarter of a block, and the quarters at which a block may begin.
+
+    Rows are in the order of time, and those of all joints in a stretch go together.
+    """
+    limits: list[tuple[int, int]] = []
+    starts: list[int] = []
+    for piece in np.unique(rows.piece):
+        low, high = (int(each) for each in np.searchsorted(rows.piece, (piece, piece + 1)))
+        begin = rows.start[low]
+        span = float(rows.stop[low:high].max() - begin)
+        count = max(1, round(CELLS * span / length))
+        ends = begin + span * np.arange(1, count) / count
+        inner = low + np.searchsorted(rows.start[low:high], ends)
+        cuts = np.unique([low, *inner, high])
+        # A recording shorter than a block is one with what follows.
+        starts += range(len(limits), len(limits) + max(1, len(cuts) - CELLS))
+        limits += [(int(a), int(b)) for a, b in itertools.pairwise(cuts)]
+    inside = [start for start in starts if start + CELLS <= len(limits)] or [0]
+    return limits, np.array(inside)
+
+
+def _nothing() -> None:
+    return None
