@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,8 +17,36 @@ _STEP = 1e-6  # [s]
 _JUMP = 6.0  # medians of the size of the reading's rate
 
 
-def determinable(quiet: jid.Recording, noise: float, delay: float, near: float) -> bool:
-    """Whether any unbiased estimate has a 95 % interval as narrow as that, and knows which delay it is.
+@dataclass(frozen=True, kw_only=True)
+class Limit:
+    """Least standard errors of a reading's delay, from one recording [s].
+
+    Attributes
+    ----------
+    smooth : float
+        From the motion without its jumps.
+    whole : float
+        From all of it, for one who knows whether the reading is interpolated between samples.
+    apart : float
+        From the delay to the next whole sample.
+    """
+
+    smooth: float
+    whole: float
+    apart: float
+
+    @property
+    def error(self) -> float:
+        """The least standard error: jumps count where they tell an interpolated reading from one of an instant."""
+        return self.whole if _REFUTED * self.whole <= self.apart else self.smooth
+
+    def determinable(self, near: float) -> bool:
+        """Whether any unbiased estimate has a 95 % interval within that [s], and knows which delay it is."""
+        return NORMAL * self.error <= near or NORMAL * self.smooth <= near
+
+
+def limit(quiet: jid.Recording, noise: float, delay: float) -> Limit:
+    """Return the Cramér-Rao bound of the delay of one recording.
 
     Parameters
     ----------
@@ -26,8 +56,6 @@ def determinable(quiet: jid.Recording, noise: float, delay: float, near: float) 
         Standard deviation of a reading [N·m].
     delay : float
         [s]; samples between are interpolated.
-    near : float
-        Half of the interval [s].
 
     Notes
     -----
@@ -46,12 +74,11 @@ def determinable(quiet: jid.Recording, noise: float, delay: float, near: float) 
     informative = rate[moving] - known @ np.linalg.lstsq(known, rate[moving], rcond=None)[0]
     noise = noise / quiet.metadata["log"]["gain"]
     size = np.abs(informative)
-    whole = noise / float(np.linalg.norm(informative))
-    smooth = noise / float(np.linalg.norm(informative[size < _JUMP * np.median(size)]))
-    apart = abs(delay - quiet.sample_period * round(delay / quiet.sample_period))
-    if NORMAL * smooth <= near:
-        return True
-    return NORMAL * whole <= near and _REFUTED * whole <= apart
+    return Limit(
+        smooth=noise / float(np.linalg.norm(informative[size < _JUMP * np.median(size)])),
+        whole=noise / float(np.linalg.norm(informative)),
+        apart=abs(delay - quiet.sample_period * round(delay / quiet.sample_period)),
+    )
 
 
 def late(recording: jid.Recording, signal: str, delay: float) -> Array:

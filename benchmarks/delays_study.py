@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 from conditions import DURATION, LUGRE, POSE, Condition
-from delay_limit import NORMAL, determinable
+from delay_limit import NORMAL, Limit, limit
 from delay_limit import late as late_signal
 from plants import Bench, simulate
 
@@ -24,6 +24,7 @@ import jointid as jid
 
 NEAR = 3e-4  # [s] from the true delay
 CLOSE = 0.015  # of the true value, with the delay taken away
+_ROUNDED = 1e-5  # [s]; of a delay that nothing but rounding makes uncertain
 _MOTIONS = ("thesis", "sines", "trapezoids", "chirp")
 _MISMATCHES: Mapping[str, Mapping[str, Any]] = {
     "viscous drift -30 %": {"plant": {"viscous_drift": -0.3}},
@@ -108,8 +109,10 @@ class Outcome:
         Largest relative error of a parameter, the offset's relative to the Coulomb friction.
     before : float
         The same of the recording before its signal was made late.
-    determinable : bool
-        Whether the recording can tell the delay to `NEAR` at all; known where the reading is not fed back.
+    limit : Limit or None
+        How well the recording can tell the delay at all; known where the reading is not fed back.
+    apart : float
+        Error over its standard error of a delay that was measured, certain or not; NaN of one that was not.
     """
 
     error: float
@@ -117,7 +120,8 @@ class Outcome:
     false: frozenset[str]
     worst: float
     before: float = 0.0
-    determinable: bool = True
+    limit: Limit | None = None
+    apart: float = np.nan
 
 
 def outcome(
@@ -132,6 +136,7 @@ def outcome(
     estimate = jid.identify(recording, case.condition.joint(recording), search="separable")
     certain = {name: each for name, each in estimate.delays.items() if each.certain}
     found = certain.pop(case.signal, None)
+    measured = estimate.delays.get(case.signal)
     truth = dict(recording.truth or {})
     worst = 0.0
     for name, parameter in estimate.parameters.items():
@@ -144,8 +149,12 @@ def outcome(
         false=frozenset(certain),
         worst=worst,
         before=before,
-        determinable=quiet is None
-        or determinable(quiet, recording.metadata["log"]["sensor_noise"], delay, NEAR),
+        limit=None
+        if quiet is None
+        else limit(quiet, recording.metadata["log"]["sensor_noise"], delay),
+        apart=np.nan
+        if measured is None
+        else (measured.value - delay) / np.hypot(measured.stderr, _ROUNDED),
     )
 
 
@@ -188,16 +197,18 @@ def tables(found: Mapping[str, tuple[Case, Sequence[Outcome]]]) -> list[str]:
     lines = [
         f"| late signal | runs | named within {NEAR * 1e3:g} ms | determinable, and of these named so |"
         " named, but further off | further off than its 95 % interval says | median error |"
-        " in its 95 % interval | named, interval beyond ± 0.3 ms | other signals called late |"
+        " in its 95 % interval | the same of all measured delays | error over the bound, rms |"
+        " named, interval beyond ± 0.3 ms | other signals called late |"
         + f" all parameters within {CLOSE:.1%} | the same runs, nothing late |".replace("%", " %"),
-        "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|",
+        f"|---|{13 * '--:|'}",
     ]
     for title, (case, runs) in found.items():
         if case.signal:
             named = [each for each in runs if np.isfinite(each.error)]
             errors = np.array([each.error for each in named])
             inside = [each.error < NORMAL * each.stated + 2e-5 for each in named]
-            can = [each for each in runs if each.determinable]
+            measured = [abs(each.apart) < NORMAL for each in runs if np.isfinite(each.apart)]
+            can = [each for each in runs if each.limit and each.limit.determinable(NEAR)]
             near = np.count_nonzero([each.error < NEAR for each in can])
             unsaid = [e >= NEAR and not said for e, said in zip(errors, inside, strict=True)]
             wide = [NORMAL * each.stated > NEAR for each in named]
@@ -206,7 +217,9 @@ def tables(found: Mapping[str, tuple[Case, Sequence[Outcome]]]) -> list[str]:
                 f" {f'{len(can)}, {near}' if case.silent else ''} |"
                 f" {np.count_nonzero(errors >= NEAR)} | {sum(unsaid)} |"
                 f" {1e3 * np.median(errors) if len(errors) else np.nan:.2f} ms |"
-                f" {sum(inside)} of {len(named)} | {sum(wide)} | {sum(bool(each.false) for each in runs)} |"
+                f" {sum(inside)} of {len(named)} | {sum(measured)} of {len(measured)} |"
+                f" {_over_limit(named) if case.silent else ''} | {sum(wide)} |"
+                f" {sum(bool(each.false) for each in runs)} |"
                 f" {sum(each.worst <= CLOSE for each in runs)} |"
                 f" {sum(each.before <= CLOSE for each in runs)} |"
             )
@@ -223,6 +236,12 @@ def tables(found: Mapping[str, tuple[Case, Sequence[Outcome]]]) -> list[str]:
     return lines
 
 
+def _over_limit(named: Sequence[Outcome]) -> str:
+    """How large the errors are beside the least possible standard errors."""
+    ratios = [each.error / each.limit.error for each in named if each.limit is not None]
+    return f"{np.sqrt(np.mean(np.square(ratios))):.2f}" if ratios else ""
+
+
 _TEXT = """# Delays between signals
 
 Written by `benchmarks/delays_study.py` (`make study`); do not edit. Recordings of 12 s of random joints, simulated by
@@ -237,7 +256,9 @@ such a controller the motion has to tell it. Smooth motion leaves a standard err
 at reversals tell it to 0.02 to 0.1 ms, except where a held torque's jump falls on a whole sample: the reading of an
 instant and an interpolated one then look alike. *Determinable* are the recordings whose bound, with the true motion
 and reading of each, allows a 95 % interval within ± 0.3 ms (`benchmarks/delay_limit.py`); of no other one can
-any estimate promise it. Where the 95 % interval is wider than ± 0.3 ms, the finding states it.
+any estimate promise it. Where the 95 % interval is wider than ± 0.3 ms, the finding states it. *All measured delays*
+are those that `estimate.delays` has, certain or not; *error over the bound* of an estimate that is as good as any
+would be 1.
 """
 
 

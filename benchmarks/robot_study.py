@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from arms import mismatches, seven_tables, speed_tables, tx40_tables
+from arms import mismatches, naming_tables, seven_tables, speed_tables, tx40_tables
 
 _LOG = Path(__file__).resolve().parents[2] / "shared" / "data" / "tx40"
 
@@ -33,6 +33,11 @@ def sections(
         "wrong": (
             f"What else may be wrong, arms: {min(runs, 2)}",
             lambda: mismatches.table(range(min(runs, 2))),
+        ),
+        "delays": (f"A late torque, arms: {runs}", lambda: naming_tables.delays(range(runs))),
+        "causes": (
+            f"Causes that are named, arms: {min(runs, 10)}",
+            lambda: naming_tables.causes(range(min(runs, 10))),
         ),
         "speed": ("Time and memory", lambda: speed_tables.tables(0, 5, hour)),
     }
@@ -105,6 +110,11 @@ positions and of its error, of the best joint.""",
     "heavier": """Scales of the links, and what a call says that takes the URDF's inertias for true.""",
     "facts": """One arm; the call is told something wrong, and has to say what.""",
     "wrong": """The call is not told of it; the largest over the arms, and how often each warning came.""",
+    "delays": """Every torque as it was so much before; the call is not told. Errors are the largest over the arms.""",
+    "causes": """One fact is wrong, and the call is not told. Counted are the runs in which the cause is named,
+and those in which something else is named as a cause, too or instead. Explained: of the squared
+residual, in stretches of motion from which the cause's size was not taken. Free inertias follow what
+is wrong with links: then there is nothing to name.""",
     "speed": """Each in a program of its own, on two cores that may have other work: so the processor's seconds
 stand beside those of the clock. The loop is plain Python over 20 s: pinocchio's four regressors a
 sample, and nothing else; the ratio is of processor seconds. Memory before is that of the program

@@ -33,6 +33,7 @@ ROOMS: dict[str, set[str]] = {
     },
     "design": {"base", "model", "simulate", "search", "identify/balance"},
     "signals": {"base"},
+    "text": set(),
     "diagnose": {
         *("base", "signals"),
         *("identify/recording", "identify/balance", "identify/penalty"),
@@ -72,7 +73,7 @@ FOLDERS: dict[str, Folder] = {
     ),
     "joint": Folder(may_use={"base", "recording"}, packages={"numpy", "tomlkit"}),
     "problem": Folder(may_use=_DATA, packages={"numpy"}),
-    "estimate": Folder(may_use={*_DATA, "problem"}, packages={"numpy", "scipy"}),
+    "estimate": Folder(may_use={*_DATA, "problem"}, packages={"numpy"}),
     "identification": Folder(
         may_use={
             *_SOUGHT,
@@ -84,7 +85,7 @@ FOLDERS: dict[str, Folder] = {
     ),
     "identification/causes": Folder(may_use=_FOUND - {"joint"}, packages={"numpy"}),
     "identification/refinements": Folder(may_use=_FOUND - {"joint"}, packages={"numpy"}),
-    "identification/search": Folder(may_use=_FOUND - {"recording"}, packages={"numpy", "scipy"}),
+    "identification/search": Folder(may_use=_FOUND - {"recording"}, packages={"numpy"}),
     "identification/selection": Folder(
         may_use={*_FOUND, "identification/search"}, packages={"numpy"}
     ),
@@ -94,7 +95,7 @@ FOLDERS: dict[str, Folder] = {
         packages={"numpy"},
     ),
     "identification/inference": Folder(
-        may_use={*_FOUND, "identification/search"}, packages={"numpy", "scipy"}
+        may_use={*_FOUND, "identification/search"}, packages={"numpy"}
     ),
     "identification/warnings": Folder(
         may_use={*_FOUND, "identification/inference"}, packages={"numpy"}

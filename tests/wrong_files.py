@@ -89,6 +89,7 @@ def _joint_files(folder: Path) -> None:
         "newer.toml": "schema = 99\n",
         "bounds.toml": "schema = 1\n[parameters]\nviscous = { value = 1.0, min = 2.0 }\n",
         "sensor.toml": "schema = 1\n[sensor]\npresent = true\n",
+        "slide.toml": 'schema = 2\nkind = "prismatic"\n[drive]\ninertia = 5.0\n',
         "bench.toml": text,
         "moved.toml": _taking(text, "nowhere.toml"),
         "far.toml": _taking(text, "far_motion.toml"),

@@ -101,7 +101,8 @@ def thinned(every: int) -> Callable[[jid.RobotRecording], jid.RobotRecording]:
     def changed(recording: jid.RobotRecording) -> jid.RobotRecording:
         fields = recording.fields()
         kept = {signal: fields[signal][::every] for signal in recording.signals}
-        return jid.RobotRecording(**{**fields, **kept})
+        # A command that was held for one of these samples is no longer held until the next.
+        return jid.RobotRecording(**{**fields, **kept, "torque_hold": "linear"})
 
     return changed
 

@@ -148,6 +148,7 @@ class SignalPoll {
 };
 
 void bind_input_error();
+void bind_distributions(py::module_& m);
 void bind_terms(py::module_& m);
 void bind_recording(py::module_& m);
 void bind_penalty(py::module_& m);
@@ -158,6 +159,7 @@ void bind_diagnose(py::module_& m);
 void bind_signals(py::module_& m);
 void bind_regression(py::module_& m);
 void bind_simulate(py::module_& m);
+void bind_text(py::module_& m);
 void bind_design(py::module_& m);
 
 }  // namespace jointid::bind

@@ -119,8 +119,6 @@ void bind_excitation(py::module_& m) {
             return found;
           },
           py::arg("trajectory"), "One judgement a joint.")
-      .def("cost", &Excitation::cost, py::arg("judgements"),
-           "The logarithm of what the search minimises.")
       .def(
           "motion",
           [](const Excitation& self, const Eigen::VectorXd& genes) {

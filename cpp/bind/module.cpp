@@ -4,6 +4,7 @@ PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
   m.doc() = "The compiled core of jointid; use it through the package jointid.";
   m.attr("__version__") = JOINTID_VERSION;
   jointid::bind::bind_input_error();
+  jointid::bind::bind_distributions(m);
   jointid::bind::bind_terms(m);
   jointid::bind::bind_recording(m);
   jointid::bind::bind_penalty(m);
@@ -13,5 +14,6 @@ PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
   jointid::bind::bind_diagnose(m);
   jointid::bind::bind_regression(m);
   jointid::bind::bind_simulate(m);
+  jointid::bind::bind_text(m);
   jointid::bind::bind_design(m);
 }

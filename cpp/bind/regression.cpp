@@ -1,6 +1,9 @@
 #include "identify/solve/regression.hpp"
 
+#include <cmath>
+
 #include "bind/recording.hpp"
+#include "search/least_squares.hpp"
 
 namespace jointid::bind {
 
@@ -16,6 +19,27 @@ void bind_regression(py::module_& m) {
       },
       py::arg("matrix"), py::kw_only(), py::arg("threads") = 0,
       "R of the QR decomposition of a tall matrix.");
+  m.def(
+      "non_negative_least_squares",
+      [](const Eigen::MatrixXd& matrix, const Eigen::VectorXd& target) {
+        if (matrix.rows() != target.size()) {
+          throw std::invalid_argument("the target must have a value for each row");
+        }
+        const py::gil_scoped_release nogil;
+        // Columns of about unit norm: by powers of two, which round nothing.
+        Eigen::VectorXd scale = Eigen::VectorXd::Ones(matrix.cols());
+        for (Eigen::Index i = 0; i < matrix.cols(); ++i) {
+          const double norm = matrix.col(i).norm();
+          if (norm > 0.0) scale[i] = std::ldexp(1.0, -std::ilogb(norm));
+        }
+        Eigen::VectorXd found =
+            search::non_negative_least_squares(matrix * scale.asDiagonal(), target);
+        found = found.cwiseProduct(scale).eval();
+        const double misfit = (matrix * found - target).norm();
+        return std::make_pair(std::move(found), misfit);
+      },
+      py::arg("matrix"), py::arg("target"),
+      "The solution without negative entries, and the norm of what is left of the target.");
   m.def(
       "robust_variance",
       [](const Matrix& jacobian, const Eigen::VectorXd& residual, const Eigen::VectorXd& scale,

@@ -28,6 +28,7 @@ Eigen::VectorXd solve_columns(const Eigen::MatrixXd& a, const Eigen::VectorXd& b
 Eigen::VectorXd non_negative_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
   const Eigen::Index n = a.cols();
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+  if (a.size() == 0) return x;
   std::vector<char> passive(static_cast<std::size_t>(n), 0);
   const double tolerance =
       1e-14 * a.cwiseAbs().maxCoeff() * b.cwiseAbs().maxCoeff() * static_cast<double>(a.rows());

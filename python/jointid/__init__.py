@@ -68,6 +68,8 @@ if TYPE_CHECKING:
     from jointid.recording.readers.loading_robot import load_robot
     from jointid.recording.recording import Recording
     from jointid.recording.wide.robot_recording import RobotRecording
+    from jointid.robot.comparing import compare_robot_models
+    from jointid.robot.comparison_result import RobotComparison
     from jointid.robot.identifying import identify_robot
     from jointid.robot.result import RobotEstimate
     from jointid.robot.robot import Robot
@@ -112,6 +114,7 @@ __all__ = [
     "Pid",
     "Recording",
     "Robot",
+    "RobotComparison",
     "RobotEstimate",
     "RobotRecording",
     "Scenario",
@@ -131,6 +134,7 @@ __all__ = [
     "__version__",
     "commissioning",
     "compare_models",
+    "compare_robot_models",
     "control_estimates",
     "design_excitation",
     "export",
@@ -193,6 +197,8 @@ _HOMES = {
     "jointid.recording.readers.loading_robot": ("load_robot",),
     "jointid.recording.recording": ("Recording",),
     "jointid.recording.wide.robot_recording": ("RobotRecording",),
+    "jointid.robot.comparing": ("compare_robot_models",),
+    "jointid.robot.comparison_result": ("RobotComparison",),
     "jointid.robot.identifying": ("identify_robot",),
     "jointid.robot.result": ("RobotEstimate",),
     "jointid.robot.robot": ("Robot",),

@@ -65,6 +65,9 @@ __all__: list[str] = [
     "Trajectory",
     "TrialResult",
     "WindowOptions",
+    "chi_square_quantile",
+    "covering_half_width",
+    "find_control_character",
     "friction_basis",
     "inspect",
     "is_parameter",
@@ -76,6 +79,8 @@ __all__: list[str] = [
     "model_names",
     "model_terms",
     "models",
+    "non_negative_least_squares",
+    "number_table",
     "parameter_names",
     "polish",
     "position_noise",
@@ -84,6 +89,7 @@ __all__: list[str] = [
     "shape",
     "shapes",
     "simulate_runs",
+    "student_quantile",
     "term",
     "terms",
     "timing_errors",
@@ -3241,10 +3247,6 @@ class Excitation:
         criterion: str,
         window: typing.SupportsInt | typing.SupportsIndex,
     ) -> None: ...
-    def cost(self, judgements: collections.abc.Sequence[MotionJudgement]) -> float:
-        """
-        The logarithm of what the search minimises.
-        """
     def judge(self, trajectory: Trajectory) -> list[MotionJudgement]:
         """
         One judgement a joint.
@@ -3284,6 +3286,27 @@ class Excitation:
         """
     @property
     def joints(self) -> list[DrawnJoint]: ...
+
+def chi_square_quantile(
+    tail: typing.SupportsFloat | typing.SupportsIndex,
+    freedom: typing.SupportsFloat | typing.SupportsIndex,
+) -> float:
+    """
+    Beyond which this probability of chi-square lies.
+    """
+
+def covering_half_width(
+    probability: typing.SupportsFloat | typing.SupportsIndex,
+    offset: typing.SupportsFloat | typing.SupportsIndex,
+) -> float:
+    """
+    Half the width of the symmetric interval that holds a normal variable of this mean and deviation 1.
+    """
+
+def find_control_character(content: bytes) -> int:
+    """
+    The place of the first byte that no text contains in any encoding; -1 without one.
+    """
 
 def friction_basis(
     key: str,
@@ -3393,6 +3416,24 @@ def models() -> list[Model]:
     All friction models.
     """
 
+def non_negative_least_squares(
+    matrix: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    target: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float]:
+    """
+    The solution without negative entries, and the norm of what is left of the target.
+    """
+
+def number_table(
+    text: str,
+    below: typing.SupportsInt | typing.SupportsIndex,
+    separator: str,
+    columns: typing.SupportsInt | typing.SupportsIndex,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"] | None:
+    """
+    The numbers of all rows below the first lines; None where a cell is not a plain number.
+    """
+
 def parameter_names() -> tuple[typing.Any, ...]:
     """
     All parameters but the harmonics, a shape parameter after its first term.
@@ -3461,6 +3502,14 @@ def simulate_runs(
 ) -> list[Outcome]:
     """
     One Outcome a setup; InputError when a loop is not stable.
+    """
+
+def student_quantile(
+    probability: typing.SupportsFloat | typing.SupportsIndex,
+    freedom: typing.SupportsFloat | typing.SupportsIndex,
+) -> float:
+    """
+    Below which this probability of Student's t lies.
     """
 
 def term(key: str) -> Term:

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import jointid as jid
+from jointid.cli.demo import data_folder
 
 # What the face itself needs; every other module comes with the first name that needs it.
 FACE = {"jointid", "jointid.base", "jointid.base.interruption", "jointid.base.joining"}
@@ -131,3 +132,31 @@ def test_the_room_that_designs_is_loaded_by_the_first_design() -> None:
     after = "from jointid.base.joining import joined\nassert callable(joined('next_motion'))"
     assert "jointid.design.next_motion" not in loaded(before)
     assert "jointid.design.next_motion" in loaded(before + after)
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A plain file of numbers."""
+    path = tmp_path_factory.mktemp("run") / "run.csv"
+    jid.load(data_folder() / "well_excited.csv.gz").save(path)
+    return path
+
+
+def test_identifying_a_file_brings_only_numpy(recording: Path) -> None:
+    script = (
+        "import runpy\n"
+        f"sys.argv = ['jointid', 'identify', {str(recording)!r}, '--quiet']\n"
+        "try: runpy.run_module('jointid', run_name='__main__')\n"
+        "except SystemExit as end: assert not end.code"
+    )
+    modules = loaded(script)
+    assert roots(modules) == {"jointid", "numpy"}
+    others = ("cli.study", "design", "hardware", "online", "plot", "report", "robot", "study")
+    rooms = tuple(f"jointid.{room}" for room in (*others, "exports", "identification.self_test"))
+    assert not [name for name in modules if name.startswith(rooms)]
+    assert not modules & {"numpy.random", "numpy.fft", "numpy.testing", "numpy.polynomial"}
+
+
+def test_the_first_identify_brings_only_numpy(recording: Path) -> None:
+    modules = loaded(f"from jointid import identify, load\nidentify(load({str(recording)!r}))")
+    assert roots(modules) == {"jointid", "numpy"}

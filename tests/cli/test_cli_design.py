@@ -16,7 +16,7 @@ from jointid.cli.progress import MotionProgress
 from jointid.hardware.bench.bench import Bench
 
 Printed = pytest.CaptureFixture[str]
-QUICK = ["--duration", "4", "--evaluations", "100", "--draws", "2", "--rehearsals", "10"]
+QUICK = ["--duration", "4", "--evaluations", "100", "--joints", "2", "--rehearsals", "10"]
 WITHIN = ["--position", "-60deg,60deg", "--velocity", "3.4"]
 TRUTH = {"coulomb": 25.0, "static": 20.0, "stribeck": 100.0, "viscous": 20.0}
 TRUTH |= {"sensor_gain": 2.4, "sensor_offset": 15.0}

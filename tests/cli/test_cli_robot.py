@@ -5,7 +5,9 @@ from pathlib import Path
 
 import pytest
 from command_line_answers import answer
+from small_arm import recording, urdf
 
+import jointid as jid
 from jointid.cli import main
 
 pytest.importorskip("pinocchio")
@@ -57,3 +59,38 @@ def test_facts_that_nobody_knows_are_refused(
     assert code == 2
     assert "robot.toml" in told
     assert "gear_ratios" in told
+
+
+@pytest.fixture(name="saved", scope="module")
+def _saved(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("robot")
+    path = urdf(folder)
+    found = jid.identify_robot(
+        recording(path, duration=6.0), jid.Robot.from_urdf(path), model="coulomb_viscous"
+    )
+    return found.save(folder / "arm.json")
+
+
+def test_a_saved_robot_has_a_page_again(
+    saved: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = tmp_path / "arm.html"
+    assert main(["report", str(saved), "--output", str(page)]) == 0
+    assert page.read_text(encoding="utf-8").count("<img") == 4
+    code, told = answer(["report", str(saved), "--output", str(page), "--joints", "1"], capsys)
+    assert code == 2
+    assert "all joints" in told
+
+
+def test_a_saved_robot_is_written_into_its_urdf(
+    saved: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    target = tmp_path / "out.urdf"
+    line = ["export", str(saved), "--to", str(target), "--into", str(saved.with_name("small.urdf"))]
+    assert main(line) == 0
+    assert 'damping="0.1"' not in target.read_text(encoding="utf-8")
+    broken = tmp_path / "broken.json"
+    broken.write_text(saved.read_text(encoding="utf-8").replace('"kind": "revolute"', '"kind": 1'))
+    code, told = answer(["export", str(broken), "--to", str(target)], capsys)
+    assert code == 2
+    assert "robot.joints[0].kind" in told

@@ -37,10 +37,41 @@ def test_the_summary_has_each_error_the_weakest_and_the_limits() -> None:
     assert "seed 3" in lines[-1]
 
 
+@pytest.mark.parametrize(
+    ("changes", "line"),
+    [
+        (
+            {},
+            "assumes noise of 0.5 N·m at the torque sensor; controller adaptive_robust that believes coulomb 25, "
+            "static 20, stribeck 100, viscous 20, with torque feedback, every 1 ms",
+        ),
+        (
+            {
+                "sensors": jid.Sensors(encoder_counts=8000.0, velocity="counts", ripple=0.2),
+                "controller": jid.Pd(stiffness=2e4, damping=400.0),
+                "control_period": 2e-3,
+            },
+            "assumes an encoder of 8000 counts a motor turn, velocity from its counts, ripple 0.2; "
+            "controller pd with stiffness 2e+04, damping 400, every 2 ms",
+        ),
+        (
+            {"sensors": jid.Sensors(), "controller": jid.OpenLoop()},
+            "assumes sensors without noise; controller open_loop, every 1 ms",
+        ),
+    ],
+)
+def test_which_sensors_and_which_controller_were_assumed_is_one_line(
+    changes: dict[str, Any], line: str
+) -> None:
+    design = designed(**changes)
+    assert line in str(design).splitlines()
+    assert line in design._repr_html_()
+
+
 def test_what_is_not_there_is_not_shown() -> None:
     text = str(designed(reference={}, limits=MotionLimits(position=(-1.0, 1.0), velocity=3.4)))
     assert "thesis's" not in text
-    assert "torque" not in text
+    assert "reaches torque" not in text
 
 
 def test_a_design_that_failed_says_why() -> None:

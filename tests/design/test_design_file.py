@@ -40,6 +40,7 @@ def test_the_smallest_design_comes_back(tmp_path: Path) -> None:
             "coulomb": replace(DESIGN.parameters["coulomb"], stderr=math.inf, relative=math.inf)
         },
         reference={},
+        weakest="coulomb",
         status="limits not reachable",
         reason='no motion keeps "them" — \x7f\n\\',
         seed=2**64 - 1,
@@ -102,6 +103,11 @@ def test_a_motion_alone_is_no_design(tmp_path: Path) -> None:
     [
         ("schema = 1", "schema = 2", "schema is 2: this jointid reads up to 1; update jointid"),
         ("schema = 1", "", "schema: this is missing"),
+        ('criterion = "worst"', 'criterion = "best"', r"design\.criterion: .*known are worst, det"),
+        ('weakest = "sensor_gain"', 'weakest = "gain"', r"design\.weakest: .*in \[expected\]"),
+        ("[-1.0, 1.0]", "[0.0, 5e-324]", r"limits: position is \[0\.0, 5e-324\]: at least 1e-09"),
+        ("[-1.0, 1.0]", "[-1e308, 1e308]", r"limits: position .*at most 1e\+09 from 0"),
+        ("velocity = 3.4", "velocity = 5e-324", "limits: velocity is 5e-324: at least 1e-09"),
         ("seed = 3", "seed = -3", r"design\.seed: .*a number from 0"),
         ("seed = 3", "seed = 1.5", r"design\.seed: .*an integer"),
         ('status = "complete"', "status = 1", r"design\.status: .*text"),

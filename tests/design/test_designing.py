@@ -321,7 +321,7 @@ def test_more_torque_than_the_drive_has_is_refused() -> None:
 def test_a_loop_that_rattles_at_its_limits_is_named() -> None:
     found = design(controller=jid.Pd(stiffness=1e12))
     assert found.status == "limits exceeded"
-    assert "exceeds a limit" in found.reason
+    assert found.reason.startswith("the torque is cut at the limit of 160 N·m, for a joint with ")
     assert found.reason in found.summary()
 
 

@@ -188,7 +188,7 @@ def test_the_command_does_what_the_finding_says(
         .replace("LOW,HIGH", "-1,1")
         .replace("SPEED", "1.12")
     )
-    quick = ["--evaluations", "100", "--draws", "2", "--seed", "4", "--quiet"]
+    quick = ["--evaluations", "100", "--joints", "2", "--seed", "4", "--quiet"]
     assert main([*command, *quick]) == 0
     design = jid.load_design("motion.toml")
     assert design.duration == pytest.approx(6.0)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import jointid as jid
+from jointid import _core
 from jointid.recording.readers import csv_reader
 
 HEADER = "time_s,position_rad,velocity_rad_s,torque_Nm"
@@ -39,10 +40,14 @@ def test_every_number_is_the_nearest_double(
     tmp_path: Path, rows: list[str], ending: str, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     table = csv_reader.CsvTable(file_of(tmp_path, rows, ending, name))
-    assert table._table is not None  # read as a stream
+    assert table._table is not None
     expected = np.array([[float(cell) for cell in row.split(",")] for row in rows])
     found = np.column_stack(table.numbers([0, 1, 2, 3]))
     assert (found == expected).all()
+    monkeypatch.setattr(_core, "number_table", lambda *_: None)
+    stream = csv_reader.CsvTable(tmp_path / name)
+    assert stream._table is not None
+    assert (np.column_stack(stream.numbers([0, 1, 2, 3])) == expected).all()
     monkeypatch.setattr(csv_reader, "_LONG", 1 << 40)
     slowly = csv_reader.CsvTable(tmp_path / name)
     assert slowly._table is None

@@ -165,7 +165,7 @@ LIMITS = "hardware/session/limits.py"
             "try:\n    import tomlkit\nexcept ImportError: pass",
             "imports tomlkit with",
         ),
-        ("estimate/json.py", "class A:\n    from scipy import stats", "scipy with the module"),
+        ("exports/matlab.py", "class A:\n    from scipy import io", "scipy with the module"),
         (DRAW, "from matplotlib import pyplot", "imports matplotlib with the module"),
         ("cli/command_line.py", "from jointid.hardware.can import bus", "with the module"),
         ("__init__.py", "from . import hardware", "with the module"),

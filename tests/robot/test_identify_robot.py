@@ -107,11 +107,11 @@ def test_several_recordings_are_one_fit(path: Path, run: jid.RobotRecording) -> 
 def test_pieces_of_a_long_recording_are_joined(
     path: Path, run: jid.RobotRecording, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from jointid.robot import identifying
+    from jointid.robot import attempt
 
     robot = jid.Robot.from_urdf(path)
     whole = jid.identify_robot(run, robot)
-    monkeypatch.setattr(identifying, "_PIECE", 2500)
+    monkeypatch.setattr(attempt, "_PIECE", 2500)
     parts = jid.identify_robot(run, robot)
     for name in ("coulomb", "viscous", "rotor_inertia"):
         np.testing.assert_allclose(values(parts, name), values(whole, name), rtol=5e-3)

@@ -70,3 +70,18 @@ def test_the_document_is_whole(estimate: jid.RobotEstimate, tmp_path: Path) -> N
     assert found == estimate.joints["joint_1"].parameters["coulomb"].value
     assert len(document["covariance"]) == len(document["free"]) == len(estimate.free)
     assert "joint_6" in estimate.report()
+
+
+def test_a_coupling_that_is_not_told_is_named(shared_data: Path) -> None:
+    robot = jid.Robot.from_urdf(
+        shared_data / "tx40" / "tx40.urdf", gear_ratios=[32, 32, 45, -48, 45, 32]
+    )
+    found = jid.identify_robot(jid.load_robot(shared_data / "tx40" / "tx40.csv.gz"), robot)
+    (said,) = (each for each in found.findings if each.code == "wrong_coupling")
+    (advice,) = said.advice
+    assert advice.arguments["couplings"] == {"joint_6": {"joint_5": 1.0}}
+
+
+def test_nothing_wrong_is_named_of_right_facts(estimate: jid.RobotEstimate) -> None:
+    assert {each.code for each in estimate.warnings} <= {"turned_zero", "undetermined"}
+    assert estimate.settings["shift"] == {}

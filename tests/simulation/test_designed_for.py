@@ -25,7 +25,12 @@ assert JOINT.rotor_inertia is not None
 
 
 def warning(**changes: Any) -> str:
-    given = {"trajectory": MOTION, "joint": JOINT, "controller": LAW, "control_period": 2e-3}
+    given: dict[str, Any] = {
+        "trajectory": MOTION,
+        "joint": JOINT,
+        "controller": LAW,
+        "control_period": 2e-3,
+    }
     return FOR.warning(**given | changes)
 
 
@@ -37,7 +42,7 @@ def test_its_own_bench_is_not_warned_of() -> None:
     ("changes", "says"),
     [
         ({"joint": JOINT.replace(gear_ratio=50.0)}, "gear ratio 101 (here 50)"),
-        ({"joint": JOINT.replace(gear_ratio=50.0)}, "inertia 2.5216"),
+        ({"joint": JOINT.replace(gear_ratio=50.0)}, "inertia 2.522"),
         ({"joint": JOINT.replace(torque_constant=0.3)}, "torque constant 0.198 (here 0.3)"),
         ({"joint": JOINT.replace(torque_constant=None)}, "(here not stated)"),
         ({"joint": JOINT.replace(sensor=False)}, "sensor on (here off)"),
@@ -82,6 +87,19 @@ def test_what_differs_is_named(changes: dict[str, Any], says: str) -> None:
 )
 def test_what_moves_no_joint_otherwise_is_not_named(changes: dict[str, Any]) -> None:
     assert warning(**changes) == ""
+
+
+def test_the_controller_is_named_once() -> None:
+    said = warning(controller=LAW.replace(coulomb=10.0, viscous=11.234567))
+    assert "for the controller's coulomb 25 (here 10), viscous 20 (here 11.23):" in said
+
+
+def test_a_controller_without_torque_feedback_believes_nothing_of_the_sensor() -> None:
+    silent = LAW.replace(torque_feedback=False)
+    other = replace(FOR, controller=silent)
+    changed = silent.replace(sensor_gain=1.0)
+    assert other.warning(MOTION, JOINT, changed, 2e-3) == ""
+    assert "sensor gain 2.4 (here 1)" in warning(controller=LAW.replace(sensor_gain=1.0))
 
 
 def test_many_differences_are_counted() -> None:

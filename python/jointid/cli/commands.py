@@ -14,6 +14,7 @@ from jointid.base.errors import InputError
 from jointid.cli.arguments import fixed_values, joints_wanted, load_all, refinements, with_terms
 from jointid.cli.exit_codes import BAD_INPUT
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
+from jointid.cli.robot import saved_robot
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from jointid.estimate.self_test import SelfTest
     from jointid.joint.joint import Joint
     from jointid.recording.recording import Recording
+    from jointid.robot.result import RobotEstimate
 
 
 def demo(arguments: argparse.Namespace) -> None:
@@ -63,9 +65,7 @@ def identify(arguments: argparse.Namespace) -> int:
         from jointid.cli.robot import identify_whole_robot
 
         return identify_whole_robot(arguments)
-    for name in ("facts", "inertia"):
-        if getattr(arguments, name) is not None:
-            raise InputError("this is for a robot; name its URDF with --robot", argument=name)
+    _for_one_joint(arguments)
     several = joints_wanted(arguments)
     if several is not None and len(several) != 1:
         from jointid.cli.joints import identify_several
@@ -132,6 +132,12 @@ def _with_checks(
     return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
 
 
+def _for_one_joint(arguments: argparse.Namespace) -> None:
+    for name in ("facts", "inertia"):
+        if getattr(arguments, name) is not None:
+            raise InputError("this is for a robot; name its URDF with --robot", argument=name)
+
+
 def compare(arguments: argparse.Namespace) -> int:
     """Compare models by how well they predict held-out motion."""
     from jointid.cli.progress import ComparisonProgress
@@ -139,6 +145,11 @@ def compare(arguments: argparse.Namespace) -> int:
     from jointid.identification.search.search import Search
     from jointid.joint.model import Model
 
+    if arguments.robot is not None:
+        from jointid.cli.robot import compare_whole_robot
+
+        return compare_whole_robot(arguments)
+    _for_one_joint(arguments)
     changes = fixed_values(arguments)
     check_outputs(arguments)
     joint = _joint(arguments)
@@ -174,8 +185,20 @@ def report(arguments: argparse.Namespace) -> None:
     from jointid.report.html import save_report
 
     check_page("output", arguments.output)
-    estimate = load_estimate(arguments.estimate, arguments.joints)
-    page = save_report(estimate, arguments.output, action=ADVICE.of_action)
+    robot = saved_robot(arguments.estimate)
+    estimate: Estimate | RobotEstimate
+    if robot is None:
+        estimate = load_estimate(arguments.estimate, arguments.joints)
+        page = save_report(estimate, arguments.output, action=ADVICE.of_action)
+    else:
+        from jointid.report.robot_page import save_robot_report
+
+        if arguments.joints is not None:
+            raise InputError(
+                "a robot's page has all joints", argument="joints", value=arguments.joints
+            )
+        estimate = robot
+        page = save_robot_report(robot, arguments.output, action=ADVICE.of_action)
     if arguments.json:
         summary = {"report": str(page), "warnings": [warning.code for warning in estimate.warnings]}
         print(json.dumps(summary, indent=1, ensure_ascii=False))
@@ -233,9 +256,9 @@ def _write(estimate: Estimate, arguments: argparse.Namespace) -> str:
 
     The next session reads a joint file and obeys it, so values that cannot be used stay out of it.
     """
-    from jointid.report.html import save_report
-
     if arguments.report is not None:
+        from jointid.report.html import save_report
+
         save_report(estimate, arguments.report, action=ADVICE.of_action)
     blocking = [each.code for each in estimate.findings if each.severity == "blocking"]
     if arguments.save is None:

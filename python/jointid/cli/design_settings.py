@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from jointid.hardware.session.limits import SessionLimits
     from jointid.simulation.arguments import Controller
 
+_SLIDING = {"position": "m", "velocity": "m/s", "acceleration": "m/s²"}  # of a prismatic joint
 _LIMITS = ("position", "velocity", "acceleration", "torque", "sensor_range")
 
 
@@ -42,9 +43,8 @@ def limits_of(arguments: argparse.Namespace, joint: Joint, bench: Bench | None) 
     for name in _LIMITS:
         text = getattr(arguments, name)
         if text is not None:
-            given[name] = (
-                _numbers(name, text, 2) if name == "position" else _numbers(name, text, 1)[0]
-            )
+            numbers = _numbers(name, text, 2 if name == "position" else 1, _unit_of(name, joint))
+            given[name] = numbers if name == "position" else numbers[0]
     if bench is not None:
         own = bench.limits
         joint = joint.replace(
@@ -164,14 +164,24 @@ def prior_of(pairs: Sequence[tuple[str, str]]) -> dict[str, tuple[float, float]]
     """Where parameters may lie, by name."""
     found = {}
     for name, text in by_name("prior", pairs).items():
-        low, high = _numbers(f"prior.{name}", text, 2)
+        low, high = _numbers(f"prior.{name}", text, 2, "two numbers LOW,HIGH")
         found[name] = (low, high)
     return found or None
 
 
-def _numbers(argument: str, text: str, count: int) -> tuple[float, ...]:
-    """Numbers, or angles such as 60deg, with commas between them."""
-    values = [number_or_angle(part.strip()) for part in text.split(",")]
+def _unit_of(name: str, joint: Joint) -> str:
+    """Of a limit that is no angle, and why; empty where it may be one."""
+    if joint.kind == "prismatic":
+        return f"{_SLIDING.get(name, 'N')}: the joint is prismatic"
+    return "" if name in _SLIDING else "N·m"
+
+
+def _numbers(argument: str, text: str, count: int, unit: str) -> tuple[float, ...]:
+    """Numbers with commas between them, or angles such as 60deg where no unit is said."""
+    parts = [part.strip() for part in text.split(",")]
+    if unit and any(part.endswith("deg") for part in parts):
+        raise InputError(f"no angle is expected, but {unit}", argument=argument, value=text)
+    values = [number_or_angle(part) for part in parts]
     if len(values) != count or any(isinstance(value, str) for value in values):
         expected = "a number is expected" if count == 1 else "two numbers LOW,HIGH are expected"
         raise InputError(expected, argument=argument, value=text)

@@ -122,7 +122,7 @@ def _sought(design: argparse.ArgumentParser) -> None:
     )
     design.add_argument("--evaluations", type=whole, help="motions to try (default 3600)")
     design.add_argument(
-        "--draws", type=whole, help="joints drawn from what is believed (default 4)"
+        "--joints", type=whole, help="joints drawn from what is believed (default 4)"
     )
     design.add_argument(
         "--rehearsals",
@@ -167,7 +167,7 @@ def _designed(arguments: argparse.Namespace) -> Design:
     limits = limits_of(arguments, joint, bench)
     budget = {
         "evaluations": arguments.evaluations,
-        "joints": arguments.draws,
+        "joints": arguments.joints,
         "rehearsals": arguments.rehearsals,
     }
     search = DesignSearch(

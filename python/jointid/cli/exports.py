@@ -6,9 +6,14 @@ import argparse
 import json
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from jointid.base.errors import InputError
 from jointid.cli.outputs import check_folder
+from jointid.cli.robot import saved_robot
+
+if TYPE_CHECKING:
+    from jointid.robot.result import RobotEstimate
 
 
 def add_export(export: argparse.ArgumentParser) -> None:
@@ -26,7 +31,7 @@ def add_export(export: argparse.ArgumentParser) -> None:
     export.add_argument(
         "source",
         type=Path,
-        help="estimate (.json), or joint file (.toml) with its parameters' values",
+        help="estimate (.json) of a joint or of a robot, or joint file (.toml) with its parameters' values",
     )
     export.add_argument("--to", type=Path, required=True, help=f"file to write: {kinds}")
     export.add_argument(
@@ -50,6 +55,11 @@ def add_export(export: argparse.ArgumentParser) -> None:
         "--approximate",
         action="store_true",
         help="where the target has Coulomb and viscous friction only, write the nearest, and what it loses",
+    )
+    export.add_argument(
+        "--inertia",
+        action="store_true",
+        help="of a whole robot: write the identified inertia of its links, too",
     )
     export.add_argument(
         "--speed",
@@ -77,10 +87,15 @@ def export(arguments: argparse.Namespace) -> None:
             value=arguments.joints,
             place=str(source),
         )
-    value: Estimate | Joint
-    saved = source.suffix.lower() == ".json"
-    value = load_estimate(source, arguments.joints) if saved else Joint.load(source)
-    findings = value.findings if isinstance(value, Estimate) else ()
+    value: Estimate | Joint | RobotEstimate
+    robot = saved_robot(source)
+    if robot is not None:
+        value = robot
+    elif source.suffix.lower() == ".json":
+        value = load_estimate(source, arguments.joints)
+    else:
+        value = Joint.load(source)
+    findings = () if isinstance(value, Joint) else value.findings
     blocking = [each for each in findings if each.severity == "blocking"]
     if blocking:  # as identify refuses to write a joint file: a controller would obey it
         raise InputError(
@@ -95,6 +110,7 @@ def export(arguments: argparse.Namespace) -> None:
         into=arguments.into,
         joint_name=arguments.joint_name,
         approximate=arguments.approximate,
+        inertia=arguments.inertia,
         speed=arguments.speed,
     )
     warnings = [each.code for each in findings if each.severity == "warning"]

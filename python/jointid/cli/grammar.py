@@ -51,18 +51,7 @@ def add_identify(identify: argparse.ArgumentParser) -> None:
             "stribeck:asymmetric:ripple=2,4"
         ),
     )
-    identify.add_argument(
-        "--robot",
-        type=Path,
-        metavar="URDF",
-        help="identify all joints together with the links of this URDF; see docs/robots.md",
-    )
-    identify.add_argument(
-        "--facts",
-        type=Path,
-        metavar="TOML",
-        help="with --robot: joints, gear_ratios, couplings, rotor_inertias, zero_offsets, side, gravity",
-    )
+    _robot_arguments(identify)
     identify.add_argument(
         "--inertia",
         metavar="MODE",
@@ -95,16 +84,39 @@ def add_identify(identify: argparse.ArgumentParser) -> None:
     _output_arguments(identify)
 
 
+def _robot_arguments(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--robot",
+        type=Path,
+        metavar="URDF",
+        help="all joints together with the links of this URDF; see docs/robots.md",
+    )
+    command.add_argument(
+        "--facts",
+        type=Path,
+        metavar="TOML",
+        help="with --robot: joints, gear_ratios, couplings, rotor_inertias, zero_offsets, side, gravity",
+    )
+
+
 def add_compare(compare: argparse.ArgumentParser) -> None:
     """Add the command's grammar."""
     compare.epilog = (
         "examples:\n  jointid compare run.csv\n"
         "  jointid compare run.csv --model stribeck --model stribeck:ripple=2 --folds 8 --json\n"
         "  jointid compare monday.csv tuesday.csv wednesday.csv --joint joint.toml --save joint.toml\n"
+        "  jointid compare arm.csv --robot arm.urdf --facts robot.toml --report arm.html   (all joints together)\n"
         "one recording is cut into blocks; of several, whole recordings are held out"
     )
     several_recordings(compare)
     _identification_arguments(compare, method="separable")
+    _robot_arguments(compare)
+    compare.add_argument(
+        "--inertia",
+        action="append",
+        metavar="MODE",
+        help="with --robot: of urdf, scaled and free one to compare; may be repeated; default: all",
+    )
     compare.add_argument(
         "--model",
         action="append",

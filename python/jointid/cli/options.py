@@ -95,7 +95,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "parameters": "--parameter",
         "criterion": "--criterion",
         "evaluations": "--evaluations",
-        "joints": "--draws",
+        "joints": "--joints",
         "rehearsals": "--rehearsals",
         "seed": "--seed",
         "threads": "--threads",

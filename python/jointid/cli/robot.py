@@ -1,52 +1,50 @@
-"""`jointid identify --robot`: all joints of a robot together."""
+"""`jointid identify --robot` and `compare --robot`: all joints of a robot together."""
 
 from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
-from jointid.cli.arguments import as_given, gear_ratios, how_to_read, joints_wanted, with_terms
+from jointid.cli.arguments import (
+    as_given,
+    gear_ratios,
+    how_to_read,
+    joints_wanted,
+    refinements,
+    with_terms,
+)
 from jointid.cli.outputs import check_folder, check_page
 from jointid.cli.wording import ADVICE, Wording
 
+if TYPE_CHECKING:
+    from jointid.robot.result import RobotEstimate
+    from jointid.robot.robot import Robot
+
 _OF_ONE_JOINT = (
-    *("joint", "checkpoint", "resume", "selftest", "causes", "shift", "residual"),
-    *("torque_hold", "population", "generations"),
+    *("joint", "checkpoint", "resume", "selftest", "causes", "residual", "population"),
+    "generations",
 )
 
 
 def identify_whole_robot(arguments: argparse.Namespace) -> int:
     """Identify all joints of a robot from one recording or several."""
-    from jointid.recording.readers.loading_robot import load_robot
     from jointid.report.robot_page import save_robot_report
     from jointid.robot.identifying import identify_robot
-    from jointid.robot.robot import Robot
 
     _check(arguments)
     model = with_terms(arguments.model, arguments)
-    robot = Robot.from_urdf(
-        arguments.robot, gear_ratios=gear_ratios(arguments), facts=arguments.facts
-    )
-    try:
-        recordings = [
-            load_robot(
-                path,
-                joints_wanted(arguments) or None,
-                gear_ratio=robot.gear_ratios,
-                **how_to_read(arguments, [model]),
-            )
-            for path in arguments.recordings
-        ]
-    except InputError as error:
-        raise as_given(error, arguments) from None
+    robot, recordings = _read(arguments, [model])
     found = identify_robot(
         recordings,
         robot,
         inertia=arguments.inertia or "urdf",
         model=model,
         windows=arguments.windows,
-        min_speed=arguments.min_speed,
+        **refinements(arguments),
     )
     draws = arguments.bootstrap
     drawn = found.bootstrap(draws, arguments.seed) if draws is not None else None
@@ -63,26 +61,103 @@ def identify_whole_robot(arguments: argparse.Namespace) -> int:
         print(text_report(found, action=Wording.of(arguments).of_action))
         if drawn is not None:
             print(f"\n{drawn.report()}")
-        lines = [
-            f"{what}: {path}"
-            for what, path in (("report", arguments.report), ("estimate", arguments.save))
-            if path is not None
-        ]
-        if lines:
-            print("", *lines, sep="\n")
+        _say_written(arguments)
     return 0
+
+
+def compare_whole_robot(arguments: argparse.Namespace) -> int:
+    """Compare inertias and friction models of a robot by held-out torque."""
+    from jointid.joint.model import Model
+    from jointid.report.robot_page import save_robot_report
+    from jointid.robot.comparing import compare_robot_models
+
+    _check(arguments)
+    asked = {"models": arguments.models, "inertia": arguments.inertia}
+    robot, recordings = _read(arguments, [Model.of(each) for each in arguments.models or (None,)])
+    found = compare_robot_models(
+        recordings,
+        robot,
+        folds=arguments.folds,
+        windows=arguments.windows,
+        **refinements(arguments),
+        **{name: given for name, given in asked.items() if given is not None},
+    )
+    if arguments.report is not None:
+        save_robot_report(
+            found.estimate, arguments.report, action=ADVICE.of_action, comparison=found
+        )
+    if arguments.save is not None:
+        found.estimate.save(arguments.save)
+    print(found.to_json() if arguments.json else found.report())
+    if not arguments.json:
+        _say_written(arguments)
+    return 0
+
+
+def _read(arguments: argparse.Namespace, models: Sequence[Any]) -> tuple[Robot, list[Any]]:
+    """The robot and its recordings."""
+    from jointid.recording.readers.loading_robot import load_robot
+    from jointid.robot.robot import Robot
+
+    robot = Robot.from_urdf(
+        arguments.robot, gear_ratios=gear_ratios(arguments), facts=arguments.facts
+    )
+    try:
+        return robot, [
+            load_robot(
+                path,
+                joints_wanted(arguments) or None,
+                torque_hold=arguments.torque_hold,
+                **how_to_read(arguments, models),
+            )
+            for path in arguments.recordings
+        ]
+    except InputError as error:
+        raise as_given(error, arguments) from None
+
+
+def _say_written(arguments: argparse.Namespace) -> None:
+    lines = [
+        f"{what}: {path}"
+        for what, path in (("report", arguments.report), ("estimate", arguments.save))
+        if path is not None
+    ]
+    if lines:
+        print("", *lines, sep="\n")
+
+
+def saved_robot(path: Path) -> RobotEstimate | None:
+    """The estimate of a whole robot that a file holds; None if it is another file.
+
+    Raises
+    ------
+    InputError
+        It is one, and cannot be used.
+    """
+    from jointid.base.schema import read_text
+    from jointid.robot.document import KIND
+    from jointid.robot.result import RobotEstimate
+
+    if path.suffix.lower() != ".json":
+        return None
+    try:
+        document = json.loads(read_text(path))
+    except (ValueError, RecursionError):  # another reader says what is wrong
+        return None
+    kind = document.get("kind") if isinstance(document, dict) else None
+    return RobotEstimate.load(path) if kind == KIND else None
 
 
 def _check(arguments: argparse.Namespace) -> None:
     """Refuse what holds for one joint only, before the work."""
     for name in _OF_ONE_JOINT:
-        if getattr(arguments, name) not in (None, False):
+        if getattr(arguments, name, None) not in (None, False):
             raise InputError(
                 "this is for one joint, not for a robot",
                 argument=f"ga.{name}" if name in ("population", "generations") else name,
             )
     for name in ("set", "drop_copies", "drop_invalid"):
-        if getattr(arguments, name):
+        if getattr(arguments, name, None):
             raise InputError(
                 "this is for one joint, not for a robot",
                 argument="parameters" if name == "set" else name,

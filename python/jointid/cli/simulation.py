@@ -54,13 +54,14 @@ def simulate(arguments: argparse.Namespace) -> None:
     if arguments.json:
         print(json.dumps(outcome, indent=1, ensure_ascii=False))
         return
+    unit = "m" if recording.kind == "prismatic" else "rad"
     print(f"{len(recording)} samples in {recording.duration:g} s")
     if tracked:
         print(
-            f"tracking error after the first sixth: rms {outcome['tracking_error']:.3g} rad, "
-            f"largest {outcome['peak_error']:.3g} rad"
+            f"tracking error after the first sixth: rms {outcome['tracking_error']:.3g} {unit}, "
+            f"largest {outcome['peak_error']:.3g} {unit}"
         )
-    print(f"largest velocity {outcome['peak_velocity']:.3g} rad/s")
+    print(f"largest velocity {outcome['peak_velocity']:.3g} {unit}/s")
     if outcome["saturations"]:
         print(f"the torque limit cut the command in {outcome['saturations']} control periods")
     if arguments.output is not None:

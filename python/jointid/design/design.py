@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 COMPLETE = "complete"
+CRITERIA = ("worst", "determinant")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,7 +15,7 @@ from jointid.base.files import write_whole
 from jointid.base.schema import ListOf, Number, Plain, Record, TableOf, Text
 from jointid.base.toml_file import read_toml
 from jointid.base.toml_text import toml_of
-from jointid.design.design import Design
+from jointid.design.design import CRITERIA, Design
 from jointid.design.expected_error import ExpectedError
 from jointid.design.motion_limits import MotionLimits
 from jointid.joint.joint_file import joint_document, joint_from_document
@@ -35,7 +35,8 @@ _SIZE, _ERROR = Number(low=0.0), Number(low=0.0, infinite=True)
 _COUNT = Number(low=0, high=2**63 - 1, whole=True)  # as TOML's whole numbers
 _DESIGN = Record(
     {
-        **dict.fromkeys(("status", "criterion", "weakest", "limited_by"), Text()),
+        **dict.fromkeys(("status", "weakest", "limited_by"), Text()),
+        "criterion": Text(known=CRITERIA),
         **dict.fromkeys(("joints", "evaluations"), _COUNT),
         "seed": Number(low=0, high=2**64 - 1, whole=True),
         "control_period": Number(low=1e-6, high=1.0),
@@ -187,11 +188,19 @@ def _design(document: Mapping[str, Any], place: Path) -> Design:
     expected = {name: ExpectedError(name=name, **each) for name, each in tables["expected"].items()}
     about = tables["design"]
     del about["jointid"]
+    if about["weakest"] not in expected:
+        raise InputError(
+            "one of the parameters in [expected] is expected",
+            value=about["weakest"],
+            place="design.weakest",
+        )
     return Design(
         **about,
         trajectory=motion.trajectory,
         duration=motion.trajectory.duration,
-        joint=joint_from_document(tables["joint"], f"{place}: [joint]"),
+        joint=joint_from_document(
+            TableOf(Plain()).read(tables["joint"], "joint"), f"{place}: [joint]"
+        ),
         controller=read_controller(tables["controller"], "controller"),
         sensors=read_sensors(tables["sensors"], "sensors"),
         limits=MotionLimits(**tables["limits"]),

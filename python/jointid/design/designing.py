@@ -24,6 +24,7 @@ from jointid.design.known import Known
 from jointid.design.motion_limits import MotionLimits
 from jointid.design.prior import Prior, ranges_of, with_room
 from jointid.design.rehearsal import Rehearsal, rehearse
+from jointid.design.stated import check_signs, check_stated
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller, positive
 from jointid.simulation.plant import control_estimates, torque_limit
@@ -118,6 +119,7 @@ def design_excitation(
     >>> design.save("motion.toml")  # doctest: +SKIP
     """
     require_kind("joint", joint, Joint)
+    check_stated(joint, controller, sensors, parameters, callback)
     settings = DesignSearch() if search is None else search
     require_kind("search", settings, DesignSearch)
     held = MotionLimits.of(limits, joint)
@@ -131,16 +133,10 @@ def design_excitation(
         )
     if criterion not in ("worst", "determinant"):
         raise InputError("known are worst and determinant", argument="criterion", value=criterion)
-    if isinstance(controller, _core.OpenLoop):
-        raise InputError(
-            "a motion is designed for a controller that follows it",
-            argument="controller",
-            value="open_loop",
-            remedy="give another, or none",
-        )
     joint = _with_model(joint)
     asked = free_parameters(joint, parameters)
     ranges = ranges_of(joint, asked.names, prior)
+    check_signs(asked, ranges)
     joint = with_room(joint, ranges.ranges)
     nominal = joint.with_parameters(ranges.nominal)
     assert held.torque is not None

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
+import numpy as np
+
 from jointid.base.errors import InputError
 from jointid.joint.checks import finite_number, positive_number, set_numbers, suggestion
 from jointid.joint.joint import Joint
@@ -15,6 +17,8 @@ OWN_SHARE = 0.9
 """Of the joint file's window and velocity, where no other is stated: a session stops at the file's own."""
 
 _OWNER = "limits"
+_NARROWEST, _FARTHEST = 1e-9, 1e9  # of a window [rad] or [m]
+_SMALLEST = 1e-9  # of the other limits: what is used of them is a quotient
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,7 +57,9 @@ class MotionLimits:
     sensor_range: float | None = None
 
     def __post_init__(self) -> None:
-        window = self.position
+        window: Any = self.position
+        if isinstance(window, np.ndarray):
+            window = window.tolist()
         if not isinstance(window, list | tuple) or len(window) != 2:
             raise InputError(
                 "a lowest and a highest position are expected",
@@ -69,9 +75,22 @@ class MotionLimits:
                 value=[low, high],
                 place=_OWNER,
             )
+        if high - low < _NARROWEST or max(abs(low), abs(high)) > _FARTHEST:
+            raise InputError(
+                f"at least {_NARROWEST:g} wide and at most {_FARTHEST:g} from 0 is expected",
+                argument="position",
+                value=[low, high],
+                place=_OWNER,
+            )
         object.__setattr__(self, "position", (low, high))
         others = [item.name for item in fields(self) if item.name != "position"]
         set_numbers(self, _OWNER, others, positive_number)
+        for name in others:
+            value = getattr(self, name)
+            if value is not None and value < _SMALLEST:
+                raise InputError(
+                    f"at least {_SMALLEST:g} is expected", argument=name, value=value, place=_OWNER
+                )
 
     @classmethod
     def of(cls, given: MotionLimits | Mapping[str, Any] | None, joint: Joint) -> MotionLimits:
@@ -115,11 +134,15 @@ class MotionLimits:
                 )
         own = {name: value for name, value in _own(joint).items() if value is not None}
         limits = own | {name: value for name, value in stated.items() if value is not None}
-        for name in ("position", "velocity", "torque"):
-            if name not in limits:
-                raise InputError(
-                    "it is needed, and the joint's limits state none", argument=name, place=_OWNER
-                )
+        missing = [name for name in ("position", "velocity", "torque") if name not in limits]
+        if missing:
+            first, *others = missing
+            also = f"{' and '.join(others)} {'is' if len(others) == 1 else 'are'} needed"
+            raise InputError(
+                "it is needed, and the joint's limits state none" + f"; {also}, too" * bool(others),
+                argument=first,
+                place=_OWNER,
+            )
         _within(limits, joint)
         if limits.get("sensor_range") is not None and not joint.sensor:
             raise InputError(

@@ -77,8 +77,12 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
     Raises
     ------
     InputError
-        A name that is no free parameter, a range that is empty, or a parameter without any range.
+        A name that is no free parameter, a range that is empty, or parameters without any range: all are named.
     """
+    if prior is not None and (not isinstance(prior, Mapping | Sequence) or isinstance(prior, str)):
+        raise InputError(
+            "a range by parameter, or values of joints, are expected", argument="prior", value=prior
+        )
     if prior is not None and not isinstance(prior, Mapping):
         return _given(names, prior)
     stated = {} if prior is None else dict(prior)
@@ -91,6 +95,7 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
             )
     ranges: dict[str, Range] = {}
     nominal: dict[str, float] = {}
+    unknown: list[str] = []
     for name in names:
         parameter = joint.parameters.get(name)
         value = None if parameter is None else parameter.value
@@ -107,16 +112,22 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
                 around[1] if bounds[1] is None else min(around[1], bounds[1]),
             )
         else:
-            raise InputError(
-                "nothing says how large it may be",
-                argument=name,
-                place="joint",
-                remedy=(
-                    "give its min and max in the joint",
-                    Action("call", {"prior": {name: ...}}, function="design_excitation"),
-                ),
-            )
+            unknown.append(name)
+            continue
         nominal[name] = 0.5 * sum(ranges[name]) if value is None else value
+    if unknown:
+        one = len(unknown) == 1
+        raise InputError(
+            f"nothing says how large {'it' if one else 'they'} may be",
+            argument=", ".join(unknown),
+            place="joint",
+            remedy=(
+                f"give {'its' if one else 'their'} min and max in the joint",
+                Action(
+                    "call", {"prior": dict.fromkeys(unknown, ...)}, function="design_excitation"
+                ),
+            ),
+        )
     return Ranges(nominal=nominal, ranges=ranges)
 
 

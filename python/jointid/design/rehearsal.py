@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.base.errors import InputError
 from jointid.design.judging import Situation
 from jointid.identification.prepared import Prepared, prepare
 from jointid.problem.constant_torque import balanced
@@ -94,7 +95,13 @@ def rehearse(
         )
         for place, recording in enumerate(batch.recordings, start=begin):
             true = drawn[place - begin]
-            ready = prepare(recording, situation.joint, threads=1, on_time=True)
+            try:
+                ready = prepare(recording, situation.joint, threads=1, on_time=True)
+            except InputError as error:
+                raise InputError(
+                    f"no motion was found from which the joint can be identified: {error.reason}",
+                    remedy="allow more duration, velocity or acceleration, or give another controller",
+                ) from error
             errors[place] = _refitted(ready, true, names) - np.array([true[n] for n in names])
         if observe is not None:
             observe(begin + len(seeds))

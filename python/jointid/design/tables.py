@@ -6,6 +6,7 @@ import math
 
 from jointid.base.error_text import printable
 from jointid.base.html import Html, element, table
+from jointid.design.assumptions import assumed
 from jointid.design.design import COMPLETE, Design
 
 _LIMITS = {
@@ -109,6 +110,7 @@ def _remarks(design: Design) -> list[str]:
         *([f"{weakest}{limited}"] if weakest else []),
         *_improved(design),
         *(f"reaches {line}" for line in limits_held(design)),
+        assumed(design),
         judged,
     ]
 

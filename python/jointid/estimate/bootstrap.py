@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.error_text import printable
+from jointid.base.text_table import aligned
 from jointid.estimate.wording import number, percent, two_digits
 
 Array = NDArray[np.float64]
@@ -92,12 +93,7 @@ class Bootstrap:
             interval += " (percentiles)" if p.near_bound else ""
             error = f"{two_digits(p.stderr)}{share}"
             table.append((_short(p.name), number(p.value), error, interval, p.unit, remark))
-        widths = [max(len(row[column]) for row in table) for column in range(6)]
-        lines = [
-            "  ".join(cell.ljust(w) for cell, w in zip(row, widths, strict=True)).rstrip()
-            for row in table
-        ]
-        lines.insert(1, "  ".join("-" * w for w in widths))
+        lines = aligned(table)
         lines += [
             "",
             f"{len(self.samples)} draws of {self.blocks} blocks of {self.block:.2g} s, seed {self.seed}",

@@ -36,8 +36,8 @@ def write_estimate(estimate: Estimate) -> str:
     document: dict[str, Any] = {"schema": SCHEMA, "kind": _KIND}
     for item in fields(Estimate):
         if item.name != "follow_up":  # it holds the recordings, which have files of their own
-            document[item.name] = _plain(getattr(estimate, item.name))
-    document["derived"] = _plain(estimate.derived)
+            document[item.name] = plain(getattr(estimate, item.name))
+    document["derived"] = plain(estimate.derived)
     for entry, found in zip(document["findings"], estimate.findings, strict=True):
         entry["message"] = found.message  # for readers that are not ours
     return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
@@ -74,20 +74,20 @@ def _estimate(d: Mapping[str, Any]) -> Estimate:
         raise error.at("settings.model") from None
     history = d["convergence"]
     return Estimate(
-        parameters={name: _parameter(entry) for name, entry in d["parameters"].items()},
+        parameters={name: parameter_of(entry) for name, entry in d["parameters"].items()},
         free=tuple(d["free"]),
         status=d["status"],
         message=d["message"],
         penalty=d["penalty"],
-        correlation=_matrix(d["correlation"]),
+        correlation=matrix_of(d["correlation"]),
         condition=d["condition"],
         weakest=tuple(d["weakest"]),
-        covariance=_matrix(d["covariance"]),
-        information=None if d.get("information") is None else _matrix(d["information"]),
+        covariance=matrix_of(d["covariance"]),
+        information=None if d.get("information") is None else matrix_of(d["information"]),
         residuals=ResidualStatistics(**d["residuals"]),
-        windows=WindowTable(**_arrays(d["windows"])),
-        convergence=None if history is None else Convergence(**_arrays(history)),
-        findings=tuple(_finding(each) for each in d["findings"])
+        windows=WindowTable(**arrays_of(d["windows"])),
+        convergence=None if history is None else Convergence(**arrays_of(history)),
+        findings=tuple(finding_of(each) for each in d["findings"])
         if "findings" in d
         else tuple(_old_warning(each) for each in d["warnings"]),
         joint=joint_from_document(d["joint"], "joint"),
@@ -111,10 +111,7 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     for i, name in enumerate(free):
         if name not in names or name in free[:i]:
             yield f"free[{i}]", "this is none of the parameters, or there twice"
-    for i, found in enumerate(d.get("findings", ())):
-        for j, action in enumerate(found["advice"]):
-            if action["kind"] == "call" and not action["arguments"]:
-                yield f"findings[{i}].advice[{j}].arguments", "a call needs arguments"
+    yield from empty_calls(d.get("findings", ()))
     for field in ("correlation", "covariance", "information"):
         matrix = d.get(field)
         if matrix is not None and any(len(row) != len(free) for row in (matrix, *matrix)):
@@ -136,6 +133,14 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
             yield f"settings.terms[{i}]", "this is no term with a value among the parameters"
 
 
+def empty_calls(findings: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, str]]:
+    """Places of findings that advise a call with no arguments, and why that cannot be."""
+    for i, found in enumerate(findings):
+        for j, action in enumerate(found["advice"]):
+            if action["kind"] == "call" and not action["arguments"]:
+                yield f"findings[{i}].advice[{j}].arguments", "a call needs arguments"
+
+
 def _term(key: str) -> _core.Term | None:
     try:
         return _core.term(key)
@@ -143,7 +148,8 @@ def _term(key: str) -> _core.Term | None:
         return None
 
 
-def _parameter(entry: Mapping[str, Any]) -> ParameterEstimate:
+def parameter_of(entry: Mapping[str, Any]) -> ParameterEstimate:
+    """A parameter from its checked entry."""
     interval = None if entry["interval"] is None else tuple(entry["interval"])
     return ParameterEstimate(**{**entry, "interval": interval})
 
@@ -154,7 +160,8 @@ def _selection(entry: Mapping[str, Any] | None) -> Selection | None:
     return Selection(**{**entry, "candidates": tuple(Candidate(**c) for c in entry["candidates"])})
 
 
-def _finding(entry: Mapping[str, Any]) -> Finding:
+def finding_of(entry: Mapping[str, Any]) -> Finding:
+    """A finding from its checked entry."""
     return Finding(
         code=entry["code"],
         severity=entry["severity"],
@@ -185,26 +192,28 @@ def _old_warning(entry: Mapping[str, Any]) -> Finding:
     )
 
 
-def _matrix(rows: Sequence[Sequence[float]]) -> NDArray[np.float64]:
+def matrix_of(rows: Sequence[Sequence[float]]) -> NDArray[np.float64]:
+    """A square matrix from its rows."""
     return np.array(rows, dtype=np.float64).reshape(len(rows), len(rows))
 
 
 _INTEGERS = ("recording", "generation", "evaluations")
 
 
-def _arrays(columns: Mapping[str, Any]) -> dict[str, Any]:
+def arrays_of(columns: Mapping[str, Any]) -> dict[str, Any]:
+    """Arrays from checked lists; some are of integers."""
     return {
         name: np.array(values, dtype=np.int64 if name in _INTEGERS else np.float64)
         for name, values in columns.items()
     }
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """JSON's own types for everything an estimate holds."""
     if isinstance(value, Joint):
         return joint_document(value)
     if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
+        return plain(value.tolist())
     if isinstance(value, bool | int | str) or value is None:
         return value
     if value is ...:
@@ -212,9 +221,9 @@ def _plain(value: Any) -> Any:
     if isinstance(value, float | np.floating):
         return float(value) if np.isfinite(value) else str(float(value))
     if is_dataclass(value):
-        return {item.name: _plain(getattr(value, item.name)) for item in fields(value)}
+        return {item.name: plain(getattr(value, item.name)) for item in fields(value)}
     if isinstance(value, Mapping):
-        return {str(key): _plain(entry) for key, entry in value.items()}
+        return {str(key): plain(entry) for key, entry in value.items()}
     if isinstance(value, Sequence):
-        return [_plain(entry) for entry in value]
+        return [plain(entry) for entry in value]
     raise TypeError(f"an estimate cannot hold {type(value).__name__}")

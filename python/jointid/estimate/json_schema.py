@@ -16,7 +16,7 @@ _COUNT = Number(low=0, high=2**62, whole=True)
 _LIMIT = Number(infinite=True)
 _SIZE = Number(low=0.0, infinite=True, undefined=True)
 _ANY = Number(infinite=True, undefined=True)
-_MATRIX = ListOf(ListOf(_ANY))
+MATRIX = ListOf(ListOf(_ANY))
 
 _OLD_PARAMETER: dict[str, Kind] = {
     "name": Text(),
@@ -33,8 +33,8 @@ _OLD_PARAMETER: dict[str, Kind] = {
     "shift_doubled": OrNull(_ANY),
 }
 _SYSTEMATIC = Record({}, optional=dict.fromkeys(SYSTEMATIC_PARTS, _SIZE))
-_PARAMETER = Record({**_OLD_PARAMETER, "systematic": _SYSTEMATIC})
-_RESIDUALS = Record(
+PARAMETER = Record({**_OLD_PARAMETER, "systematic": _SYSTEMATIC})
+RESIDUALS = Record(
     {
         "windows": _COUNT,
         "window_duration": _POSITIVE,
@@ -43,7 +43,7 @@ _RESIDUALS = Record(
         **dict.fromkeys(("autocorrelation", "left_out", "standing"), _ANY),
     }
 )
-_WINDOWS = Record(
+WINDOWS = Record(
     {
         "recording": ListOf(_COUNT, 1),
         "duration": ListOf(_POSITIVE, 1),
@@ -69,7 +69,7 @@ _ACTION = Record(
     }
 )
 _SENTENCES = Text(longest=1_000_000)  # one for each of up to thousands of parameters
-_FINDING = Record(
+FINDING = Record(
     {
         "code": Text(),
         "severity": Text(known=get_args(Severity)),
@@ -80,7 +80,7 @@ _FINDING = Record(
         "message": _SENTENCES,
     }
 )
-_DELAY = Record(
+DELAY = Record(
     {
         "signal": Text(known=("torque", "sensor", "velocity")),
         "value": _VALUE,
@@ -103,17 +103,17 @@ _SLOW_MOTION = Record(
 _FIELDS: dict[str, Kind] = {
     "schema": _COUNT,
     "kind": Text(),
-    "parameters": TableOf(_PARAMETER),
+    "parameters": TableOf(PARAMETER),
     "free": ListOf(Text()),
     "status": Text(),
     "message": Text(),
     "penalty": _NOT_NEGATIVE,
-    "correlation": _MATRIX,
-    "covariance": _MATRIX,
+    "correlation": MATRIX,
+    "covariance": MATRIX,
     "condition": _ANY,
     "weakest": ListOf(Text()),
-    "residuals": _RESIDUALS,
-    "windows": _WINDOWS,
+    "residuals": RESIDUALS,
+    "windows": WINDOWS,
     "convergence": OrNull(_CONVERGENCE),
     "joint": TableOf(Plain()),  # the joint has a reader of its own
     "settings": SETTINGS,
@@ -123,16 +123,16 @@ _OLD_FIELDS: dict[str, Kind] = {**_FIELDS, "parameters": TableOf(Record(_OLD_PAR
 ESTIMATE: dict[int, Kind] = {
     1: Record({**_OLD_FIELDS, "warnings": ListOf(_WARNING)}),
     # What is derived is computed again.
-    2: Record({**_OLD_FIELDS, "findings": ListOf(_FINDING)}, {"derived": Plain()}),
+    2: Record({**_OLD_FIELDS, "findings": ListOf(FINDING)}, {"derived": Plain()}),
     3: Record(
-        {**_FIELDS, "findings": ListOf(_FINDING)},
+        {**_FIELDS, "findings": ListOf(FINDING)},
         {
             "derived": Plain(),
             "information": OrNull(ListOf(ListOf(_VALUE))),
             "selection": OrNull(SELECTION),
             "selftest": Plain(),
             "bootstrap": Plain(),
-            "delays": TableOf(_DELAY),
+            "delays": TableOf(DELAY),
             "slow_motion": OrNull(_SLOW_MOTION),
         },
     ),

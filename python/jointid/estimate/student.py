@@ -2,15 +2,15 @@
 
 import math
 
+from jointid import _core
+
 _FAR = 8.0  # standard errors: the other tail is nothing
 _ONE_SIDED = 1.6448536269514722
 
 
 def quantile(probability: float, freedom: float) -> float:
     """Quantile of Student's t with `freedom` degrees of freedom."""
-    from scipy.special import stdtrit
-
-    return float(stdtrit(freedom, probability))
+    return _core.student_quantile(probability, freedom)
 
 
 def limited_half_width(stderr: float, limit: float) -> float:
@@ -19,9 +19,6 @@ def limited_half_width(stderr: float, limit: float) -> float:
     It covers 95 % where the second error is as large as it can be, and more elsewhere (Armstrong and Kolesár 2018,
     Econometrica 86): 1.96 standard errors where the limit is 0, the limit and 1.64 of them where it is large.
     """
-    from scipy.special import chndtrix
-
     if limit > _FAR * stderr or not math.isfinite(stderr):
         return limit + _ONE_SIDED * stderr
-    # The square of a normal variable about another mean: chi-square, not central, of one degree of freedom.
-    return stderr * math.sqrt(float(chndtrix(0.95, 1.0, (limit / stderr) ** 2)))
+    return stderr * _core.covering_half_width(0.95, limit / stderr)

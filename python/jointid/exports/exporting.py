@@ -30,6 +30,7 @@ def export(
     joint_name: str | None = None,
     approximate: bool = False,
     speed: float | None = None,
+    inertia: bool = False,
 ) -> Path:
     """Write an identified joint for a simulator, a controller, a PLC or Simulink.
 
@@ -60,6 +61,9 @@ def export(
     speed : float, optional
         Largest speed for the nearest friction and for tables [rad/s or m/s]. Default: that of the estimate's
         recordings, or the joint's limit.
+    inertia : bool
+        Of a whole robot, whether the links get the inertia that was identified with ``inertia="free"`` or "scaled",
+        too; what is fixed to a link is then part of it. Default False.
 
     Returns
     -------
@@ -95,8 +99,11 @@ def export(
             remedy=f"choose one of them with [{names[0]!r}]" if names else (),
         )
     if isinstance(source, RobotEstimate):
-        return _export_robot(source, path, target, into, joint_name, approximate)
+        return _export_robot(source, path, target, into, joint_name, approximate, inertia)
     require_kind("source", source, Estimate, Joint)
+    check_flag("", "inertia", inertia)
+    if inertia:
+        raise InputError("this is for a whole robot", argument="inertia", value=inertia)
     place = require_path("path", path)
     if target is not None:
         require_kind("target", target, str)
@@ -128,6 +135,7 @@ def _export_robot(
     into: str | os.PathLike[str] | None,
     joint_name: str | None,
     approximate: bool,
+    inertia: bool,
 ) -> Path:
     from jointid.exports.registry import target_of
     from jointid.exports.robot_urdf import robot_in_urdf
@@ -146,9 +154,12 @@ def _export_robot(
             "all joints of the robot are written", argument="joint_name", value=joint_name
         )
     check_flag("", "approximate", approximate)
+    check_flag("", "inertia", inertia)
     existing = _existing(chosen, into, source.robot.names[0])
     assert existing is not None
-    content = robot_in_urdf(source, existing.content, existing.place, approximate=approximate)
+    content = robot_in_urdf(
+        source, existing.content, existing.place, approximate=approximate, inertia=inertia
+    )
     write_whole(place, content)
     return place
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from jointid.base.errors import InputError
+from jointid.exports.robot_inertia import with_link_inertias
 from jointid.exports.urdf_model import is_joint, with_children
 from jointid.exports.xml_patch import elements, only, with_attributes, with_comment
 from jointid.joint.checks import suggestion
@@ -10,7 +11,7 @@ from jointid.robot.result import RobotEstimate, RobotJoint
 
 
 def robot_in_urdf(
-    estimate: RobotEstimate, content: bytes, place: str, *, approximate: bool
+    estimate: RobotEstimate, content: bytes, place: str, *, approximate: bool, inertia: bool
 ) -> bytes:
     """Return a URDF with the damping and friction of all joints of an estimate; the rest keeps its bytes.
 
@@ -23,6 +24,8 @@ def robot_in_urdf(
         Its name, for errors.
     approximate : bool
         Whether what URDF has not may be lost: static friction above Coulomb friction, and friction of coupled motors.
+    inertia : bool
+        Whether the links get their identified inertia, too.
 
     Raises
     ------
@@ -39,7 +42,7 @@ def robot_in_urdf(
                 remedy="pass approximate=True to lose that",
             )
         content = _with_dynamics(content, place, joint)
-    return content
+    return with_link_inertias(estimate, content, place) if inertia else content
 
 
 def _with_dynamics(content: bytes, place: str, joint: RobotJoint) -> bytes:

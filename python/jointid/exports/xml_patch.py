@@ -63,7 +63,7 @@ def elements(content: bytes, place: str) -> list[Element]:
         if content[start : start + 1] != b"<":  # it stands in the text of an entity
             raise InputError("elements in entities cannot be edited", place=place)
         path = tuple(found[each].tag for each in open_)
-        end = _tag_end(content, start)
+        end = tag_end(content, start)
         parent = open_[-1] if open_ else -1
         open_.append(len(found))
         found.append(Element(tag, attributes, path, start, end, end, parent))
@@ -88,7 +88,7 @@ def elements(content: bytes, place: str) -> list[Element]:
     return found
 
 
-def _tag_end(content: bytes, start: int) -> int:
+def tag_end(content: bytes, start: int) -> int:
     """The byte behind a start tag; a `>` may stand in an attribute's value."""
     quote = b""
     for at in range(start, len(content)):

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 
 from jointid.identification.causes.causes import attributed
 from jointid.identification.gain import penalty_as_fitted
-from jointid.identification.inference.bootstrap import block_bootstrap
-from jointid.identification.self_test.testing import self_test
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -52,6 +50,8 @@ class EstimateSource:
 
     def selftest(self, estimate: Estimate, trials: int, seed: int) -> SelfTest:
         """Inject known parameters into the recorded motion, and identify them again."""
+        from jointid.identification.self_test.testing import self_test
+
         return self_test(
             self.problem, self.domain, self.windows, self.again, estimate, trials, seed
         )
@@ -59,6 +59,8 @@ class EstimateSource:
     def bootstrap(self, estimate: Estimate, n: int, seed: int) -> Bootstrap:
         """Draw stretches of the recordings anew, and refit the parameters to each draw."""
         penalty = penalty_as_fitted(self.problem, self.windows, self.domain)
+        from jointid.identification.inference.bootstrap import block_bootstrap
+
         return block_bootstrap(self.problem, penalty, self.domain, estimate, n, seed)
 
     def causes(self, estimate: Estimate, signals: Mapping[str, ArrayLike]) -> Causes:

@@ -8,6 +8,7 @@ from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.error_text import printable
 from jointid.base.errors import InputError
+from jointid.base.text_table import aligned
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import two_digits
@@ -111,14 +112,8 @@ def text_report(
     error : callable
         Words why a joint failed. Default: as Python does.
     """
-    table = [head(result), *rows(result)]
-    widths = [max(len(row[column]) for row in table) for column in range(len(table[0]))]
     lines = [f"jointid estimates — {result.name or 'robot'}", ""]
-    for index, row in enumerate(table):
-        cells = [cell.ljust(width) for cell, width in zip(row, widths, strict=True)]
-        lines.append("  ".join(cells).rstrip())
-        if index == 0:
-            lines.append("  ".join("-" * width for width in widths))
+    lines += aligned([head(result), *rows(result)])
     lines += ["", *notes(result), *couplings(result), ""]
     for each in result.results.values():
         if each.error is not None:

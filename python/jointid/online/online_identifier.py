@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from jointid.base.errors import InputError
-from jointid.estimate.student import quantile
 from jointid.joint.checks import suggestion
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model
@@ -100,7 +99,6 @@ class OnlineIdentifier:
             torque_hold=torque_hold,
             mask_standstill=mask_standstill,
         )
-        quantile(0.5, 1)  # loads what the first update would wait for
         self._signals: tuple[str, ...] | None = None
         self._last_time = -np.inf
         self._worker = Worker(self._settings, callback)

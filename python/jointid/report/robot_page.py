@@ -14,6 +14,7 @@ from jointid.base.files import write_whole
 from jointid.base.html import Html, element, page, table
 from jointid.report.html import STYLE, picture
 from jointid.report.joints_page import WIDE, slug
+from jointid.robot.comparison_result import RobotComparison
 from jointid.robot.result import RobotEstimate, RobotJoint
 from jointid.robot.tables import base_rows, head, quality, rows
 
@@ -21,7 +22,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def robot_report(estimate: RobotEstimate, action: Callable[[Action], str] = str) -> str:
+def robot_report(
+    estimate: RobotEstimate,
+    action: Callable[[Action], str] = str,
+    comparison: RobotComparison | None = None,
+) -> str:
     """The report as one HTML page: the table of the joints, the findings, and two pictures a joint.
 
     Parameters
@@ -29,6 +34,8 @@ def robot_report(estimate: RobotEstimate, action: Callable[[Action], str] = str)
     estimate : RobotEstimate
     action : callable
         Words the advice of a finding. Default: as at a Python prompt.
+    comparison : RobotComparison, optional
+        That the estimate comes from.
     """
     title = f"{estimate.robot.name or 'robot'}: friction of {len(estimate.joints)} joints, identified by jointid"
     body: list[Html | str] = [
@@ -47,6 +54,8 @@ def robot_report(estimate: RobotEstimate, action: Callable[[Action], str] = str)
         element("h2", "Findings", id="findings"),
         _findings(estimate, action),
     ]
+    if comparison is not None:
+        body += _comparison(comparison)
     if estimate.base_parameters:
         body += [
             element("h2", "Base parameters", id="base-parameters"),
@@ -69,12 +78,30 @@ def robot_report(estimate: RobotEstimate, action: Callable[[Action], str] = str)
 
 
 def save_robot_report(
-    estimate: RobotEstimate, path: str | Path, action: Callable[[Action], str] = str
+    estimate: RobotEstimate,
+    path: str | Path,
+    action: Callable[[Action], str] = str,
+    comparison: RobotComparison | None = None,
 ) -> Path:
     """Write the report, whole or not at all; see `save_report`."""
     target = require_path("path", path)
-    write_whole(target, robot_report(estimate, action).encode())
+    write_whole(target, robot_report(estimate, action, comparison).encode())
     return target
+
+
+def _comparison(found: RobotComparison) -> list[Html | str]:
+    """What was compared, and how well each candidate predicts."""
+    first = ["inertia", "model", "parameters", "held-out residual", "± std. error", "remark"]
+    tables = (
+        table([list(row) for row in found.cells()], head=first),
+        table([list(row) for row in found.joint_cells()], head=["", *found.models]),
+    )
+    return [
+        element("h2", "Compared on held-out torque", id="comparison"),
+        element("p", found.setting()),
+        *(element("div", each, class_="wide") for each in tables),
+        element("p", found.reason),
+    ]
 
 
 def _findings(estimate: RobotEstimate, action: Callable[[Action], str]) -> Html:

@@ -77,5 +77,6 @@ def duration_of(windows: float | None, motions: Sequence[Motion], total: float) 
                 value=windows,
             )
         return float(windows)
-    wished = max(float(motion.wished.max()) for motion in motions)
+    # The noisiest joint does not decide for the others: longer windows blur their reversals.
+    wished = max(float(np.median(motion.wished)) for motion in motions)
     return min(max(wished, total / _ENOUGH), _LONGEST)

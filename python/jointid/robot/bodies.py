@@ -28,13 +28,28 @@ def possible(inertial: Array) -> bool:
     >>> possible(ball), possible(-ball)
     (True, False)
     """
-    for m, x, y, z, xx, xy, yy, xz, yz, zz in inertial:
-        turning = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-        moments = np.empty((4, 4))
-        moments[:3, :3] = 0.5 * np.trace(turning) * np.eye(3) - turning
-        moments[3, :3] = moments[:3, 3] = x, y, z
-        moments[3, 3] = m
-        values = np.linalg.eigvalsh(moments)
+    for each in inertial:
+        values = np.linalg.eigvalsh(moments_of(each))
         if values[0] < -_NEGATIVE * max(float(np.abs(values).max()), 1e-12):
             return False
     return True
+
+
+def moments_of(inertial: Array) -> Array:
+    """Return the matrix of second moments, first moments and mass of one link.
+
+    Parameters
+    ----------
+    inertial : ndarray, shape (10,)
+
+    Returns
+    -------
+    ndarray, shape (4, 4)
+    """
+    m, x, y, z, xx, xy, yy, xz, yz, zz = inertial
+    turning = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    moments = np.empty((4, 4))
+    moments[:3, :3] = 0.5 * np.trace(turning) * np.eye(3) - turning
+    moments[3, :3] = moments[:3, 3] = x, y, z
+    moments[3, 3] = m
+    return moments

@@ -16,7 +16,7 @@ from jointid.robot.bodies import possible
 from jointid.robot.columns import MEANINGS, UNITS
 from jointid.robot.findings import findings_of
 from jointid.robot.fit import Fit
-from jointid.robot.inertia import URDF
+from jointid.robot.inertia import SCALED
 from jointid.robot.models import PLAIN, STRIBECK
 from jointid.robot.result import RobotEstimate, RobotJoint
 from jointid.robot.robot import Robot
@@ -67,7 +67,7 @@ def concluded(
         inertia=mode,
         base_parameters=base,
         inertial=fit.inertial.reshape(robot.n, 10),
-        consistent=None if mode == URDF else possible(fit.inertial.reshape(robot.n, 10)),
+        consistent=possible(fit.inertial.reshape(robot.n, 10)) if mode == SCALED else None,
         relative_residual=float(np.linalg.norm(fit.residual)) / (measured or 1.0),
         free=tuple(free),
         covariance=covariance.matrix,

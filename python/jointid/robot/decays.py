@@ -60,7 +60,7 @@ class Decays:
         peak = max(
             float(np.abs(summing.velocity[joint]).max()) for summing in self.balance.summings
         )
-        return shape_bounds("stribeck", peak)
+        return shape_bounds("stribeck", peak or 1.0)  # a joint that never moves shows none
 
     @property
     def norms(self) -> Array:

@@ -1,54 +1,81 @@
-"""A robot's estimate as JSON."""
+"""A robot's estimate as JSON: complete enough to use it, and to draw its page again."""
 
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
-from jointid.estimate.findings import Finding
-from jointid.estimate.statistics import ParameterEstimate
+from jointid.estimate.json import plain
 from jointid.robot.result import RobotEstimate
+from jointid.robot.robot import Robot
 
-SCHEMA = 1
+SCHEMA = 2
+"""2: links, joints and windows are in it, so that it can be read back; an infinite number is the text "inf"."""
 KIND = "jointid robot"
 
 
 def document_of(estimate: RobotEstimate) -> dict[str, Any]:
-    """Return the estimate in JSON types; what is infinite is null."""
-    robot = estimate.robot
-    return {
+    """Return the estimate in JSON types."""
+    document: dict[str, Any] = {
         "schema": SCHEMA,
         "kind": KIND,
-        "name": robot.name,
+        "name": estimate.robot.name,
         "seconds": estimate.seconds,
         "inertia": estimate.inertia,
         "consistent": estimate.consistent,
-        "relative_residual": estimate.relative_residual,
-        "condition": _finite(estimate.condition),
+        "impossible_by": plain(estimate.impossible_by),
+        "relative_residual": plain(estimate.relative_residual),
+        "condition": plain(estimate.condition),
         "joints": {
             name: {
                 "model": joint.model,
-                "parameters": {key: _parameter(p) for key, p in joint.parameters.items()},
-                "residuals": _finite(asdict(joint.residuals)),
+                "parameters": plain(joint.parameters),
+                "residuals": plain(joint.residuals),
+                "windows": plain(joint.windows) if joint.windows.start.size else None,
             }
             for name, joint in estimate.joints.items()
         },
-        "base_parameters": [_parameter(p) for p in estimate.base_parameters.values()],
-        "inertial": estimate.inertial.tolist(),
+        "base_parameters": [plain(p) for p in estimate.base_parameters.values()],
+        "inertial": plain(estimate.inertial),
         "free": list(estimate.free),
-        "covariance": _finite(estimate.covariance.tolist()),
-        "couplings": robot.couplings.tolist(),
-        "gear_ratios": None if robot.gear_ratios is None else list(robot.gear_ratios),
-        "rotor_inertias": list(robot.rotor_inertias),
-        "findings": [_finding(each) for each in estimate.findings],
-        "settings": dict(estimate.settings),
+        "covariance": plain(estimate.covariance),
+        "robot": robot_document(estimate.robot),
+        "findings": plain(estimate.findings),
+        "settings": plain(estimate.settings),
+    }
+    for entry, found in zip(document["findings"], estimate.findings, strict=True):
+        entry["message"] = found.message  # for readers that are not ours
+    return document
+
+
+def robot_document(robot: Robot) -> dict[str, Any]:
+    """Return a robot's links, joints and motors in JSON types."""
+    tree = robot.tree
+    return {
+        "joints": [
+            {
+                "name": name,
+                "parent": tree.parents[k],
+                "kind": "prismatic" if tree.prismatic[k] else "revolute",
+                "rotation": plain(tree.rotations[k]),
+                "translation": plain(tree.translations[k]),
+                "axis": plain(tree.axes[k]),
+                "inertial": plain(tree.inertias[k]),
+                "rotor_inertia": robot.rotor_inertias[k],
+            }
+            for k, name in enumerate(robot.names)
+        ],
+        "gravity": plain(tree.gravity),
+        "couplings": plain(robot.couplings),
+        "gear_ratios": plain(robot.gear_ratios),
+        "zero_offsets": plain(robot.zero_offsets),
+        "torque_scales": plain(robot.torque_scales),
+        "directions": plain(robot.directions),
+        "side": robot.side,
     }
 
 
@@ -64,30 +91,3 @@ def save_json(estimate: RobotEstimate, path: str | Path) -> Path:
         raise InputError("a robot's estimate is saved as .json", argument="path", value=target.name)
     write_whole(target, json_of(estimate).encode())
     return target
-
-
-def _parameter(p: ParameterEstimate) -> Any:
-    return _finite(asdict(p))
-
-
-def _finding(found: Finding) -> dict[str, Any]:
-    return {
-        "code": found.code,
-        "severity": found.severity,
-        "parameters": list(found.parameters),
-        "evidence": {name: asdict(each) for name, each in found.evidence.items()},
-        "cause": found.cause,
-        "advice": [str(each) for each in found.advice],
-        "message": found.message,
-    }
-
-
-def _finite(value: Any) -> Any:
-    """Return a value with None for what no JSON number can be."""
-    if isinstance(value, dict):
-        return {key: _finite(each) for key, each in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(each) for each in value]
-    if isinstance(value, float | np.floating):
-        return float(value) if np.isfinite(value) else None
-    return value

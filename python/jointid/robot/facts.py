@@ -10,7 +10,7 @@ from jointid.base.errors import InputError
 
 KEYS = (
     *("joints", "gear_ratios", "couplings", "rotor_inertias", "zero_offsets", "zero_offsets_deg"),
-    *("gravity", "side"),
+    *("gravity", "side", "torque_scales", "directions"),
 )
 
 

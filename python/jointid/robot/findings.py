@@ -12,19 +12,14 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import number, percent, two_digits
 from jointid.robot.inertia import FREE, InertiaColumns
 from jointid.robot.result import RobotEstimate, RobotJoint
-from jointid.robot.robot import Robot
-from jointid.robot.wrong_facts import WrongFact
-from jointid.robot.zeros import Zeros
 
 _STANDING = 0.1  # of the time: worth saying
 _MOSTLY = 0.35
 _VAGUE = 0.25  # a standard error, of the value
 _MATTERS, _SURE = 0.05, 3.0  # of a link's scale, and in its errors
-_EXPLAINED = 0.85  # of the residual: what scales have to leave at most to blame the URDF
-_MOST_LINKS = 2
 _POOR = 0.15  # of the torque
 _DOUBTFUL = 0.05  # of the torque: worth a look at the given facts
-_FRICTION = ("coulomb", "viscous", "motor_coulomb", "motor_viscous")
+FRICTION = ("coulomb", "viscous", "motor_coulomb", "motor_viscous")
 _RANK = {"blocking": 0, "warning": 1, "info": 2}
 
 
@@ -38,31 +33,6 @@ def findings_of(estimate: RobotEstimate, columns: InertiaColumns) -> RobotEstima
     return replace(estimate, findings=tuple(sorted(found, key=lambda each: _RANK[each.severity])))
 
 
-def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
-    """The finding that the recording counts from another pose than the URDF."""
-    turned = [
-        f"{name} by {np.rad2deg(angle):+.0f} degrees"
-        for name, angle in zip(robot.names, zeros.offsets, strict=True)
-        if angle
-    ]
-    return Finding(
-        code="turned_zero",
-        severity="warning",
-        evidence={"before": Measured(zeros.before), "after": Measured(zeros.after)},
-        cause=f"the recording counts {' and '.join(turned)} from another zero than the URDF: with the URDF's inertias "
-        f"{percent(zeros.before)} of the torque stays unexplained without these offsets, and {percent(zeros.after)} "
-        "with them; they are taken into account",
-        advice=(
-            Action(
-                "call",
-                {"zero_offsets": [round(each, 6) for each in zeros.offsets]},
-                text="if that is so",
-                function="Robot.from_urdf",
-            ),
-        ),
-    )
-
-
 def doubtful_joints(estimate: RobotEstimate) -> list[int]:
     """Joints whose balance says that something that was given is wrong: much is left, or friction would be negative."""
     return [
@@ -71,34 +41,6 @@ def doubtful_joints(estimate: RobotEstimate) -> list[int]:
         if joint.relative_residual > _DOUBTFUL
         or any(joint.parameters[name].at_bound == "min" for name in ("coulomb", "viscous"))
     ]
-
-
-def named_fact(wrong: WrongFact) -> Finding:
-    """The finding that one fact, if it were otherwise, would explain most of what is left."""
-    first, *others = wrong.joints
-    both = " and ".join(wrong.joints)
-    better = f"{percent(wrong.before)} of a joint's torque stays unexplained as it is, and {percent(wrong.after)} so"
-    coupling = f"motor {first} turns with {' and '.join(others)} by {wrong.coupling or 0.0:g}"
-    texts = {
-        "swapped_joints": f"the columns of {both} are probably exchanged",
-        "swapped_torques": f"the torques of {both} are probably exchanged",
-        "wrong_sign": f"{first} probably turns the other way: its position and torque have the wrong sign, or its gear "
-        "ratio",
-        "wrong_coupling": f"a coupling is probably wrong: if {coupling}, and not as given, much more is explained",
-    }
-    advice: tuple[Action, ...] = (Action("inspect", text="the order and names of the columns"),)
-    if wrong.kind == "wrong_sign":
-        advice = (Action("inspect", text="the sign of this joint's gear ratio and signals"),)
-    if wrong.kind == "wrong_coupling":
-        row = {first: {others[0]: wrong.coupling}}
-        advice = (Action("call", {"couplings": row}, function="Robot.from_urdf"),)
-    return Finding(
-        code=wrong.kind,
-        severity="warning",
-        evidence={"before": Measured(wrong.before), "after": Measured(wrong.after)},
-        cause=f"{texts[wrong.kind]}: {better}",
-        advice=advice,
-    )
 
 
 def _standing(estimate: RobotEstimate) -> Iterator[Finding]:
@@ -126,7 +68,7 @@ def _standing(estimate: RobotEstimate) -> Iterator[Finding]:
 
 
 def _of_joint(joint: RobotJoint, estimate: RobotEstimate) -> Iterator[Finding]:
-    for name in _FRICTION:
+    for name in FRICTION:
         p = joint.parameters.get(name)
         if p is None or p.stderr is None or p.stderr <= _VAGUE * abs(p.value):
             continue
@@ -139,7 +81,7 @@ def _of_joint(joint: RobotJoint, estimate: RobotEstimate) -> Iterator[Finding]:
             f"{number(p.value)} {p.unit}",
             advice=(Action("record", text="more and faster motion of this joint"),),
         )
-    held = [name for name in _FRICTION if name in joint.parameters]
+    held = [name for name in FRICTION if name in joint.parameters]
     held = [name for name in held if joint.parameters[name].at_bound is not None]
     if held:
         yield Finding(
@@ -179,18 +121,12 @@ def _of_inertia(estimate: RobotEstimate, columns: InertiaColumns) -> Iterator[Fi
             advice=(Action("call", {"rotor_inertias": ...}, function="Robot.from_urdf"),),
         )
     if estimate.consistent is False:
-        free = estimate.inertia == FREE
-        nearest = (
-            "of the sets with these base parameters, the one nearest to the URDF's has links"
-            if free
-            else ""
-        )
         yield Finding(
             code="impossible_inertia",
-            severity="info" if free else "warning",
-            cause=f"{nearest or 'there are links'} that no body can be: friction and the torque of motion may be "
-            "right, single inertial parameters are not",
-            advice=() if free else (Action("call", {"inertia": FREE}, function="identify_robot"),),
+            severity="warning",
+            cause="there are links that no body can be: friction and the torque of motion may be right, single "
+            "inertial parameters are not",
+            advice=(Action("call", {"inertia": FREE}, function="identify_robot"),),
         )
     for joint in estimate.joints.values():
         scale = joint.parameters.get("inertia_scale")
@@ -208,36 +144,3 @@ def _of_inertia(estimate: RobotEstimate, columns: InertiaColumns) -> Iterator[Fi
 def _far(scale: float, stderr: float) -> bool:
     """Whether a scale is another than 1, by its error and by what matters."""
     return abs(scale - 1.0) > max(_MATTERS, _SURE * stderr)
-
-
-def wrong_inertias(estimate: RobotEstimate, scaled: RobotEstimate) -> Iterator[Finding]:
-    """Findings that links are heavier or lighter than the URDF has them, where that explains the torque better.
-
-    Parameters
-    ----------
-    estimate : RobotEstimate
-        With the URDF's inertias.
-    scaled : RobotEstimate
-        Of the same, with scales.
-    """
-    if scaled.relative_residual > _EXPLAINED * estimate.relative_residual:
-        return
-    scales = {name: joint.parameters.get("inertia_scale") for name, joint in scaled.joints.items()}
-    far = [
-        (abs(p.value - 1.0) / p.stderr, name, p)
-        for name, p in scales.items()
-        if p is not None and p.stderr and _far(p.value, p.stderr)
-    ]
-    for _, name, p in sorted(far, key=lambda each: each[:2], reverse=True)[:_MOST_LINKS]:
-        yield Finding(
-            code="wrong_inertia",
-            evidence={
-                "scale": Measured(p.value),
-                "stderr": Measured(p.stderr or 0.0),
-                "residual": Measured(estimate.relative_residual),
-                "residual_scaled": Measured(scaled.relative_residual),
-            },
-            cause=f"the link that {name} moves is not as in the URDF: {p.value:.3g} ± {two_digits(p.stderr or 0.0)} "
-            "times its inertial parameters fit",
-            advice=(Action("call", {"inertia": "scaled"}, function="identify_robot"),),
-        )

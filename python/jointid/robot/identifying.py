@@ -2,42 +2,27 @@
 
 from __future__ import annotations
 
-import itertools
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-
-import numpy as np
-from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.joint.model import Model
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.robot.asked import duration_of, least_speeds, recordings_of
-from jointid.robot.balance import Balance, balance_of
-from jointid.robot.choice import certainty, with_static
-from jointid.robot.conclusion import concluded
-from jointid.robot.decays import Decays, solved_with_decays
-from jointid.robot.findings import doubtful_joints, named_fact, turned_zeros, wrong_inertias
-from jointid.robot.fit import Fit
-from jointid.robot.inertia import MODES, SCALED, URDF, basis_of, inertia_columns
-from jointid.robot.models import AUTO, PLAIN, friction_models
-from jointid.robot.motion import Motion, part_of
-from jointid.robot.products import Products
-from jointid.robot.resampling import RobotDraws
+from jointid.robot.aligning import aligned, delays_told
+from jointid.robot.asked import least_speeds, recordings_of
+from jointid.robot.attempt import Asked
+from jointid.robot.diagnosis import diagnosed
+from jointid.robot.inertia import FREE, MODES
+from jointid.robot.models import friction_models
+from jointid.robot.naming import turned_zeros
+from jointid.robot.physical_inertia import impossible_links, with_possible_bodies
 from jointid.robot.result import RobotEstimate
 from jointid.robot.robot import Robot
-from jointid.robot.solving import solved
+from jointid.robot.shifts import Shift, told_shift
 from jointid.robot.stamps import all_on_even_clocks
-from jointid.robot.wrong_facts import wrong_fact
-from jointid.robot.zeros import zeros_of
-
-Array = NDArray[np.float64]
-
-_PIECE = 120_000  # samples of a long recording that are looked at at once
-_LOOKS = 4  # recordings by whose beginnings facts are judged
 
 
 def identify_robot(
@@ -49,6 +34,7 @@ def identify_robot(
     windows: float | None = None,
     min_speed: float | Sequence[float] | Mapping[str, float] | None = None,
     mask_standstill: bool = True,
+    shift: Shift | None = None,
 ) -> RobotEstimate:
     """Identify the friction of a robot's joints from recordings of all of them, without accelerations.
 
@@ -76,6 +62,11 @@ def identify_robot(
         Default 0.
     mask_standstill : bool
         Whether to leave out where a joint stands still. Default True.
+    shift : mapping, optional
+        Delay of the "torque" against the position [s], to be taken away; positive: the torque is late. One for all
+        joints, a sequence with one for each, or a mapping by joints' names, e.g. ``{"torque": 0.001}``. An empty
+        mapping shifts nothing. Default: the delay that is certain, of all joints alike and of a joint that clearly has
+        another, but for a torque that is early by more than a sample; the findings tell it.
 
     Returns
     -------
@@ -106,108 +97,40 @@ def identify_robot(
         raise InputError(
             f"one of {', '.join(MODES)} is expected", argument="inertia", value=inertia
         )
-    models = friction_models(model, robot)
-    slowest = least_speeds(min_speed, robot)
-    pieces = _pieces(runs)
-    numbers = [number for number, _, _ in pieces]
-    firsts = [pieces[numbers.index(number)] for number in range(len(runs))][:_LOOKS]
-
-    def motion(piece: tuple[int, int, int]) -> Motion:
-        number, low, high = piece
-        return Motion.of(part_of(runs[number], low, high), robot, slowest, mask_standstill)
-
-    looks = {piece: motion(piece) for piece in firsts}
-    duration = duration_of(windows, list(looks.values()), sum(run.duration for run in runs))
-    zeros = None
-    if robot.zero_offsets is None:
-        zeros = zeros_of(robot, list(looks.values()), duration)
-        if zeros.found:
-            robot = replace(robot, zero_offsets=zeros.offsets)
-            looks = {piece: motion(piece) for piece in firsts}
-    every = (looks[piece] if piece in looks else motion(piece) for piece in pieces)
-    balance = balance_of(robot, every, duration, basis_of(robot, inertia))
-    if not balance.rows.torque.size:
-        raise InputError("no joint moves", argument="recordings", value=runs[0].name)
-    estimate = _solved(robot, balance, inertia, duration, models, numbers)
+    asked = Asked(
+        inertia=inertia,
+        models=tuple(friction_models(model, robot)),
+        windows=windows,
+        slowest=least_speeds(min_speed, robot),
+        mask_standstill=mask_standstill,
+    )
+    found = aligned(runs, robot, asked, shift)
+    attempt = found.attempt
+    given, robot, estimate = robot, attempt.robot, attempt.estimate
+    if inertia == FREE:
+        estimate = with_possible_bodies(estimate, attempt.fit)
     settings = {
         "model": {name: joint.model for name, joint in estimate.joints.items()},
         "inertia": inertia,
-        "window_duration": duration,
+        "window_duration": attempt.duration,
         "zero_offsets": list(robot.zero_offsets or (0.0,) * robot.n),
-        "min_speed": [float(each) for each in slowest],
+        "min_speed": [float(each) for each in asked.slowest],
         "mask_standstill": mask_standstill,
+        "shift": told_shift(attempt.delay, robot),
         "version": _core.__version__,
         "recordings": [run.name for run in runs],
     }
-    findings = estimate.findings
+    findings = (
+        *delays_told(found),
+        *diagnosed(runs, given, asked, attempt),
+        *impossible_links(estimate),
+    )
+    zeros = attempt.zeros
     if zeros is not None and zeros.found:
         findings = (turned_zeros(zeros, robot), *findings)
-    if inertia == URDF:
-        scaled = _solved(robot, balance, SCALED, duration, models, numbers)
-        findings = (*wrong_inertias(estimate, scaled), *findings)
-    suspects = doubtful_joints(estimate)
-    wrong = wrong_fact(robot, list(looks.values()), duration, suspects) if suspects else None
-    if wrong is not None:
-        findings = (named_fact(wrong), *findings)
     return replace(
         estimate,
         findings=findings,
         settings=settings,
         seconds=time.perf_counter() - started,
     )
-
-
-def _solved(
-    robot: Robot,
-    balance: Balance,
-    mode: str,
-    duration: float,
-    models: Sequence[str],
-    runs: Sequence[int],
-) -> RobotEstimate:
-    columns = inertia_columns(robot, mode)
-    kept = [
-        place
-        for place, (joint, name) in enumerate(balance.labels)
-        if name != "rotor_inertia" or joint not in columns.dropped
-    ]
-    wanted = balance.rows.torque - columns.known(balance)
-    inertial = columns.columns(balance)
-    blocks = [
-        np.column_stack(
-            [
-                balance.matrix[place][:, kept],
-                inertial[place],
-                wanted[place],
-            ]
-        )
-        for place in balance.places
-    ]
-    products = Products.of(blocks, list(balance.places), balance.rows)
-    least = np.append(balance.least[kept], np.full(len(columns.names), -np.inf))
-    known = columns.beforehand(len(kept))
-    if known.wanted.size:
-        _, known = certainty(products, solved(products, least, known), known)
-    stribeck = tuple(joint for joint in range(robot.n) if models[joint] != PLAIN)
-    decays = Decays(balance=balance, joints=stribeck)
-    found = solved_with_decays(decays, products, least, known)
-    if AUTO in models:
-        needed = with_static(found, products, decays.norms, stribeck, known)
-        left = tuple(joint for joint in stribeck if models[joint] != AUTO or joint in needed)
-        if left != stribeck:
-            start = [float(found.logs[stribeck.index(joint)]) for joint in left]
-            decays = Decays(balance=balance, joints=left)
-            found = solved_with_decays(decays, products, least, known, start)
-    fit = Fit.of(balance, columns, kept, products, decays, found)
-    estimate = concluded(robot, balance, mode, fit, fit.covariance(balance), duration, runs)
-    return replace(estimate, draws=RobotDraws.of(balance, fit, known))
-
-
-def _pieces(runs: Sequence[RobotRecording]) -> list[tuple[int, int, int]]:
-    """Parts of the recordings that are looked at at once: number of the recording, first sample, end."""
-    found = []
-    for number, run in enumerate(runs):
-        count = max(1, -(-run.samples // _PIECE))
-        edges = np.linspace(0, run.samples, count + 1).round().astype(int).tolist()
-        found += [(number, low, high) for low, high in itertools.pairwise(edges)]
-    return found

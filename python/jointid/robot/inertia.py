@@ -94,11 +94,19 @@ def within(basis: Array, changes: Array) -> Array:
 def basis_of(robot: Robot, mode: str) -> Array:
     """Return the changes of inertial parameters that a mode needs, shape (10 n, directions).
 
-    For the URDF's inertias, as they are or scaled, these are the links one by one.
+    For the URDF's inertias, as they are or scaled, these are the links one by one; behind them those by which an error
+    of the URDF is named: see `moment_columns`.
     """
     if mode == FREE:
         return inertia_columns(robot, FREE).directions
-    return _links(robot)
+    single = [10 * link + k for link in range(robot.n) for k in range(4)]
+    return np.hstack([_links(robot), np.eye(10 * robot.n)[:, single]])
+
+
+def moment_columns(robot: Robot, link: int) -> slice:
+    """Return the directions of a link's mass and first moments in the basis of the URDF's inertias."""
+    first = robot.n + 4 * link
+    return slice(first, first + 4)
 
 
 def _links(robot: Robot) -> Array:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.recording import Recording
 from jointid.recording.wide.robot_recording import RobotRecording
@@ -130,7 +131,9 @@ def _signals(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, boo
     Torques are at the joints, positions of motors divided by the gear ratios.
     """
     columns = robot.columns_of(recording)
-    position = np.ascontiguousarray(recording.position[:, columns].T)
+    way = np.array(robot.directions or (1.0,) * robot.n)
+    factor = way * np.array(robot.torque_scales or (1.0,) * robot.n)
+    position = np.ascontiguousarray(way[:, None] * recording.position[:, columns].T)
     torque, motor_torque = recording.torque, recording.motor_torque
     at_motor = (robot.side or recording.side) == MOTOR
     if at_motor and torque is not None:
@@ -138,19 +141,21 @@ def _signals(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, boo
     if torque is None and motor_torque is None:
         raise InputError("the recording has no torque", argument="recordings", value=recording.name)
     ratios = _ratios(recording, robot, columns) if at_motor or torque is None else np.ones(robot.n)
-    if torque is not None:
-        joint_torque = np.array(torque[:, columns].T)
-    else:
-        assert motor_torque is not None
-        joint_torque = robot.couplings.T @ (motor_torque[:, columns].T * ratios[:, None])
-    if not np.all(np.isfinite(joint_torque)):
-        missing = robot.names[int(np.argmin(np.all(np.isfinite(joint_torque), axis=1)))]
+    recorded = torque if torque is not None else motor_torque
+    assert recorded is not None
+    # Before couplings: they spread what one joint lacks over all.
+    present = np.all(np.isfinite(recorded[:, columns]), axis=0)
+    if not present.all():
         raise InputError(
             "this joint has no torque",
             argument="recordings",
-            value=missing,
+            value=robot.names[int(np.argmin(present))],
             remedy="name the joints that have one",
         )
+    if torque is not None:
+        joint_torque = factor[:, None] * torque[:, columns].T
+    else:
+        joint_torque = robot.couplings.T @ (recorded[:, columns].T * (factor * ratios)[:, None])
     return (position / ratios[:, None] if at_motor else position), joint_torque, at_motor
 
 
@@ -162,8 +167,7 @@ def _ratios(recording: RobotRecording, robot: Robot, columns: list[int]) -> Arra
     raise InputError(
         "the recording is of the motors; only the gear ratios bring it to the joints",
         argument="gear_ratios",
-        value=None,
-        remedy="give them to Robot.from_urdf",
+        remedy=Action("call", {"gear_ratios": ...}, function="Robot.from_urdf"),
     )
 
 

@@ -14,6 +14,7 @@ from jointid.robot.columns import MEANINGS
 from jointid.robot.decays import Decays
 from jointid.robot.motion import Motion
 from jointid.robot.result import RobotEstimate
+from jointid.robot.shifts import torque_shift, without_delay
 from jointid.robot.stamps import on_even_clock
 
 Array = NDArray[np.float64]
@@ -41,7 +42,9 @@ def predict_robot(estimate: RobotEstimate, recording: RobotRecording) -> RobotPr
     """Predict the window integrals of a recording's torques; see `RobotEstimate.predict`."""
     robot, settings = estimate.robot, estimate.settings
     motion = Motion.of(
-        on_even_clock(recording),
+        without_delay(
+            on_even_clock(recording), robot, torque_shift(settings.get("shift", {}), robot)
+        ),
         robot,
         np.array(settings["min_speed"]),
         bool(settings["mask_standstill"]),

@@ -35,12 +35,15 @@ class Prior:
         Inertial parameters.
     gain : ndarray, shape (10 n, base)
         The smallest change of the inertial parameters per change of the base parameters, in terms of their sizes.
+    of_links : ndarray, shape (base, 10 n)
+        Base parameters by the links' inertial parameters.
     """
 
     mean: Array
     root: Array
     urdf: Array
     gain: Array
+    of_links: Array
 
     @classmethod
     def of(cls, robot: Robot, combined: Array, free: Sequence[int]) -> Self | None:
@@ -72,6 +75,7 @@ class Prior:
             root=root,
             urdf=urdf,
             gain=gain,
+            of_links=combined[:, : urdf.size],
         )
 
     def completed(self, base: Array) -> Array:

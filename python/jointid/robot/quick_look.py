@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.robot.balance import balance_of
+from jointid.robot.balance import Balance, balance_of
 from jointid.robot.inertia import URDF, basis_of, inertia_columns
 from jointid.robot.motion import Motion
-from jointid.robot.products import Products, powers
+from jointid.robot.products import Products
 from jointid.robot.robot import Robot
 from jointid.robot.solving import Known, solved
 
 Array = NDArray[np.float64]
 
 _SAMPLES = 2000
+_WHOLE = 0.9  # of a window of one joint, what the others' windows have to hold
 
 
 def misfits(robot: Robot, motions: Sequence[Motion], duration: float) -> tuple[float, float]:
@@ -30,19 +31,78 @@ def misfits(robot: Robot, motions: Sequence[Motion], duration: float) -> tuple[f
     usual : float
         Root mean square of the joints' own: what is wrong at the wrist does not drown in the shoulder's torque.
     """
-    balance = balance_of(robot, motions, duration, basis_of(robot, URDF))
-    rows = balance.rows
-    if not rows.torque.size:
+    look = looked_at(robot, motions, duration)
+    if look is None:
         return 0.0, 0.0
-    wanted = rows.torque - inertia_columns(robot, URDF).known(balance)
-    table = np.column_stack([balance.matrix, wanted])
-    products = Products.of([table[place] for place in balance.places], list(balance.places), rows)
-    solution = solved(products, balance.least, Known.nothing(products.columns))
-    left = products.norms[-1] ** 2 * powers(products.sums.sum(axis=0), solution.values)
+    rows = look.balance.rows
+    left = np.bincount(rows.joint, look.residual**2, robot.n)
     power = np.bincount(rows.joint, rows.torque**2, robot.n)
     known = power > 0.0
     usual = float(np.sqrt(np.mean(left[known] / power[known])))
     return float(np.sqrt(left.sum() / power.sum())), usual
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Look:
+    """The fit of friction alone.
+
+    Attributes
+    ----------
+    balance : Balance
+    residual : ndarray, shape (rows,)
+    held : tuple of (int, str)
+        Joint and name of friction that would be negative.
+    """
+
+    balance: Balance
+    residual: Array
+    held: tuple[tuple[int, str], ...]
+
+    def of_motors(self, couplings: Array) -> tuple[Array, Array]:
+        """Return residuals and torques of each motor in each window, (n, windows); NaN where there is none.
+
+        Torques at the motors do not depend on the couplings that are given; a motor's needs the rows of all joints with
+        which it turns, in the same window.
+
+        Parameters
+        ----------
+        couplings : ndarray, shape (n, n)
+            Of the robot of this look.
+        """
+        rows, n = self.balance.rows, len(couplings)
+        windows = max(summing.windows.edges.size for summing in self.balance.summings)
+        key = rows.piece * windows + rows.window
+        table = np.full((3, n, windows * len(self.balance.summings)), np.nan)
+        table[:, rows.joint, key] = self.residual, rows.torque, rows.duration
+        back = np.linalg.inv(couplings).T
+        found = np.full((2, *table.shape[1:]), np.nan)
+        for motor in range(n):
+            joints = np.flatnonzero(np.abs(back[motor]) > 1e-12)
+            used = table[2, joints]
+            whole = np.all(used >= _WHOLE * used.max(axis=0), axis=0)
+            for place in range(2):
+                both = back[motor, joints] @ table[place, joints][:, whole]
+                found[place, motor, whole] = both
+        return found[0], found[1]
+
+
+def looked_at(
+    robot: Robot, motions: Sequence[Motion], duration: float, mode: str = URDF
+) -> Look | None:
+    """Return the fit with linear friction and the URDF's inertias, or free ones; None where nothing moves."""
+    balance = balance_of(robot, motions, duration, basis_of(robot, mode))
+    rows = balance.rows
+    if not rows.torque.size:
+        return None
+    columns = inertia_columns(robot, mode)
+    wanted = rows.torque - columns.known(balance)
+    table = np.column_stack([balance.matrix, columns.columns(balance), wanted])
+    products = Products.of([table[place] for place in balance.places], list(balance.places), rows)
+    least = np.append(balance.least, np.full(len(columns.names), -np.inf))
+    solution = solved(products, least, Known.nothing(products.columns))
+    values = solution.values * (products.norms[-1] / products.norms[:-1])
+    held = [label for label, at in zip(balance.labels, solution.at_bound, strict=False) if at]
+    return Look(balance=balance, residual=wanted - table[:, :-1] @ values, held=tuple(held))
 
 
 def thinned(motion: Motion) -> Motion:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+from xml.parsers import expat
 
 import numpy as np
 
@@ -38,7 +39,9 @@ def tree_of_urdf(path: Path, joints: Sequence[str] | None, gravity: Sequence[flo
             value=path.name,
             remedy="install the extra: pip install 'jointid[robot]'",
         ) from None
-    text = path.read_text(encoding="utf-8")
+    if joints is not None and (isinstance(joints, str) or not isinstance(joints, Sequence)):
+        raise InputError("a list of names is expected", argument="joints", value=joints)
+    text = _xml(path)
     try:
         model: Any = pinocchio.buildModelFromXML(text)
     except (ValueError, RuntimeError) as error:
@@ -86,3 +89,28 @@ def _axis(model: Any, name: str) -> tuple[np.ndarray[Any, np.dtype[np.float64]],
     motion = np.asarray(state.S, dtype=np.float64).ravel()
     slides = bool(np.any(motion[:3] != 0.0))
     return (motion[:3] if slides else motion[3:]), slides
+
+
+def _xml(path: Path) -> str:
+    """The text of a URDF; what is no XML is refused before pinocchio complains of it on the terminal."""
+    content = path.read_bytes()
+    tags: list[str] = []
+    parser = expat.ParserCreate()
+    parser.StartElementHandler = lambda tag, _: tags.append(tag)
+    try:
+        text = content.decode("utf-8")
+        parser.Parse(content, True)
+    except UnicodeDecodeError:
+        raise InputError(
+            "no URDF: text in UTF-8 is expected", argument="path", value=path.name
+        ) from None
+    except expat.ExpatError as error:
+        reason = f"no URDF: {expat.ErrorString(error.code)}, line {error.lineno}"
+        raise InputError(reason, argument="path", value=path.name) from None
+    if tags[0] != "robot":
+        raise InputError(
+            f"no URDF: it begins with <{tags[0]}>, not with <robot>",
+            argument="path",
+            value=path.name,
+        )
+    return text

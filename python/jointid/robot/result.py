@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from jointid.base.argument_checks import require_kind
+from jointid.base.argument_checks import require_kind, require_path
 from jointid.base.errors import InputError
 from jointid.estimate.findings import Finding
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
@@ -70,9 +70,13 @@ class RobotEstimate:
         With ``inertia="free"``: the combinations of inertial parameters that motion shows.
     inertial : ndarray, shape (n, 10)
         Inertial parameters of all links, as far as they are known: m, m·c, I about the joint's frame. With
-        ``inertia="free"`` one set of many with these base parameters; its single values mean nothing.
+        ``inertia="free"`` one set of many with these base parameters: one that bodies can have and that is like the
+        URDF's, where there is one within the errors; its single values mean nothing.
     consistent : bool or None
-        Whether a body can have these inertial parameters; None: not known.
+        Whether bodies can have these inertial parameters; None: the URDF's are used as they are.
+    impossible_by : float
+        With ``inertia="free"``, the distance of the identified base parameters from the nearest that bodies can
+        have, in standard errors (Mahalanobis distance of all together). Default 0: bodies can have them.
     relative_residual : float
         Norm of all joints' residuals over the norm of their measured integrals.
     free : tuple of str
@@ -102,6 +106,7 @@ class RobotEstimate:
     settings: Mapping[str, Any] = field(repr=False)
     seconds: float = field(default=0.0, repr=False)
     draws: RobotDraws | None = field(default=None, repr=False)
+    impossible_by: float = 0.0
 
     @property
     def parameters(self) -> dict[str, ParameterEstimate]:
@@ -244,6 +249,46 @@ class RobotEstimate:
         from jointid.robot.document import save_json
 
         return save_json(self, path)
+
+    @classmethod
+    def from_json(cls, text: str) -> RobotEstimate:
+        """Return the estimate that a JSON text holds.
+
+        Raises
+        ------
+        InputError
+            Not JSON, not a robot's estimate, another schema, or a field that cannot be used; names the place in it.
+        """
+        from jointid.robot.reading_back import read_robot_estimate
+
+        return read_robot_estimate(text)
+
+    @classmethod
+    def load(cls, path: str | Path) -> RobotEstimate:
+        """Return the estimate that a .json file holds; everything but `bootstrap` works with it.
+
+        Parameters
+        ----------
+        path : path-like
+
+        Raises
+        ------
+        InputError
+            No such file, or as `from_json`; names the file and the place in it.
+
+        Examples
+        --------
+        >>> jid.RobotEstimate.load("arm.json").friction([0.5, -0.5])  # doctest: +SKIP
+        array([ 5.5, -2.75])
+        """
+        from jointid.base.schema import read_text
+
+        place = require_path("path", path)
+        text = read_text(place)
+        try:
+            return cls.from_json(text)
+        except InputError as error:
+            raise error.at(str(place)) from error
 
     def __str__(self) -> str:
         return self.report()

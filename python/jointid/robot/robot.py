@@ -48,6 +48,10 @@ class Robot:
         "joint" or "motor": where recordings have positions and torques; None: as their headers say.
     name : str
         The URDF's.
+    torque_scales : tuple of float or None
+        Factors by which the recorded torques are multiplied; None: 1.
+    directions : tuple of float or None
+        1, or -1 where the recording counts positions and torques against the URDF's axis; None: 1.
     """
 
     tree: LinkTree
@@ -58,6 +62,8 @@ class Robot:
     zero_offsets: tuple[float, ...] | None = None
     side: str | None = None
     name: str = ""
+    torque_scales: tuple[float, ...] | None = None
+    directions: tuple[float, ...] | None = None
 
     @classmethod
     def from_urdf(
@@ -71,6 +77,8 @@ class Robot:
         zero_offsets: Sequence[float] | None = None,
         side: str | None = None,
         gravity: Sequence[float] | None = None,
+        torque_scales: Sequence[float] | None = None,
+        directions: Sequence[float] | None = None,
         facts: str | os.PathLike[str] | None = None,
     ) -> Self:
         """Return the robot that a URDF describes.
@@ -100,6 +108,11 @@ class Robot:
             Where recordings have positions and torques. Default: as their headers say.
         gravity : sequence of float, optional
             In the base's frame [m/s²]. Default (0, 0, -9.81): the base stands upright.
+        torque_scales : sequence of float, optional
+            Factors by which the recorded torques are multiplied, one a joint (of its motor, where motors are recorded):
+            the true torque constant over the assumed one; -1 turns a sign. Default: 1.
+        directions : sequence of float, optional
+            1 or -1, one a joint: -1 where positions and torques are recorded against the URDF's axis. Default: 1.
         facts : path-like, optional
             A TOML file with any of these arguments but `path`, ``zero_offsets_deg`` among them; arguments that are
             given win. A rotor inertia that is identified is ``"free"`` there.
@@ -126,9 +139,19 @@ class Robot:
                 "zero_offsets": zero_offsets,
                 "side": side,
                 "gravity": gravity,
+                "torque_scales": torque_scales,
+                "directions": directions,
             }
             stated = {name: value for name, value in given.items() if value is not None}
-            return cls.from_urdf(path, **{**read_facts(require_path("facts", facts)), **stated})
+            place = require_path("facts", facts)
+            read = read_facts(place)
+            try:
+                return cls.from_urdf(path, **{**read, **stated})
+            except InputError as error:
+                said = error.argument.partition(".")[0]
+                raise (
+                    error.at(place.name) if said in read.keys() - stated.keys() else error
+                ) from None
         file = require_path("path", path)
         if side not in (None, *SIDES):
             raise InputError(f"{' or '.join(SIDES)} is expected", argument="side", value=side)
@@ -149,6 +172,8 @@ class Robot:
             else tuple(_numbers("zero_offsets", zero_offsets, n)),
             side=side,
             name=file.stem,
+            torque_scales=_factors("torque_scales", torque_scales, n),
+            directions=_factors("directions", directions, n),
         )
 
     @property
@@ -210,6 +235,17 @@ def _numbers(argument: str, values: Sequence[float], count: int) -> list[float]:
     if array.shape != (count,) or not np.all(np.isfinite(array)):
         raise InputError(f"{count} numbers are expected", argument=argument, value=values)
     return [float(each) for each in array]
+
+
+def _factors(argument: str, values: Sequence[float] | None, count: int) -> tuple[float, ...] | None:
+    """Factors that are not 0; directions are 1 and -1."""
+    if values is None:
+        return None
+    found = _numbers(argument, values, count)
+    if 0.0 in found or (argument == "directions" and any(abs(each) != 1.0 for each in found)):
+        expected = "1 or -1 is expected" if argument == "directions" else "a factor is not 0"
+        raise InputError(expected, argument=argument, value=values)
+    return tuple(found)
 
 
 def _couplings(

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from jointid.base.advice import Action
 from jointid.base.error_text import printable
+from jointid.base.text_table import aligned
 from jointid.estimate.wording import number, percent, two_digits
 from jointid.joints.tables import value_with_error
 from jointid.robot.columns import MEANINGS
@@ -63,10 +64,17 @@ def quality(estimate: RobotEstimate) -> list[tuple[str, str]]:
         "scaled": "the URDF's, scaled link by link",
         "free": f"identified: {len(estimate.base_parameters)} base parameters",
     }[estimate.inertia]
+    if estimate.inertia == "free" and estimate.consistent:
+        inertia += ", which bodies can have"
+        if estimate.impossible_by:
+            inertia += f" within {two_digits(estimate.impossible_by)} standard errors"
+    elif estimate.consistent is False:
+        inertia += ", which no bodies can have"
     windows = sum(joint.residuals.windows for joint in estimate.joints.values())
     duration = 1e3 * float(estimate.settings.get("window_duration", 0.0))
     return [
         ("inertia", inertia),
+        *_turning(estimate),
         (
             "fit",
             f"relative residual {100.0 * estimate.relative_residual:.2f} % of all joints' torque",
@@ -75,6 +83,21 @@ def quality(estimate: RobotEstimate) -> list[tuple[str, str]]:
         ("condition", f"{estimate.condition:.3g}"),
         ("time", f"{estimate.seconds:.2f} s"),
     ]
+
+
+def _turning(estimate: RobotEstimate) -> list[tuple[str, str]]:
+    """Which motors turn with several joints, and what was taken away of zeros and delays."""
+    robot, found = estimate.robot, []
+    for motor in map(int, robot.coupled.nonzero()[0]):
+        row = robot.couplings[motor]
+        shares = [f"{row[joint]:.4g} {robot.names[joint]}" for joint in map(int, row.nonzero()[0])]
+        found.append(("coupling", f"motor {robot.names[motor]} turns with {' + '.join(shares)}"))
+    shift = estimate.settings.get("shift", {}).get("torque")
+    if shift:
+        late = shift.items() if isinstance(shift, Mapping) else [("all joints", shift)]
+        told = ", ".join(f"{1e3 * value:.3g} ms of {name}" for name, value in late)
+        found.append(("delay", f"torques' delay taken away: {told}"))
+    return found
 
 
 def base_rows(estimate: RobotEstimate) -> list[list[str]]:
@@ -92,7 +115,7 @@ def base_rows(estimate: RobotEstimate) -> list[list[str]]:
 
 def text_summary(estimate: RobotEstimate) -> str:
     """The table of the joints."""
-    return printable("\n".join(_aligned([head(estimate), *rows(estimate)])))
+    return printable("\n".join(aligned([head(estimate), *rows(estimate)])))
 
 
 def text_report(estimate: RobotEstimate, action: Callable[[Action], str] = str) -> str:
@@ -105,25 +128,14 @@ def text_report(estimate: RobotEstimate, action: Callable[[Action], str] = str) 
         Words the advice of a finding. Default: as at a Python prompt.
     """
     lines = [f"jointid robot estimate — {estimate.robot.name}; value ± standard error", ""]
-    lines += [*_aligned([head(estimate), *rows(estimate)]), ""]
+    lines += [*aligned([head(estimate), *rows(estimate)]), ""]
     width = max(len(label) for label, _ in quality(estimate))
     lines += [f"{label.ljust(width)}  {text}" for label, text in quality(estimate)]
     if estimate.base_parameters:
         table = [["value", "± std. error", "unit", "base parameter"], *base_rows(estimate)]
-        lines += ["", *_aligned(table)]
+        lines += ["", *aligned(table)]
     lines += [
         "",
         *(f"{each.severity} ({each.code}): {each.worded(action)}" for each in estimate.findings),
     ]
     return printable("\n".join(lines).rstrip())
-
-
-def _aligned(table: list[list[str]]) -> list[str]:
-    widths = [max(len(row[column]) for row in table) for column in range(len(table[0]))]
-    lines = []
-    for index, row in enumerate(table):
-        cells = [cell.ljust(width) for cell, width in zip(row, widths, strict=True)]
-        lines.append("  ".join(cells).rstrip())
-        if index == 0:
-            lines.append("  ".join("-" * width for width in widths))
-    return lines

@@ -13,29 +13,43 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.robot.inertia import FREE, URDF
 from jointid.robot.motion import Motion
-from jointid.robot.quick_look import misfits, thinned
+from jointid.robot.quick_look import looked_at, thinned
 from jointid.robot.robot import Robot
 
 Array = NDArray[np.float64]
 
-_BETTER = 0.6  # of the misfit as given: what another fact has to reach
+_BETTER = (
+    0.5  # fall of the logarithms of the motors' residuals, summed: what another fact has to reach
+)
+_BETTER_COUPLED = 0.15  # the same of a coupling, which light joints hardly show
+_CLEARLY = 0.05  # by which it has to be better than the next
+_LEAST = 0.01  # of a motor's torque: less residual is not told apart
+_FRICTION = ("coulomb", "viscous", "motor_coulomb", "motor_viscous")
 _SLOW = 0.02  # of a peak speed: standing still, for a quick look
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class WrongFact:
     """A fact that fits clearly better than the given one.
 
     Attributes
     ----------
     kind : str
-        "swapped_joints", "swapped_torques", "wrong_sign" or "wrong_coupling".
+        "swapped_joints", "swapped_torques", "wrong_sign", "wrong_torque_sign", "wrong_motion_sign" or
+        "wrong_coupling".
     joints : tuple of str
     coupling : float or None
         What the matrix should have in the row of the first joint, at the second.
     before, after : float
-        Root mean square of the joints' relative residuals with the URDF's inertias.
+        Of the joints whose residual it changes most, with the URDF's inertias: residual over measured torque.
+    robot : Robot
+        With the fact as it should be.
+    order, torque_order : ndarray of int or None
+        Columns of the recording, if they should be exchanged: of positions, and of torques.
+    others : tuple of WrongFact
+        The same coupling with another factor, which is nearly as good.
     """
 
     kind: str
@@ -43,6 +57,10 @@ class WrongFact:
     coupling: float | None
     before: float
     after: float
+    robot: Robot
+    order: NDArray[np.int64] | None = None
+    torque_order: NDArray[np.int64] | None = None
+    others: tuple[WrongFact, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -52,6 +70,17 @@ class _Trial:
     robot: Robot
     motions: list[Motion]
     coupling: float | None = None
+    order: NDArray[np.int64] | None = None
+    torque_order: NDArray[np.int64] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Looked:
+    """Residuals and torques of each motor in each window, and how much friction would be negative."""
+
+    residual: Array
+    torque: Array
+    held: int
 
 
 def wrong_fact(
@@ -69,21 +98,68 @@ def wrong_fact(
         Joints whose balance is poor.
     """
     thin = [thinned(motion) for motion in motions]
-    before = misfits(robot, thin, duration)
-    best, found = _BETTER, None
+    given = {mode: _look(robot, thin, duration, mode) for mode in (URDF, FREE)}
+    falls = []
     for trial in _trials(robot, thin, set(suspects)):
-        after = misfits(trial.robot, trial.motions, duration)
-        share = min(a / b if b > 0.0 else 1.0 for a, b in zip(after, before, strict=True))
-        if share < best:
-            best = share
-            found = WrongFact(
-                kind=trial.kind,
-                joints=tuple(robot.names[joint] for joint in trial.joints),
-                coupling=trial.coupling,
-                before=before[1],
-                after=after[1],
-            )
-    return found
+        # What a coupling changes is as small as the errors of a light wrist's inertias.
+        mode = FREE if trial.kind == "wrong_coupling" else URDF
+        was, other = given[mode], _look(trial.robot, trial.motions, duration, mode)
+        if was is None or other is None:
+            continue
+        if mode == FREE and other.held > was.held:
+            continue  # friction that takes no power away
+        before, after = _relative(was, other)
+        fall = np.log(before / after)
+        falls.append((float(fall.sum()), trial, before, after))
+    if not falls:
+        return None
+    falls.sort(key=lambda each: each[0], reverse=True)
+    best, trial, before, after = falls[0]
+    least = _BETTER_COUPLED if trial.kind == "wrong_coupling" else _BETTER
+    if best < least:
+        return None
+    others = [
+        (fall, each) for fall, each, _, _ in falls[1:] if fall > max(best - _CLEARLY, 0.5 * best)
+    ]
+    same = [each for _, each in others if each.joints == trial.joints and each.coupling]
+    if len(same) < len(others):
+        return None
+    told = int(np.argmax(before / after))
+    found = [
+        WrongFact(
+            kind=each.kind,
+            joints=tuple(robot.names[joint] for joint in each.joints),
+            coupling=each.coupling,
+            before=float(before[told]),
+            after=float(after[told]),
+            robot=each.robot,
+            order=each.order,
+            torque_order=each.torque_order,
+        )
+        for each in (trial, *same)
+    ]
+    return replace(found[0], others=tuple(found[1:]))
+
+
+def _look(robot: Robot, motions: Sequence[Motion], duration: float, mode: str) -> _Looked | None:
+    look = looked_at(robot, motions, duration, mode)
+    if look is None:
+        return None
+    couplings = robot.couplings if motions[0].at_motor else np.eye(robot.n)
+    residual, torque = look.of_motors(couplings)
+    held = sum(name in _FRICTION for _, name in look.held)
+    return _Looked(residual=residual, torque=torque, held=held)
+
+
+def _relative(given: _Looked, other: _Looked) -> tuple[Array, Array]:
+    """Each motor's residual over its torque in the windows that two fits have in common."""
+    common = np.isfinite(given.residual) & np.isfinite(other.residual)
+    found = []
+    for look in (given, other):
+        both = (look.residual, look.torque)
+        left, size = (np.linalg.norm(np.where(common, each, 0.0), axis=1) for each in both)
+        found.append(np.maximum(left / np.where(size > 0.0, size, 1.0), _LEAST))
+    return found[0], found[1]
 
 
 def _trials(robot: Robot, motions: list[Motion], suspects: set[int]) -> Iterator[_Trial]:
@@ -94,14 +170,36 @@ def _trials(robot: Robot, motions: list[Motion], suspects: set[int]) -> Iterator
                 order = np.arange(n)
                 order[[i, j]] = j, i
                 both = [_remade(each, robot, order=order, torque=order) for each in motions]
-                yield _Trial(kind="swapped_joints", joints=(i, j), robot=robot, motions=both)
+                yield _Trial(
+                    kind="swapped_joints",
+                    joints=(i, j),
+                    robot=robot,
+                    motions=both,
+                    order=order,
+                    torque_order=order,
+                )
                 torques = [_remade(each, robot, torque=order) for each in motions]
-                yield _Trial(kind="swapped_torques", joints=(i, j), robot=robot, motions=torques)
+                yield _Trial(
+                    kind="swapped_torques",
+                    joints=(i, j),
+                    robot=robot,
+                    motions=torques,
+                    torque_order=order,
+                )
     for i in sorted(suspects):
         sign = np.ones(n)
         sign[i] = -1.0
         turned = [_remade(each, robot, sign=sign) for each in motions]
-        yield _Trial(kind="wrong_sign", joints=(i,), robot=robot, motions=turned)
+        ways = tuple((sign * (robot.directions or 1.0)).tolist())
+        other = replace(robot, directions=ways)
+        yield _Trial(kind="wrong_sign", joints=(i,), robot=other, motions=turned)
+        scales = tuple((sign * (robot.torque_scales or 1.0)).tolist())
+        pushed = [_remade(each, robot, torque_sign=sign) for each in motions]
+        other = replace(robot, torque_scales=scales)
+        yield _Trial(kind="wrong_torque_sign", joints=(i,), robot=other, motions=pushed)
+        moved = [_remade(each, robot, torque_sign=sign) for each in turned]
+        other = replace(robot, directions=ways, torque_scales=scales)
+        yield _Trial(kind="wrong_motion_sign", joints=(i,), robot=other, motions=moved)
     for i, j in np.argwhere(robot.couplings - np.diag(np.diag(robot.couplings))).tolist():
         matrix = robot.couplings.copy()
         matrix[i, j], matrix[j, i] = 0.0, matrix[i, j]
@@ -133,6 +231,7 @@ def _remade(
     order: NDArray[np.int64] | None = None,
     torque: NDArray[np.int64] | None = None,
     sign: Array | None = None,
+    torque_sign: Array | None = None,
     coupled_before: Array | None = None,
 ) -> Motion:
     """The motion as other facts have it: columns in another order, other signs, other couplings."""
@@ -148,6 +247,8 @@ def _remade(
         pushed = pushed[torque]
     if sign is not None:
         position, velocity, pushed = (sign[:, None] * each for each in (position, velocity, pushed))
+    if torque_sign is not None:
+        pushed = torque_sign[:, None] * pushed
     matrix = robot.couplings if motion.at_motor else np.eye(robot.n)
     back = np.linalg.inv(matrix)
     joints, speeds = back @ position, back @ velocity

@@ -15,6 +15,7 @@ from jointid.simulation.trajectory import Trajectory
 _SAME = 0.01  # of a number: printed values are rounded, and a per cent moves no joint otherwise
 _SHOWN = 4  # differences that are said; the others are counted
 _FACTS = ("kind", "gear_ratio", "torque_constant", "known_inertia", "sensor", "model")
+_OF_FEEDBACK = ("sensor_gain", "sensor_offset")  # a controller without it does not use them
 _NAMES = {"known_inertia": "inertia"}
 
 
@@ -98,7 +99,7 @@ class DesignedFor:
             value = None if parameter is None else parameter.value
             room = _SAME * max(abs(low), abs(high))
             if value is not None and not low - room <= value <= high + room:
-                yield f"{name} from {low:.6g} to {high:.6g} (here {value:.6g})"
+                yield f"{name} from {low:.4g} to {high:.4g} (here {value:.4g})"
 
     def _laws(self, controller: Controller) -> Iterator[str]:
         """In what a controller differs: its law, or what it assumes and its gains."""
@@ -106,9 +107,14 @@ class DesignedFor:
             yield _said("the law", law_name(self.controller), law_name(controller))
             return
         here: Mapping[str, Any] = controller.asdict()
-        for name, then in self.controller.asdict().items():
-            if not _same(then, here[name]):
-                yield _said(f"the controller's {name}", then, here[name])
+        there: Mapping[str, Any] = self.controller.asdict()
+        fed_back = here.get("torque_feedback") or there.get("torque_feedback")
+        first = True
+        for name, then in there.items():
+            unused = name in _OF_FEEDBACK and not fed_back
+            if not unused and not _same(then, here[name]):
+                yield _said(f"the controller's {name}" if first else name, then, here[name])
+                first = False
 
 
 def _same(then: Any, now: Any) -> bool:
@@ -126,7 +132,7 @@ def _shown(value: Any) -> str:
         return "not stated"
     if isinstance(value, bool):
         return "on" if value else "off"
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def _linked(joint: Joint) -> str:

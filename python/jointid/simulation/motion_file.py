@@ -139,7 +139,7 @@ def _designed_for(tables: Mapping[str, Any], trajectory: Trajectory, source: str
     return DesignedFor(
         source=source,
         trajectory=trajectory,
-        joint=joint_from_document(read["joint"], "[joint]"),
+        joint=joint_from_document(TableOf(Plain()).read(read["joint"], "joint"), "[joint]"),
         controller=read_controller(read["controller"], "controller"),
         control_period=read["design"]["control_period"],
         believed={name: (low, high) for name, (low, high) in read.get("believed", {}).items()},

@@ -84,6 +84,7 @@ def cause_of(
     detail: str,
     share: float,
     size: float | None = None,
+    removed: bool = False,
 ) -> Cause | None:
     """Return what a cause that is known from elsewhere does to the values; None of one without a candidate.
 
@@ -95,6 +96,9 @@ def cause_of(
         Share of a misfit that it explains.
     size : float, optional
         Its coefficient where that is known, too. Default: fitted.
+    removed : bool
+        Whether the values are those without it. What it moved is then held against the errors that they
+        would have had with it.
     """
     fit = _fitted(problem, penalty, parameters)
     for each in listed_candidates(fit, name):
@@ -112,7 +116,10 @@ def cause_of(
             coefficients=-steps[len(fit.free) :],
             shifts=steps[: len(fit.free)],
         )
-        return _cause(fit, found, parameters, torque_level, {}, _LEAST_OF_MEASURED)
+        more = {}
+        if removed and size is not None:
+            more = fit.errors_beside(size * each.columns[:, 0])
+        return _cause(fit, found, parameters, torque_level, {}, _LEAST_OF_MEASURED, more=more)
     return None
 
 
@@ -206,6 +213,7 @@ def _cause(
     delays: Mapping[str, Delay],
     least: float = _LEAST,
     errors: float = _ERRORS,
+    more: Mapping[str, float] | None = None,
 ) -> Cause:
     shifts = {
         fit.names[index]: float(shift) for index, shift in zip(fit.free, each.shifts, strict=True)
@@ -217,7 +225,14 @@ def _cause(
         if (scale := _scale(parameters[name], parameters, torque_level)) > 0.0
     }
     harm = {
-        name: _harm(parameters[name], shifts[name], share, 1.0 - each.share, least, errors)
+        name: _harm(
+            float(np.hypot(_error_of(parameters[name]), (more or {}).get(name, 0.0))),
+            shifts[name],
+            share,
+            1.0 - each.share,
+            least,
+            errors,
+        )
         for name, share in shares.items()
     }
     detail, size, numbers = _described(fit, each, delays)
@@ -243,12 +258,14 @@ def _cause(
 
 
 def _harm(
-    p: ParameterEstimate, shift: float, share: float, left: float, least: float, errors: float
+    error: float, shift: float, share: float, left: float, least: float, errors: float
 ) -> float:
     """The shift over the least one that does harm.
 
     Parameters
     ----------
+    error : float
+        Of the value.
     share : float
         The shift as a share of what it is held against.
     left : float
@@ -258,7 +275,6 @@ def _harm(
     errors : float
         Standard errors from which a small shift does harm, too.
     """
-    error = _error_of(p)
     moved = abs(shift) / error if error > 0.0 else 0.0
     after = error * np.sqrt(max(left, 0.0))
     scale = abs(shift / share) if share else 0.0

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
-from jointid.identification.causes.folds import first_windows
+from jointid.identification.causes.folds import BLOCKS, first_windows
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import output_torque
 from jointid.recording.recording import Recording
@@ -147,6 +147,27 @@ class Fitted:
         found = np.linalg.solve(square, -np.einsum("ni,n->i", scaled, residual)) / size
         found[: len(self.start)] += self.start
         return np.asarray(found)
+
+    def errors_beside(self, torque: Array) -> dict[str, float]:
+        """Return the errors that a further torque adds to those of the values.
+
+        It is no noise, which neighbouring windows do not share, so its sums over blocks of time count.
+
+        Parameters
+        ----------
+        torque : ndarray, shape (windows,)
+            Its integrals.
+        """
+        steps = self.solve(self.jacobian, torque) - self.start
+        beside = torque + self.jacobian @ steps
+        size = np.sqrt(np.einsum("ij,ij->j", self.jacobian, self.jacobian))
+        size = np.where(size > 0.0, size, 1.0)
+        scaled = self.jacobian / size
+        square = np.einsum("ni,nj->ij", scaled, scaled) + 1e-12 * np.eye(len(size))
+        first = np.unique(np.linspace(0, len(beside), BLOCKS + 1).astype(int)[:-1])
+        sums = np.add.reduceat(scaled * beside[:, None], first, axis=0)
+        errors = np.sqrt(np.sum(np.linalg.solve(square, sums.T) ** 2, axis=1)) / size
+        return {self.names[k]: float(e) for k, e in zip(self.free, errors, strict=True)}
 
     def integral(self, signal: Callable[[int, Recording], Array]) -> Array:
         """Integral over each window of a signal of the samples, shape (samples,) or (samples, m)."""

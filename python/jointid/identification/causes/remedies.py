@@ -13,6 +13,7 @@ _HALF = 0.2  # of a sample period: so near to half a period early, a torque is o
 _HELD = Action(
     "call", {"torque_hold": "zoh"}, text="if the torque is a command that is held between samples"
 )
+_EARLY = "when torque and position are sampled and logged, and whether the gear gives way"
 _OTHERWISE: dict[str, tuple[Action, ...]] = {
     "inertia_varies": (
         Action("record", text="motion about one pose, or with a gentler acceleration"),
@@ -58,8 +59,10 @@ def advice_against(fit: Fitted, cause: Attributed) -> tuple[Action, ...]:
     if name == "delay" and detail == FILTERED:
         return (Action("call", {"columns": {"velocity": None}}, function="load"),)
     if name == "delay":
-        look = Action("inspect", text=f"when the {detail} is sampled and logged")
         early = -float(cause.coefficients[0]) / fit.problem.recordings[0].sample_period
+        look = Action("inspect", text=f"when the {detail} is sampled and logged")
+        if detail == "torque" and early > 0.0:  # a torque does not come before its motion
+            look = Action("inspect", text=_EARLY)
         unheld = detail == "torque" and fit.problem.hold(0) != "zoh"
         return (_HELD, look) if unheld and abs(early - 0.5) < _HALF else (look,)
     # Friction at low speed: the next richer law where there is one.

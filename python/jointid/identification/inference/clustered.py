@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid import _core
 from jointid.identification.inference.segments import Cuts, Segments
 
 Array = NDArray[np.float64]
@@ -121,12 +122,10 @@ def _contradicted(residual: Array, pooled: float, freedom: float) -> bool:
 
     What the velocity's noise adds to one window it takes from the next, and sums over a segment know it.
     """
-    from scipy.special import chdtri
-
     power = float(np.einsum("i,i->", residual, residual))
     neighbours = float(np.einsum("i,i->", residual[1:], residual[:-1])) / power
     freedom = max(freedom - 1.0, 1.0)
-    limit = float(chdtri(freedom, _CERTAIN)) / freedom
+    limit = _core.chi_square_quantile(_CERTAIN, freedom) / freedom
     alike = neighbours * np.sqrt(len(residual))
     return alike > _CERTAIN_NORMAL or neighbours < -_OPPOSED or pooled > limit
 

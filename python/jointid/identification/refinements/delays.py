@@ -72,7 +72,8 @@ def refined_delays(
         value = taken + left.value
         if certain:
             without = _shifted(mended, {signal: left.value})
-            fits = fits_better(mended, without, _LEAST_GAIN[signal])
+            least, smooth = _LEAST_GAIN[signal], signal == "sensor"
+            fits = fits_better(mended, without, least, reversals=not smooth)
             # Friction that the model lacks may look like a late torque; the others are measured without it.
             certain = fits or signal != "torque"
             wrong = signal == "torque" and left.value < -problem.recordings[0].sample_period

@@ -144,8 +144,6 @@ def _fitted(
     sign: float,
 ) -> tuple[float, float]:
     """Return misfit and gain; friction is not negative, the gain has this sign or is 0."""
-    from scipy.optimize import nnls
-
     names = penalty.names[: penalty.coefficients]
     of_gain = names.index("sensor_gain")
     torque = np.array(penalty.target)
@@ -171,8 +169,8 @@ def _fitted(
     sizes[sizes == 0.0] = 1.0
     triangle: Array = np.asarray(np.linalg.qr(whole / sizes, mode="r"))
     rest = triangle[len(free) :, len(free) :]  # without the terms of either sign
-    solution, misfit = nnls(rest[:, :-1], rest[:, -1])
+    solution, misfit = _core.non_negative_least_squares(rest[:, :-1], rest[:, -1])
     lead = float(sign * solution[0] * sizes[-1] / sizes[len(free)])
     if lead == 0.0:
-        return float(misfit), 0.0
-    return float(misfit), 1.0 / lead if reversed_roles else lead
+        return misfit, 0.0
+    return misfit, 1.0 / lead if reversed_roles else lead

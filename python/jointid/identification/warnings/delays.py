@@ -24,6 +24,10 @@ DELAY_REMOVED = FindingType(
     "its parameters are those that this moved by more than 5 % or two errors",
     advice="nothing; to keep the signal as it is, shift it by 0",
 )
+# A torque does not come before its motion.
+_EARLY = "the position is late or coarse, the torque early, or the gear gives way"
+_WHERE = "the position's filter and resolution, both clocks, and the gear's play"
+_FILTERS = "the filters and the clocks of position, velocity and torque"
 _NORMAL = 1.96  # standard errors of a 95 % interval
 _SHARP = 3e-4  # [s]
 _NONE = 3.0  # standard errors, below which there is no delay to shift by
@@ -44,29 +48,29 @@ def _left(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
     """What was not taken away, and why; a note where it does no harm."""
     described, measured = _described(delay, evidence), _measured(delay, evidence)
     concerned = _concerned(delay, evidence)
+    early = delay.signal == "torque" and _size(delay) < 0.0
     cause = evidence.cause_of("delay", delay.signal, 0.0, delay.left)
     harmless = cause is not None and not cause.harmful
     severity: Severity | None = "info" if harmless else None
     if cause is not None:
         measured |= {f"{name}.shift": Measured(share) for name, share in cause.shares.items()}
+        if cause.harmful:
+            concerned = tuple(dict.fromkeys((*concerned, *cause.relative)))
     if not delay.fits:
         # A delay of one signal alone would make the balance worse: others are as late.
         yield SIGNAL_LAG.finding(
             f"{described}, but the torque balance does not fit better without it: other "
-            "signals may be as late, or filtered alike",
-            Action("inspect", text="the filters and the clocks of position, velocity and torque"),
+            f"signals may be as late, or filtered alike{', or the gear gives way' if early else ''}",
+            Action("inspect", text=_WHERE if early else _FILTERS),
             evidence=measured,
             parameters=concerned,
             severity=severity,
         )
         return
-    if delay.signal == "torque" and delay.value < -_period(evidence) and not delay.applied:
+    if early and delay.value < -_period(evidence) and not delay.applied:
         yield SIGNAL_LAG.finding(
-            f"{described}: the position is late or coarse, the torque early, or the gear gives way",
-            Action(
-                "inspect",
-                text="the position's filter and resolution, both clocks, and the gear's play",
-            ),
+            f"{described}: {_EARLY}",
+            Action("inspect", text=_WHERE),
             evidence=measured,
             parameters=concerned,
             severity=severity,
@@ -78,7 +82,7 @@ def _left(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
         del whole[delay.signal]
     does = cause.harmless if harmless and cause is not None else "biases the values"
     yield SIGNAL_LAG.finding(
-        f"{described}, which {does}",
+        f"{described}, which {does}{f': {_EARLY}' if early else ''}",
         Action("call", {"shift": whole}),
         evidence=measured,
         parameters=concerned,
@@ -88,13 +92,15 @@ def _left(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
 
 def _removed(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
     """What was taken away, and what it would have done."""
-    cause = evidence.cause_of("delay", delay.signal, 0.0, delay.applied)
+    cause = evidence.cause_of("delay", delay.signal, 0.0, delay.applied, removed=True)
     text = f"{_described(delay, evidence)}; it was shifted before the identification"
     measured, concerned = _measured(delay, evidence), _concerned(delay, evidence)
     if cause is not None:
         text += f", which {cause.did}"
         measured |= {f"{name}.shift": Measured(share) for name, share in cause.shares.items()}
         concerned = tuple(cause.relative) if cause.harmful else ()
+    if delay.signal == "torque" and delay.applied < 0.0:
+        text += f": {_EARLY}"
     yield DELAY_REMOVED.finding(
         text, *_instead(delay, evidence), evidence=measured, parameters=concerned
     )

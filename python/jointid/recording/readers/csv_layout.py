@@ -18,7 +18,7 @@ from jointid.recording.stamps import looks_exact
 from jointid.recording.units import find_unit
 
 MARKS = ("#", "%", "//")  # of a comment
-_SEARCHED = 400  # lines: no program writes more above its table
+SEARCHED = 400  # lines: no program writes more above its table
 _SEPARATORS = (";", "\t", ",", BLANK)
 
 
@@ -73,7 +73,7 @@ def layout_of(lines: Sequence[str], source: str, mark: str) -> Layout:
         There is no table.
     """
     each = (k for k, line in enumerate(lines) if line.strip() and not is_comment(line))
-    filled = list(islice(each, _SEARCHED))
+    filled = list(islice(each, SEARCHED))
     named = separator_named(lines[filled[0]]) if filled else None
     if named:
         filled = filled[1:]
@@ -156,7 +156,7 @@ def _below_headers(
     """Return the table that begins in a line, with the header among the lines above it."""
     names: list[tuple[int, list[str]]] = []
     units: list[str] = []
-    for k in reversed(range(max(0, first - _SEARCHED), first)):
+    for k in reversed(range(max(0, first - SEARCHED), first)):
         text = lines[k].strip()
         if not text or lines[k].startswith(mark):
             continue

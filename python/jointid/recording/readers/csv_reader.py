@@ -1,16 +1,18 @@
-"""Reading .csv and .csv.gz files with numpy's C parser; when it fails, the invalid cell is located."""
+"""Reading .csv and .csv.gz files: plain numbers in the core, others by numpy; the cell that is none is located."""
 
 import csv
 import re
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from io import StringIO
+from itertools import islice
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
+from jointid import _core
 from jointid.base.errors import InputError
 from jointid.recording.readers.csv_dialect import (
     BLANK,
@@ -18,7 +20,7 @@ from jointid.recording.readers.csv_dialect import (
     decimal_comma,
     number_of,
 )
-from jointid.recording.readers.csv_layout import is_comment, layout_of
+from jointid.recording.readers.csv_layout import SEARCHED, is_comment, layout_of
 from jointid.recording.readers.csv_stream import even_rows, plain_numbers
 from jointid.recording.readers.csv_text import text_of
 from jointid.recording.readers.reader import Reader
@@ -29,6 +31,7 @@ from jointid.recording.table import Table
 from jointid.recording.truncated import no_sample, session_text, with_metadata
 
 _LONG = 1 << 20  # characters: a longer file is read as a stream if it holds only numbers
+_SHORT = 1 << 15  # characters: most tables begin within
 _FEW = 12  # columns: of more, only those used are converted
 _INNER = "\x1f"  # separates cells that are joined again: no text file contains it
 
@@ -62,7 +65,7 @@ class CsvTable:
             self._content, ending = session_text(self._content)
         self._table: FloatArray | None = None
         long = len(self._content) > _LONG
-        lines = _lines(self._content[:_LONG])[:-1] if long else _lines(self._content)
+        lines = _first_lines(self._content)
         self.saved: Mapping[str, Any] | None = None
         if lines[0].startswith(CSV_MARK):
             self.saved = saved_attributes(lines[0][len(CSV_MARK) :], f"{self.source}, line 1")
@@ -75,8 +78,13 @@ class CsvTable:
         if layout.bare:
             self.header_place += " (numbers, no header)"
         self._stream: Path | None = None
-        if long and '"' not in self._content:
-            if len(self.headers) <= _FEW:
+        few = len(self.headers) <= _FEW
+        if self._separator != BLANK and (few or not long):
+            self._table = _core.number_table(
+                self._content, self._below, self._separator, len(self.headers)
+            )
+        if self._table is None and long and '"' not in self._content:
+            if few:
                 self._table = plain_numbers(
                     path if ending is None else StringIO(self._content),
                     self._below,
@@ -135,15 +143,24 @@ class CsvTable:
 
     def first_cell(self, column: int) -> str:
         """Return the first cell of a column."""
-        lines = _lines(self._content[:_LONG])[self._below :]
-        first = next((line for line in lines if line.strip()), "")
-        cells = self._cells(first, self._below + 1)
+        cells = self._cells(self._first_row, self._below + 1)
         return cells[column] if column < len(cells) else ""
 
     def place(self, column: int, row: int) -> str:
         """Return file, line and column of a cell."""
         line = self._line_numbers[row]
         return f"{self.source}, line {line}, column {self.headers[column]!r}"
+
+    @cached_property
+    def _first_row(self) -> str:
+        """The first line below the header that is not blank, as far as lines are searched for one."""
+        for length in (_SHORT, _LONG):
+            lines = _lines(self._content[:length])[self._below :]
+            if length < min(_LONG, len(self._content)):
+                lines = lines[:-1]  # the last one may be cut
+            if first := next((line for line in lines if line.strip()), ""):
+                return first
+        return ""
 
     @cached_property
     def _line_numbers(self) -> list[int]:
@@ -219,6 +236,17 @@ def _lines(text: str) -> list[str]:
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
+def _first_lines(text: str) -> list[str]:
+    """Return as many lines of a text as decide where its table begins: all, or more than are searched."""
+    for length in (_SHORT, _LONG):
+        if len(text) > length:
+            lines = _lines(text[:length])[:-1]
+            filled = (line for line in lines if line.strip() and not is_comment(line))
+            if length == _LONG or next(islice(filled, SEARCHED, None), None) is not None:
+                return lines
+    return _lines(text)
+
+
 def _no_number(cell: str) -> str:
     what = f"{cell[:40]!r} is not a number" if cell else "the cell is empty"
     if re.fullmatch(r"[+-]?\d*,\d+", cell):
@@ -233,8 +261,14 @@ def _no_number(cell: str) -> str:
 def _opened(path: Path) -> Table:
     """Return a text file as a table, whichever program wrote it."""
     text = text_of(path)
-    separator = separator_of_scope(text[:_LONG].splitlines()[:100])
+    separator = separator_of_scope(_top(text, 100))
     return CsvTable(path, text) if separator is None else ScopeTable(str(path), text, separator)
+
+
+def _top(text: str, count: int) -> list[str]:
+    """Return the first lines of a text."""
+    lines = text[:_SHORT].splitlines()
+    return (lines if len(lines) > count else text[:_LONG].splitlines())[:count]
 
 
 READER = Reader(endings=(".csv", ".csv.gz", ".txt", ".tsv", ".log", ".dat"), open=_opened)

@@ -1,0 +1,28 @@
+#include <string_view>
+
+#include "bind/bind.hpp"
+#include "text/control_character.hpp"
+#include "text/number_table.hpp"
+
+namespace jointid::bind {
+
+void bind_text(py::module_& m) {
+  m.def(
+      "number_table",
+      [](std::string_view text, std::size_t below, char separator, std::size_t columns) {
+        const py::gil_scoped_release nogil;
+        return text::number_table(text, below, separator, columns);
+      },
+      py::arg("text"), py::arg("below"), py::arg("separator"), py::arg("columns"),
+      "The numbers of all rows below the first lines; None where a cell is not a plain number.");
+  m.def(
+      "find_control_character",
+      [](const py::bytes& content) -> py::ssize_t {
+        const std::size_t found = text::find_control_character(std::string_view(content));
+        return found == std::string_view::npos ? -1 : static_cast<py::ssize_t>(found);
+      },
+      py::arg("content"),
+      "The place of the first byte that no text contains in any encoding; -1 without one.");
+}
+
+}  // namespace jointid::bind

@@ -1,0 +1,71 @@
+"""Checks of what is stated for a design, before anything is simulated."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import get_args
+
+from jointid import _core
+from jointid.base.errors import InputError
+from jointid.design.asked import Asked
+from jointid.design.prior import Ranges
+from jointid.joint.joint import Joint
+from jointid.simulation.arguments import LAWS, Controller
+
+
+def check_stated(
+    joint: Joint,
+    controller: object = None,
+    sensors: object = None,
+    parameters: Sequence[str] | None = None,
+    callback: object = None,
+) -> None:
+    """Check arguments of `design_excitation`, each as it is described there.
+
+    Raises
+    ------
+    InputError
+        An argument of another kind, a controller that follows nothing, or noise of a torque sensor that the joint
+        does not have.
+    """
+    if isinstance(controller, _core.OpenLoop):
+        raise InputError(
+            "a motion is designed for a controller that follows it",
+            argument="controller",
+            value="open_loop",
+            remedy="give another, or none",
+        )
+    if controller is not None and not isinstance(controller, get_args(Controller)):
+        kinds = ", ".join(law.__name__ for law in LAWS.values() if law is not _core.OpenLoop)
+        raise InputError(f"one of {kinds} is expected", argument="controller", value=controller)
+    if sensors is not None and not isinstance(sensors, _core.Sensors):
+        raise InputError("a Sensors value is expected", argument="sensors", value=sensors)
+    if sensors is not None and sensors.torque_noise > 0.0 and not joint.sensor:
+        raise InputError(
+            "the joint has no torque sensor",
+            argument="sensors.torque_noise",
+            value=sensors.torque_noise,
+            remedy="state its encoder, encoder_counts",
+        )
+    if isinstance(parameters, str):
+        raise InputError(
+            "a list of names is expected, not one name", argument="parameters", value=parameters
+        )
+    if callback is not None and not callable(callback):
+        raise InputError("a callable is expected", argument="callback", value=callback)
+
+
+def check_signs(asked: Asked, ranges: Ranges) -> None:
+    """Check that nothing is believed below 0 that cannot be.
+
+    Raises
+    ------
+    InputError
+        Names the parameter and its range.
+    """
+    signed = {term.name: not term.non_negative for term in map(_core.term, asked.terms)}
+    for name, (low, high) in ranges.ranges.items():
+        if low < 0.0 and not signed.get(name, False):
+            raise InputError(
+                "it cannot be below 0", argument=name, value=[low, high], place="prior"
+            )

@@ -1,0 +1,137 @@
+"""Torques moved to the positions' clock before a robot is identified, and what is said of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured, Severity
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.attempt import Asked, Attempt, attempted
+from jointid.robot.delays import TorqueDelay, torque_delay
+from jointid.robot.robot import Robot
+from jointid.robot.shifts import told_shift, torque_shift
+
+Array = NDArray[np.float64]
+
+_TURNS = 3
+_SMALL = 2e-4  # [s]: what is left is not worth another identification
+_NORMAL = 1.96  # standard errors of a 95 % interval
+_HALF = 0.2  # of a sample period: so near to half a period early, a torque is one that is held
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Aligned:
+    """An identification on one clock.
+
+    Attributes
+    ----------
+    attempt : Attempt
+    left : TorqueDelay
+        After what was taken away.
+    chosen : bool
+        Whether what was taken away was found, not given.
+    """
+
+    attempt: Attempt
+    left: TorqueDelay
+    chosen: bool
+
+
+def aligned(
+    recordings: Sequence[RobotRecording], robot: Robot, asked: Asked, shift: object
+) -> Aligned:
+    """Return the identification without the torque's delay, and what is left of it.
+
+    Parameters
+    ----------
+    recordings : sequence of RobotRecording
+    robot : Robot
+    asked : Asked
+    shift : mapping or None
+        Delays that are given; None: those that are certain are taken away.
+    """
+    delay = np.zeros(robot.n) if shift is None else torque_shift(shift, robot)
+    attempt = attempted(recordings, robot, asked, delay)
+    left = torque_delay(attempt.balance, attempt.fit, attempt.looks)
+    for _ in range(_TURNS if shift is None else 0):
+        step = left.taken if left.certain else _short(delay, left)
+        if np.abs(step).max() < _SMALL:
+            break
+        if np.any(delay + step < -_period(attempt)):
+            # A torque does not come before its motion: then the position is late, as a coarse one is.
+            break
+        delay = delay + step
+        attempt = attempted(recordings, robot, asked, delay)
+        left = torque_delay(attempt.balance, attempt.fit, attempt.looks)
+    return Aligned(attempt=attempt, left=left, chosen=shift is None)
+
+
+def delays_told(found: Aligned) -> Iterator[Finding]:
+    """Findings of the delay that was taken away, and of what is certain and left."""
+    attempt, left = found.attempt, found.left
+    if found.chosen and attempt.delay.any():
+        yield _told("delay_removed", "info", attempt.delay, found)
+    if left.certain and np.abs(left.taken).max() >= _SMALL:
+        yield _told("signal_lag", "warning", np.zeros_like(left.taken), found)
+
+
+def _told(code: str, severity: Severity, away: Array, found: Aligned) -> Finding:
+    attempt, left = found.attempt, found.left
+    names, period = attempt.robot.names, _period(attempt)
+    which = away if away.any() else left.taken
+    alike = bool(np.all(which == which[0]))
+    parts: list[str] = []
+    evidence: dict[str, Measured] = {}
+    for joint in [0] if alike else np.flatnonzero(which).tolist():
+        rest = left.value if alike else float(left.joints[joint])
+        error = left.stderr if alike else float(left.errors[joint])
+        # The value is what was taken away and what the balance still shows.
+        value = float(away[joint]) + rest
+        low, high = (1e3 * (abs(value) + side * _NORMAL * error) for side in (-1, 1))
+        of_joint = "" if alike else f" of {names[joint]}"
+        parts.append(
+            f"the torque{of_joint} is {'late' if value > 0.0 else 'early'} by {1e3 * abs(value):.3g} ± "
+            f"{1e3 * error:.2g} ms ({abs(value) / period:.1f} sample periods; with 95 % between {low:.2f} and "
+            f"{high:.2f} ms) against the position"
+        )
+        prefix = "" if alike else f"{names[joint]}."
+        evidence |= {
+            f"{prefix}lag": Measured(value, "s"),
+            f"{prefix}lag_error": Measured(error, "s"),
+            f"{prefix}lag_periods": Measured(value / period),
+        }
+    cause, whole = " and ".join(parts), attempt.delay + left.taken
+    advice: tuple[Action, ...] = ()
+    early = -float(whole[0]) / period
+    if alike and abs(early - 0.5) < _HALF and not next(iter(attempt.looks.values())).torque_held:
+        text = "if the torque is a command that is held between samples"
+        advice = (Action("call", {"torque_hold": "zoh"}, text=text, function="load_robot"),)
+    if away.any():
+        cause += "; it was shifted before the identification"
+    elif found.chosen:
+        cause += ": the position is late or coarse, the torque early, or the gear gives way"
+        text = "the position's filter and resolution, and both clocks"
+        advice = (Action("inspect", text=text),)
+    else:
+        cause += (
+            " after the stated shift" if attempt.delay.any() else ""
+        ) + ", which biases the values"
+        shift = {"shift": told_shift(whole, attempt.robot)}
+        advice = (Action("call", shift, function="identify_robot"), *advice)
+    return Finding(code=code, severity=severity, evidence=evidence, cause=cause, advice=advice)
+
+
+def _short(delay: Array, left: TorqueDelay) -> Array:
+    """What a step that was certain left short."""
+    values, counts = np.unique(delay, return_counts=True)
+    usual = values[int(np.argmax(counts))]
+    return np.where(delay == 0.0, 0.0, np.where(delay == usual, left.value, left.joints))
+
+
+def _period(attempt: Attempt) -> float:
+    return float(np.median(np.diff(next(iter(attempt.looks.values())).time)))

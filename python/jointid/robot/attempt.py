@@ -1,0 +1,222 @@
+"""One identification of a robot by the facts and delays as they are taken to be."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.errors import InputError
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.asked import duration_of
+from jointid.robot.balance import Balance, balance_of
+from jointid.robot.choice import certainty, with_static
+from jointid.robot.conclusion import concluded
+from jointid.robot.decays import Decays, solved_with_decays
+from jointid.robot.fit import Fit
+from jointid.robot.inertia import basis_of, inertia_columns
+from jointid.robot.models import AUTO, PLAIN
+from jointid.robot.motion import Motion, part_of
+from jointid.robot.products import Products
+from jointid.robot.resampling import RobotDraws
+from jointid.robot.result import RobotEstimate
+from jointid.robot.robot import Robot
+from jointid.robot.shifts import without_delay
+from jointid.robot.solving import Known, solved
+from jointid.robot.zeros import Zeros, zeros_of
+
+Array = NDArray[np.float64]
+
+_PIECE = 120_000  # samples of a long recording that are looked at at once
+_LOOKS = 4  # recordings by whose beginnings facts are judged
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Asked:
+    """What a call asks for, beside recordings and robot.
+
+    Attributes
+    ----------
+    inertia : str
+    models : tuple of str
+        One a joint.
+    windows : float, int or None
+    slowest : ndarray, shape (n,)
+        Least speeds.
+    mask_standstill : bool
+    beside : tuple of str
+        Further modes of inertia that the balance is to hold.
+    """
+
+    inertia: str
+    models: tuple[str, ...]
+    windows: float | None
+    slowest: Array
+    mask_standstill: bool
+    beside: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Attempt:
+    """An estimate, and what it was made of.
+
+    Attributes
+    ----------
+    robot : Robot
+        With the zero offsets that were found.
+    delay : ndarray, shape (n,)
+        Of the torques, as taken away [s].
+    estimate : RobotEstimate
+        Without settings.
+    fit : Fit
+    balance : Balance
+    looks : mapping of int to Motion
+        The beginnings of some recordings, by the number of their piece in the balance.
+    duration : float
+        Of the windows [s].
+    zeros : Zeros or None
+        None where they are given.
+    runs : tuple of int
+        The recording of each piece.
+    """
+
+    robot: Robot
+    delay: Array
+    estimate: RobotEstimate
+    fit: Fit
+    balance: Balance
+    looks: Mapping[int, Motion]
+    duration: float
+    zeros: Zeros | None
+    runs: tuple[int, ...]
+
+    def solved_as(self, mode: str, models: Sequence[str]) -> RobotEstimate:
+        """Return the estimate with inertias of another mode."""
+        found, _ = _solved(self.robot, self.balance, mode, self.duration, models, self.runs)
+        return found
+
+
+def attempted(
+    recordings: Sequence[RobotRecording], robot: Robot, asked: Asked, delay: Array
+) -> Attempt:
+    """Return the identification of recordings on even clocks.
+
+    Parameters
+    ----------
+    recordings : sequence of RobotRecording
+    robot : Robot
+    asked : Asked
+    delay : ndarray, shape (n,)
+        Of the torques, taken away [s].
+    """
+    runs = [without_delay(run, robot, delay) for run in recordings]
+    pieces = _pieces(runs)
+    numbers = [number for number, _, _ in pieces]
+    firsts = [numbers.index(number) for number in range(len(runs))][:_LOOKS]
+
+    def motion(place: int) -> Motion:
+        number, low, high = pieces[place]
+        part = part_of(runs[number], low, high)
+        return Motion.of(part, robot, asked.slowest, asked.mask_standstill)
+
+    looks = {place: motion(place) for place in firsts}
+    total = sum(run.duration for run in runs)
+    duration = duration_of(asked.windows, list(looks.values()), total)
+    zeros = None
+    if robot.zero_offsets is None:
+        zeros = zeros_of(robot, list(looks.values()), duration)
+        if zeros.found:
+            robot = replace(robot, zero_offsets=zeros.offsets)
+            looks = {place: motion(place) for place in firsts}
+    every = (looks[place] if place in looks else motion(place) for place in range(len(pieces)))
+    basis = np.hstack([basis_of(robot, mode) for mode in (asked.inertia, *asked.beside)])
+    balance = balance_of(robot, every, duration, basis)
+    if not balance.rows.torque.size:
+        raise InputError("no joint moves", argument="recordings", value=runs[0].name)
+    estimate, fit = _solved(robot, balance, asked.inertia, duration, asked.models, numbers)
+    return Attempt(
+        robot=robot,
+        delay=delay,
+        estimate=estimate,
+        fit=fit,
+        balance=balance,
+        looks=looks,
+        duration=duration,
+        zeros=zeros,
+        runs=tuple(numbers),
+    )
+
+
+def _solved(
+    robot: Robot,
+    balance: Balance,
+    mode: str,
+    duration: float,
+    models: Sequence[str],
+    runs: Sequence[int],
+) -> tuple[RobotEstimate, Fit]:
+    fit, known = fitted(robot, balance, mode, models)
+    estimate = concluded(robot, balance, mode, fit, fit.covariance(balance), duration, runs)
+    return replace(estimate, draws=RobotDraws.of(balance, fit, known)), fit
+
+
+def fitted(robot: Robot, balance: Balance, mode: str, models: Sequence[str]) -> tuple[Fit, Known]:
+    """Return the values of all parameters, and what was known of them beforehand.
+
+    Parameters
+    ----------
+    robot : Robot
+    balance : Balance
+        That holds the mode.
+    mode : str
+        Of the inertia.
+    models : sequence of str
+        One a joint.
+    """
+    columns = inertia_columns(robot, mode)
+    kept = [
+        place
+        for place, (joint, name) in enumerate(balance.labels)
+        if name != "rotor_inertia" or joint not in columns.dropped
+    ]
+    wanted = balance.rows.torque - columns.known(balance)
+    inertial = columns.columns(balance)
+    blocks = [
+        np.column_stack(
+            [
+                balance.matrix[place][:, kept],
+                inertial[place],
+                wanted[place],
+            ]
+        )
+        for place in balance.places
+    ]
+    products = Products.of(blocks, list(balance.places), balance.rows)
+    least = np.append(balance.least[kept], np.full(len(columns.names), -np.inf))
+    known = columns.beforehand(len(kept))
+    if known.wanted.size:
+        _, known = certainty(products, solved(products, least, known), known)
+    stribeck = tuple(joint for joint in range(robot.n) if models[joint] != PLAIN)
+    decays = Decays(balance=balance, joints=stribeck)
+    found = solved_with_decays(decays, products, least, known)
+    if AUTO in models:
+        needed = with_static(found, products, decays.norms, stribeck, known)
+        left = tuple(joint for joint in stribeck if models[joint] != AUTO or joint in needed)
+        if left != stribeck:
+            start = [float(found.logs[stribeck.index(joint)]) for joint in left]
+            decays = Decays(balance=balance, joints=left)
+            found = solved_with_decays(decays, products, least, known, start)
+    return Fit.of(balance, columns, kept, products, decays, found), known
+
+
+def _pieces(runs: Sequence[RobotRecording]) -> list[tuple[int, int, int]]:
+    """Parts of the recordings that are looked at at once: number of the recording, first sample, end."""
+    found = []
+    for number, run in enumerate(runs):
+        count = max(1, -(-run.samples // _PIECE))
+        edges = np.linspace(0, run.samples, count + 1).round().astype(int).tolist()
+        found += [(number, low, high) for low, high in itertools.pairwise(edges)]
+    return found

@@ -1,0 +1,265 @@
+"""`compare_robot_models`: which inertia and friction predict torque best that they were not fitted to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.argument_checks import require_kind, whole_number
+from jointid.base.errors import InputError
+from jointid.estimate.student import quantile
+from jointid.joint.model import Model
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.aligning import aligned
+from jointid.robot.asked import least_speeds, recordings_of
+from jointid.robot.attempt import Asked, Attempt, fitted
+from jointid.robot.comparison_result import ComparedRobotModel, RobotComparison
+from jointid.robot.held_out import blocks_of, part_of_balance, told_by
+from jointid.robot.identifying import identify_robot
+from jointid.robot.inertia import MODES
+from jointid.robot.models import PLAIN, STRIBECK, friction_models
+from jointid.robot.robot import Robot
+from jointid.robot.shifts import Shift, told_shift
+from jointid.robot.stamps import all_on_even_clocks
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+_ONE_ERROR = 0.841345  # probability below one standard error of a normal distribution
+
+
+def compare_robot_models(
+    recordings: RobotRecording | Sequence[RobotRecording],
+    robot: Robot,
+    *,
+    models: Sequence[Model | str] = (PLAIN, STRIBECK),
+    inertia: Sequence[str] = MODES,
+    folds: int = 5,
+    windows: float | None = None,
+    min_speed: float | Sequence[float] | Mapping[str, float] | None = None,
+    mask_standstill: bool = True,
+    shift: Shift | None = None,
+) -> RobotComparison:
+    """Compare what is identified of a robot by how well it predicts torque that it was not fitted to.
+
+    One recording is cut into contiguous blocks; of several, each is one block. Every inertia with every friction model
+    is fitted to all blocks but one and predicts the torque of that block, for each block in turn. The winner is the
+    candidate with the fewest parameters that is not worse than the best by more than one standard error of their
+    difference, block by block. With its inertia, each joint's model is chosen by the same rule from the joint's own
+    torque.
+
+    Parameters
+    ----------
+    recordings : RobotRecording, or sequence of it
+    robot : Robot
+    models : sequence of Model or str
+        Friction of all joints: "coulomb_viscous", "stribeck" (both by default).
+    inertia : sequence of str
+        Any of "urdf", "scaled" and "free" (all by default).
+    folds : int
+        Number of blocks of one recording, or largest number of groups of several. Default 5.
+    windows, min_speed, mask_standstill, shift
+        As in `identify_robot`; the same for all candidates. Delays and zeros that are found come from all recordings.
+
+    Returns
+    -------
+    RobotComparison
+
+    Raises
+    ------
+    InputError
+        As `identify_robot`; or candidates or folds that cannot be.
+
+    Examples
+    --------
+    >>> found = jid.compare_robot_models(jid.load_robot("arm.csv"), robot)  # doctest: +SKIP
+    >>> found.winner.inertia, found.models["joint_1"]  # doctest: +SKIP
+    ('scaled', 'stribeck')
+    """
+    require_kind("robot", robot, Robot)
+    given = recordings_of(recordings)
+    modes = _modes(inertia)
+    every = _models(models, robot)
+    count = whole_number("folds", folds, 2, 1000)
+    slowest = least_speeds(min_speed, robot)
+    asked = Asked(
+        inertia=modes[0],
+        models=(PLAIN,) * robot.n,
+        windows=windows,
+        slowest=slowest,
+        mask_standstill=mask_standstill,
+        beside=modes[1:],
+    )
+    attempt = aligned(all_on_even_clocks(given), robot, asked, shift).attempt
+    blocks = blocks_of(attempt.balance.rows, attempt.runs, count)
+    rows, left_out = [], {}
+    for mode in modes:
+        for model in every:
+            try:
+                rows.append(_row(attempt, mode, model, blocks))
+            except InputError as error:
+                left_out[f"inertia {mode}, {model}"] = str(error)
+    if not rows:
+        raise InputError(
+            f"no candidate can be fitted: {next(iter(left_out.values()))}", argument="inertia"
+        )
+    scores = np.array([row.fold_scores for row in rows])
+    best, chosen = _chosen(scores, [row.parameters for row in rows])
+    told = _with_reasons(rows, best, chosen)
+    winner = told[chosen]
+    rivals = [row for row in told if row.inertia == winner.inertia]
+    found = {name: _model_of(name, rivals, winner) for name in robot.names}
+    estimate = identify_robot(
+        given,
+        attempt.robot,
+        inertia=winner.inertia,
+        model=found,
+        windows=attempt.duration,
+        min_speed=slowest.tolist(),
+        mask_standstill=mask_standstill,
+        shift=told_shift(attempt.delay, attempt.robot),
+    )
+    several = len(given) > 1
+    return RobotComparison(
+        rows=told,
+        winner=winner,
+        models=found,
+        reason=_sentence(told, best, chosen),
+        estimate=estimate,
+        settings={
+            "folds": int(blocks.max()) + 1,
+            "held_out": "block"
+            if not several
+            else "recording"
+            if len(given) <= count
+            else "recordings",
+            "window_duration": attempt.duration,
+            "left_out": left_out,
+        },
+    )
+
+
+def _modes(inertia: object) -> tuple[str, ...]:
+    found = (inertia,) if isinstance(inertia, str) else inertia
+    if not isinstance(found, list | tuple) or not found or set(found) - set(MODES):
+        raise InputError(
+            f"some of {', '.join(MODES)} are expected", argument="inertia", value=inertia
+        )
+    return tuple(dict.fromkeys(found))
+
+
+def _models(models: object, robot: Robot) -> list[str]:
+    found = (models,) if isinstance(models, str | Model) else models
+    if not isinstance(found, list | tuple) or not found:
+        raise InputError("a list of models is expected", argument="models", value=models)
+    names = [friction_models(each, robot)[0] for each in found]
+    if set(names) - {PLAIN, STRIBECK}:
+        raise InputError(
+            f"{PLAIN} and {STRIBECK} are compared, and each joint's is chosen",
+            argument="models",
+            value=models,
+        )
+    return list(dict.fromkeys(names))
+
+
+def _row(attempt: Attempt, mode: str, model: str, blocks: Whole) -> ComparedRobotModel:
+    robot, balance = attempt.robot, attempt.balance
+    models = [model] * robot.n
+    whole, _ = fitted(robot, balance, mode, models)
+    scores = np.full((int(blocks.max()) + 1, robot.n), np.nan)
+    for fold in range(len(scores)):
+        fit, _ = fitted(robot, part_of_balance(balance, blocks != fold), mode, models)
+        held = part_of_balance(balance, blocks == fold)
+        missed = held.rows.torque - told_by(fit, held)
+        for joint, place in enumerate(held.places):
+            measured = float(np.linalg.norm(held.rows.torque[place]))
+            if measured > 0.0:
+                scores[fold, joint] = float(np.linalg.norm(missed[place])) / measured
+    if np.all(np.isnan(scores), axis=1).any():
+        raise InputError("no joint moves in one of the blocks", argument="folds", value=len(scores))
+    means = np.nanmean(scores, axis=1)
+    return ComparedRobotModel(
+        inertia=mode,
+        model=model,
+        parameters=int(np.sum(~whole.at_bound)),
+        score=float(means.mean()),
+        stderr=float(means.std(ddof=1) / np.sqrt(means.size)),
+        fold_scores=tuple(means.tolist()),
+        joints={name: tuple(scores[:, k].tolist()) for k, name in enumerate(robot.names)},
+    )
+
+
+def _chosen(scores: Array, parameters: Sequence[int]) -> tuple[int, int]:
+    """The best candidate, and the simplest that is not worse by more than an error of the difference.
+
+    Parameters
+    ----------
+    scores : ndarray, shape (candidates, blocks)
+    parameters : sequence of int
+    """
+    best = int(np.argmin(scores.mean(axis=1)))
+    near = [
+        number
+        for number, each in enumerate(scores)
+        if number == best or not _worse(each - scores[best])
+    ]
+    return best, min(near, key=lambda each: (parameters[each], float(scores[each].mean())))
+
+
+def _worse(excess: Array) -> bool:
+    """Whether scores exceed others by more than the excess scatters over the blocks."""
+    count = excess.size
+    error = float(excess.std(ddof=1)) / np.sqrt(count) if count > 1 else np.inf
+    return bool(excess.mean() > error * quantile(_ONE_ERROR, max(1, count - 1)))
+
+
+def _model_of(name: str, rivals: Sequence[ComparedRobotModel], winner: ComparedRobotModel) -> str:
+    """The model of one joint, by its own torque."""
+    scores = np.array([row.joints[name] for row in rivals])
+    scores = scores[:, ~np.isnan(scores).any(axis=0)]
+    if not scores.shape[1]:
+        return winner.model
+    _, chosen = _chosen(scores, [row.parameters for row in rivals])
+    return rivals[chosen].model
+
+
+def _with_reasons(
+    rows: Sequence[ComparedRobotModel], best: int, chosen: int
+) -> tuple[ComparedRobotModel, ...]:
+    winner = rows[chosen]
+    told = []
+    for number, row in enumerate(rows):
+        excess = np.array(row.fold_scores) - np.array(rows[best].fold_scores)
+        if number == chosen:
+            reason = "winner"
+        elif number != best and _worse(excess):
+            error = float(excess.std(ddof=1)) / np.sqrt(excess.size)
+            reason = (
+                f"worse than the best by {100.0 * float(excess.mean()):.2g} ± {100.0 * error:.2g} %"
+            )
+        elif row.parameters == winner.parameters:
+            reason = "not significantly better than the winner, with the same number of parameters"
+        else:
+            reason = (
+                "not significantly better than the winner, with "
+                f"{row.parameters} parameters instead of {winner.parameters}"
+            )
+        told.append(replace(row, reason=reason))
+    return tuple(told)
+
+
+def _sentence(rows: Sequence[ComparedRobotModel], best: int, chosen: int) -> str:
+    winner, first = rows[chosen], rows[best]
+    score = f"{100.0 * first.score:.3g} ± {100.0 * first.stderr:.2g} %"
+    if best == chosen:
+        return (
+            f"{winner.name} ({winner.parameters} parameters) predicts held-out torque best, {score}"
+        )
+    return (
+        f"{winner.name} ({winner.parameters} parameters) is the simplest that is not worse than the best, "
+        f"{first.name} with {score}, by more than one standard error of their difference; its residual is "
+        f"{100.0 * winner.score:.3g} %"
+    )

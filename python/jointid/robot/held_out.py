@@ -1,0 +1,92 @@
+"""Parts of a robot's balance: what is fitted to some of its rows, and what that tells of the others."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.errors import InputError
+from jointid.robot.balance import Balance, Rows
+from jointid.robot.decays import Decays
+from jointid.robot.fit import Fit
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Whole = NDArray[np.int64]
+
+_FEWEST = 4  # windows of each joint that a block needs
+
+
+def blocks_of(rows: Rows, runs: Sequence[int], count: int) -> Whole:
+    """Return the block of each row: of one recording, stretches of as many rows; else whole recordings.
+
+    Parameters
+    ----------
+    rows : Rows
+    runs : sequence of int
+        The recording of each piece.
+    count : int
+        How many blocks at most.
+
+    Raises
+    ------
+    InputError
+        Too few windows for so many blocks.
+    """
+    recording = np.asarray(runs)[rows.piece]
+    every = np.unique(recording)
+    if every.size > 1:
+        groups = np.array_split(every, min(count, every.size))
+        found = np.empty(recording.size, dtype=np.int64)
+        for number, group in enumerate(groups):
+            found[np.isin(recording, group)] = number
+        return found
+    size = rows.start.size
+    joints = np.unique(rows.joint).size
+    if size < count * _FEWEST * joints:
+        raise InputError(
+            f"the recording has {size} windows of {joints} joints, and each block needs at least "
+            f"{_FEWEST} of each",
+            argument="folds",
+            value=count,
+            remedy="use fewer folds, or shorter windows",
+        )
+    # A window's rows stay together: those of all joints begin at the same time.
+    firsts = np.array([part[0] for part in np.array_split(np.arange(size), count)])
+    return np.searchsorted(rows.start[firsts[1:]], rows.start, side="right").astype(np.int64)
+
+
+def part_of_balance(balance: Balance, kept: Flags) -> Balance:
+    """Return some rows of a balance."""
+    rows = Rows(**{each.name: getattr(balance.rows, each.name)[kept] for each in fields(Rows)})
+    return replace(
+        balance,
+        rows=rows,
+        matrix=balance.matrix[kept],
+        inertia=balance.inertia[kept],
+        known=balance.known[kept],
+        places=tuple(np.flatnonzero(rows.joint == joint) for joint in range(len(balance.places))),
+    )
+
+
+def told_by(fit: Fit, balance: Balance) -> Array:
+    """Return the integrals of torque that a fit tells of a balance, which it need not have seen."""
+    places = {label: place for place, label in enumerate(balance.labels)}
+    total = fit.columns.known(balance)
+    inertial = []
+    for value, (joint, name) in zip(fit.values, fit.labels, strict=True):
+        if joint is None or name == "inertia_scale":
+            inertial.append(value)
+        elif (joint, name) in places:
+            total = total + value * balance.matrix[:, places[joint, name]]
+    total = total + fit.columns.columns(balance) @ np.array(inertial)
+    values = dict(zip(fit.labels, fit.values.tolist(), strict=True))
+    for (joint, name), value in values.items():
+        if name == "static" and joint is not None:
+            decays = Decays(balance=balance, joints=(joint,))
+            column, _ = decays.column(joint, values[joint, "stribeck"])
+            total[balance.places[joint]] += value * column
+    return np.asarray(total)

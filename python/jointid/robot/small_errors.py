@@ -1,0 +1,194 @@
+"""Given facts that are somewhat wrong: each is one to four further columns, and what explains most is the cause.
+
+A base that is not upright, a zero that is a few degrees off, a torque constant, a body that the URDF does not know, a
+link's weight or its centre of mass: the balances of all joints change with each in a way of its own. What a column
+explains counts on stretches of motion from which its value was not taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.robot.attempt import Attempt
+from jointid.robot.inertia import FREE, SCALED, moment_columns
+from jointid.robot.looked_rows import LookedRows, Share
+from jointid.robot.perturbed import moved_zeros, tilted_gravity
+from jointid.robot.robot import Robot
+
+Array = NDArray[np.float64]
+
+_EXPLAINED = 0.03  # of the held-out squared residual
+_CERTAIN = 2.0  # standard errors of that, by its scatter over stretches
+_WALD = 150.0  # of the values per column; errors of a model, too, are no chance
+_AS_GOOD = 0.93  # of what the best explains: a simpler cause is taken
+_SETTLED = 0.02  # of an error: what is left of it
+_MAY_BE = 0.97  # of it: another cause that is told
+TILT, ZERO, TORQUE, LINK, CENTRE, PAYLOAD = (
+    *("tilted_base", "wrong_zero", "wrong_torque_scale"),
+    *("wrong_inertia", "wrong_centre", "payload"),
+)
+_MATTERS = {
+    TILT: np.deg2rad(1.0),
+    ZERO: np.deg2rad(1.0),
+    TORQUE: 0.03,
+    LINK: 0.05,
+    CENTRE: 0.005,  # [m]
+    PAYLOAD: 0.02,  # of the robot's moving mass
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SmallError:
+    """A fact that is somewhat wrong.
+
+    Attributes
+    ----------
+    kind : str
+        One of the names above; also the finding's code.
+    joint : int or None
+        Whose zero, torque or link.
+    values, errors : ndarray
+        Of a tilt: further gravity along the base's two other axes, of its size. Of a zero: what is missing [rad or m].
+        Of a torque: its scale less 1. Of a link: its scale less 1. Of a centre: further first moments [kg·m]. Of a
+        payload: mass, then first moments.
+    share : float
+        Of the squared residuals of held-out stretches, weighted by joint, that it explains.
+    given, robot : Robot
+        As it was given, and with it corrected.
+    others : tuple of (str, int or None)
+        Kinds and joints that explain as much.
+    """
+
+    kind: str
+    joint: int | None
+    values: Array
+    errors: Array
+    share: float
+    given: Robot
+    robot: Robot
+    others: tuple[tuple[str, int | None], ...] = ()
+
+
+def small_error(attempt: Attempt) -> SmallError | None:
+    """Return the small error of a given fact that explains most of what an attempt leaves, or None."""
+    found = [
+        (kind, joint, told)
+        for kind, joint, told in _shares(attempt)
+        if told.share > _EXPLAINED
+        and told.certainty > _CERTAIN
+        and told.wald > _WALD
+        and _size(attempt, kind, joint, told.values) > _MATTERS[kind]
+    ]
+    if not found:
+        return None
+    best = max(told.share for _, _, told in found)
+    near = [each for each in found if each[2].share >= _AS_GOOD * best]
+    kind, joint, told = min(near, key=lambda each: (each[2].values.size, -each[2].share))
+    others = tuple(
+        (other, of)
+        for other, of, each in near
+        if (other, of) != (kind, joint)
+        and each.share >= _MAY_BE * best
+        and each.values.size <= told.values.size
+    )
+    return SmallError(
+        kind=kind,
+        joint=joint,
+        values=told.values,
+        errors=told.errors,
+        share=told.share,
+        given=attempt.robot,
+        robot=_corrected(attempt, kind, joint, told.values),
+        others=others,
+    )
+
+
+def refined(error: SmallError, attempt: Attempt) -> SmallError | None:
+    """Return the error with what an attempt without it still shows of it, or None where that is next to nothing.
+
+    The balances change with a tilt or a zero by sine and cosine; the first step is along their slope.
+    """
+    if error.kind not in (TILT, ZERO):
+        return None
+    told = next(
+        told for kind, joint, told in _shares(attempt) if (kind, joint) == (error.kind, error.joint)
+    )
+    if np.linalg.norm(told.values) < _SETTLED * np.linalg.norm(error.values):
+        return None
+    other = _corrected(attempt, error.kind, error.joint, told.values)
+    return replace(error, robot=other, errors=told.errors)
+
+
+def tilts(gravity: Array) -> Array:
+    """Return two directions across gravity, as large as it, shape (2, 3)."""
+    size = float(np.linalg.norm(gravity))
+    axes = np.eye(3)[np.argsort(np.abs(gravity), kind="stable")[:2]]
+    first = np.cross(gravity, np.cross(axes[0], gravity))
+    first = first / np.linalg.norm(first)
+    return size * np.array([first, np.cross(gravity / size, first)])
+
+
+def _shares(attempt: Attempt) -> Iterator[tuple[str, int | None, Share]]:
+    """What each possible error explains, with its kind and joint."""
+    robot, balance, fit = attempt.robot, attempt.balance, attempt.fit
+    rows = LookedRows(balance, fit, attempt.looks, free=True)
+    mechanics = (robot.tree, balance, rows, attempt.looks, fit.inertial)
+    if np.linalg.norm(robot.tree.gravity) > 0.0:
+        ways = tilts(robot.tree.gravity)
+        yield TILT, None, rows.share(tilted_gravity(*mechanics, ways))
+    zeros = moved_zeros(*mechanics)
+    for joint in np.flatnonzero(~np.array(robot.tree.prismatic)).tolist():
+        yield ZERO, joint, rows.share(zeros[:, joint : joint + 1])
+    # What the fit explains of a joint's torque, were it larger: all of it but friction hangs on other joints.
+    explained = (balance.rows.torque - fit.residual)[rows.kept]
+    for joint in range(robot.n):
+        mine = np.where(rows.joint == joint, explained, 0.0)
+        yield TORQUE, joint, rows.share(mine[:, None])
+    if attempt.estimate.inertia == FREE:
+        return
+    inertia = balance.inertia[rows.kept]
+    for link in range(robot.n):
+        moments = inertia[:, moment_columns(robot, link)]
+        if attempt.estimate.inertia != SCALED:
+            yield LINK, link, rows.share(inertia[:, link : link + 1])
+        yield CENTRE, link, rows.share(moments[:, 1:])
+        if link not in robot.tree.parents:
+            yield PAYLOAD, link, rows.share(moments)
+
+
+def _size(attempt: Attempt, kind: str, joint: int | None, values: Array) -> float:
+    inertias = attempt.robot.tree.inertias
+    if kind == CENTRE:
+        return float(np.linalg.norm(values)) / max(float(inertias[joint, 0]), 1e-300)
+    if kind == PAYLOAD:
+        # What is fixed to a link makes it heavier.
+        return float(values[0]) / float(inertias[:, 0].sum())
+    return float(np.linalg.norm(values))
+
+
+def _corrected(attempt: Attempt, kind: str, joint: int | None, values: Array) -> Robot:
+    robot = attempt.robot
+    if kind == TILT:
+        gravity = robot.tree.gravity + values @ tilts(robot.tree.gravity)
+        gravity *= np.linalg.norm(robot.tree.gravity) / np.linalg.norm(gravity)
+        return replace(robot, tree=replace(robot.tree, gravity=gravity))
+    if kind == ZERO:
+        offsets = np.array(robot.zero_offsets or (0.0,) * robot.n)
+        offsets[joint] += values[0]
+        return replace(robot, zero_offsets=tuple(offsets.tolist()))
+    if kind == TORQUE:
+        scales = np.array(robot.torque_scales or (1.0,) * robot.n)
+        scales[joint] /= 1.0 + values[0]
+        return replace(robot, torque_scales=tuple(scales.tolist()))
+    inertias = robot.tree.inertias.copy()
+    if kind == LINK:
+        inertias[joint] *= 1.0 + values[0]
+    elif kind == CENTRE:
+        inertias[joint, 1:4] += values
+    else:
+        inertias[joint, :4] += values
+    return replace(robot, tree=replace(robot.tree, inertias=inertias))
