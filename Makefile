@@ -115,6 +115,7 @@ study: $(INSTALLED)  ## accuracy over many seeds; by hand, the results go to doc
 bench: $(INSTALLED) .venv/.bench-tools  ## speed against other libraries (20 min); writes docs/performance.md
 	@$(BIN)/python benchmarks/speed.py $(BENCH)
 	@$(BIN)/python benchmarks/simulation_speed.py --output docs/simulation_speed.md
+	@$(BIN)/python benchmarks/latency.py --output docs/latency.md
 
 notebooks: $(INSTALLED) .venv/.test-tools  ## run the notebooks and keep what they show; by hand
 	@$(BIN)/python tools/notebooks.py $(NOTEBOOKS)

@@ -73,7 +73,7 @@ def test_the_joint_without_torque_is_named_whatever_turns_with_it(path: Path) ->
     robot = jid.Robot.from_urdf(
         path, gear_ratios=[1.0, 1.0], couplings={"elbow": {"shoulder": 1.0}}
     )
-    with pytest.raises(jid.InputError, match=".elbow.: this joint has no torque"):
+    with pytest.raises(jid.InputError, match=r".elbow.: this joint has no torque"):
         jid.identify_robot(motors, robot)
     bare = jid.Robot.from_urdf(path)
     whole = jid.RobotRecording(
@@ -89,5 +89,5 @@ def test_a_log_of_fewer_joints_says_which_it_has(path: Path) -> None:
     one = jid.RobotRecording(
         time=run.time, position=run.position[:, :1], torque=run.torque[:, :1], names=["shoulder"]
     )
-    with pytest.raises(jid.InputError, match="the robot has .*elbow, the recording shoulder"):
+    with pytest.raises(jid.InputError, match=r"the robot has .*elbow, the recording shoulder"):
         jid.identify_robot(one, jid.Robot.from_urdf(path))

@@ -151,6 +151,14 @@ def test_a_sign_is_named_and_its_consequences_are_not_warned_of(
     assert identified(recording, **advice.arguments).warnings == ()
 
 
+def test_a_sign_is_no_coupling_beside_static_friction() -> None:
+    """A joint whose torque has the wrong sign leaves free inertias far off; a coupling is not better for it."""
+    arm = random_arm(0)
+    whole = recorded(run(arm, random_motion(0, duration=10.0)), Sensors(), 0)
+    found = identified(changed(whole, "torque", 5, -1.0))
+    assert found.warnings[0].code == "wrong_torque_sign"
+
+
 def test_two_wrong_facts_are_both_named(clean: jid.RobotRecording) -> None:
     order = [0, 1, 3, 2, *range(4, JOINTS)]
     fields = clean.fields()

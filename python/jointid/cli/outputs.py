@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import errno
 from pathlib import Path
-from tempfile import NamedTemporaryFile
 
 from jointid.base.errors import InputError
 
@@ -92,6 +91,8 @@ def check_folder(argument: str, path: Path | None) -> None:
         raise InputError(f"the folder {path.parent} does not exist", argument=argument, value=path)
     if path.exists():
         return
+    from tempfile import NamedTemporaryFile
+
     try:  # the permissions alone do not tell: some folders take no files from anybody
         with NamedTemporaryFile(dir=path.parent, prefix=f".{path.name[:20]}."):
             pass

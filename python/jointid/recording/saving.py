@@ -1,6 +1,5 @@
 """Writing a recording: .csv, .csv.gz and .npz, which `load` reads back bit for bit."""
 
-import gzip
 import io
 import json
 import os
@@ -63,6 +62,8 @@ def _npz(recording: "Recording") -> bytes:
 
 def _compressed_csv(recording: "Recording") -> bytes:
     # No time stamp inside: the same recording gives the same file.
+    import gzip
+
     return gzip.compress(_csv(recording), compresslevel=6, mtime=0)
 
 

@@ -109,6 +109,10 @@ def wrong_fact(
         if mode == FREE and other.held > was.held:
             continue  # friction that takes no power away
         before, after = _relative(was, other)
+        plain = given[URDF]
+        if mode == FREE and plain is not None:
+            # Free inertias may end far off where another fact is wrong; that is no merit of the coupling.
+            before = np.minimum(before, _relative(plain, other)[0])
         fall = np.log(before / after)
         falls.append((float(fall.sum()), trial, before, after))
     if not falls:

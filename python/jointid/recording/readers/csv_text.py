@@ -1,6 +1,5 @@
 """The text of a .csv or .csv.gz file: decompression and encoding."""
 
-import gzip
 import re
 import zlib
 from pathlib import Path
@@ -66,6 +65,8 @@ def _unzipped(path: Path, content: bytes) -> bytes:
             place=str(path),
             remedy="name it .csv if it is text",
         )
+    import gzip
+
     try:
         return gzip.decompress(content)
     except EOFError:

@@ -1,7 +1,6 @@
 """Reading .npz files: arrays by name, never pickles."""
 
 import io
-import zipfile
 import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -17,11 +16,15 @@ from jointid.recording.readers.reader import Reader
 from jointid.recording.saving import NPZ_MEMBER, saved_attributes
 from jointid.recording.signals import FloatArray, signal_array
 
-# Raised by zipfile, zlib and numpy for damaged, encrypted or absurdly large members.
-_DAMAGED = (
-    *(ValueError, OSError, EOFError, KeyError, RuntimeError, MemoryError, OverflowError),
-    *(zipfile.BadZipFile, zlib.error, NotImplementedError),
-)
+
+def _damages() -> tuple[type[Exception], ...]:
+    """Return what zipfile, zlib and numpy raise for damaged, encrypted or absurdly large members."""
+    import zipfile
+
+    return (
+        *(ValueError, OSError, EOFError, KeyError, RuntimeError, MemoryError, OverflowError),
+        *(zipfile.BadZipFile, zlib.error, NotImplementedError),
+    )
 
 
 class NpzTable:
@@ -40,6 +43,8 @@ class NpzTable:
     other_names: Mapping[str, int] = MappingProxyType({})
 
     def __init__(self, path: Path) -> None:
+        import zipfile
+
         self.source = str(path)
         self.header_place = self.source
         content = io.BytesIO(path.read_bytes())
@@ -51,7 +56,7 @@ class NpzTable:
         content.seek(0)
         try:
             archive = np.load(content, allow_pickle=False)
-        except _DAMAGED as error:
+        except _damages() as error:
             raise InputError(
                 f"the archive is damaged ({reason_of(error)})", place=str(path)
             ) from None
@@ -89,7 +94,7 @@ class NpzTable:
     def _member(self, name: str) -> npt.NDArray[Any]:
         try:
             value = self._archive[name]
-        except _DAMAGED as error:
+        except _damages() as error:
             if "allow_pickle" in str(error):
                 raise InputError(
                     "it holds Python objects (a pickle), which are never read",

@@ -1,6 +1,5 @@
 """Writing a robot's recording: .csv, .csv.gz and .npz, which `load_robot` reads back bit for bit."""
 
-import gzip
 import io
 import json
 import os
@@ -29,6 +28,8 @@ def save_robot(robot: "RobotRecording", path: str | os.PathLike[str]) -> None:
     content = _npz(robot) if ending == ".npz" else _csv(robot)
     if ending == ".csv.gz":
         # No time stamp inside: the same recording gives the same file.
+        import gzip
+
         content = gzip.compress(content, compresslevel=6, mtime=0)
     write_whole(target, content)
 
