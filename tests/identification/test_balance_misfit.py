@@ -44,7 +44,7 @@ def slow_motion(number: int) -> tuple[Problem, jid.Recording]:
         torque=torque,
         sensor=(signals(time - LATE)[3] - 5.0) / 2.0,
     )
-    joint = jid.Joint(inertia=2.5, sensor=True, model="stribeck")
+    joint = jid.Joint(inertia=2.5, sensor=True, model=jid.Model("stribeck"))
     return prepare(run, joint, on_time=True).problem, run
 
 
@@ -61,7 +61,7 @@ def test_reversals_and_the_decay_of_friction_do_not_hide_a_late_reading(number: 
 
 def test_a_torque_that_was_removed_adds_its_blocks_to_the_errors() -> None:
     problem, run = slow_motion(0)
-    joint = jid.Joint(inertia=2.5, sensor=True, model="stribeck")
+    joint = jid.Joint(inertia=2.5, sensor=True, model=jid.Model("stribeck"))
     penalty = problem.penalty(None)
     parameters = jid.identify(run, joint, search="separable", shift={}).parameters
     best = np.array([parameters[name].value for name in penalty.names])

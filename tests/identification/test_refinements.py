@@ -45,6 +45,14 @@ def test_a_late_signal_is_named_and_shifted_back(
     assert "taken away" in estimate.report()
 
 
+@pytest.mark.parametrize("early", [0.0007, 0.0025])
+def test_an_early_torque_may_be_a_gear_that_gives_way(run: jid.Recording, early: float) -> None:
+    estimate = identified(late(run, "torque", -early))
+    assert estimate.delays["torque"].value == pytest.approx(-early, abs=3e-4)
+    (said,) = (f.message for f in estimate.findings if f.message.startswith("the torque is early"))
+    assert "or the gear gives way" in said
+
+
 @pytest.mark.parametrize("model", [each.name for each in _core.models()])
 @pytest.mark.parametrize("signal", ["torque", "sensor", "velocity"])
 @pytest.mark.parametrize("more", ["", ":asymmetric"], ids=["", "asymmetric"])
