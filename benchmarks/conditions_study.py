@@ -237,11 +237,11 @@ def main() -> None:
             measure(store, [c for c in chosen if c.clean == clean], joints, given.seed)
     found = {c.name: outcomes(store, c) for c in chosen}
     chosen = [c for c in chosen if found[c.name]]
-    joints, clean = (
+    joints, cleans = (
         min((len(found[c.name]) for c in chosen if c.clean == kind), default=0)
         for kind in (False, True)
     )
-    lines = [_TEXT.format(joints=joints, clean=clean, one=100.0 / max(clean, 1))]
+    lines = [_TEXT.format(joints=joints, clean=cleans, one=100.0 / max(cleans, 1))]
     for title, clean in (("Clean conditions", True), ("Mismatches and defects", False)):
         lines += [f"\n## {title}\n", HEAD]
         lines += [row(c, found[c.name]) for c in chosen if c.clean == clean]

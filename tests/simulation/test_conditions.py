@@ -10,6 +10,7 @@ BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
 sys.path.insert(0, str(BENCHMARKS))
 import conditions_study as study  # noqa: E402
 from conditions import CONDITIONS, Condition  # noqa: E402
+from store import Store  # noqa: E402
 
 
 def test_the_study_has_46_conditions_and_one_clean_one_of_each_kind() -> None:
@@ -33,11 +34,11 @@ def test_a_clean_condition_and_a_mismatch_are_counted(
     clean = Condition(name="clean", clean=True, duration=4.0)
     wrong = Condition(name="wrong", duration=4.0, plant={"torque_scale": 1.3})
     monkeypatch.setattr(study, "CONDITIONS", (clean, wrong))
-    store = study.Store(tmp_path / "kept.jsonl", {"seed": 5})
+    store = Store(tmp_path / "kept.jsonl", {"seed": 5})
     study.measure(store, (clean, wrong), 2, 5)
     # What is kept is not measured again.
     monkeypatch.setattr(study, "simulate", None)
-    again = study.Store(tmp_path / "kept.jsonl", {"seed": 5})
+    again = Store(tmp_path / "kept.jsonl", {"seed": 5})
     study.measure(again, (clean, wrong), 2, 5)
     found = {each.name: study.outcomes(again, each) for each in (clean, wrong)}
     assert [len(found[name]) for name in ("clean", "wrong")] == [2, 2]
