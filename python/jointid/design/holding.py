@@ -14,7 +14,9 @@ from jointid.simulation.trajectory import Trajectory
 
 _JOINTS = 48
 _CORNERS = 16  # of the prior
-_STEPS = 6  # times that a motion is made smaller
+_STEPS = 8  # times that a motion is made smaller
+_AIM = 0.99  # share of the limit
+_LEAST = 0.8  # of a motion's size, in one step
 _TOGETHER = 16
 
 
@@ -33,11 +35,13 @@ def held_by_all(
     """
     joints = situation.ranges.joints(_JOINTS, seed + 1)
     joints += situation.ranges.corners(_CORNERS, seed + 2)
-    reached = Reached(situation)
-    for step in range(_STEPS):
+    # Corners first: they go farthest, and a motion that is too large for some joints need not be tried with the rest.
+    groups = [(at, joints[at : at + _TOGETHER]) for at in range(0, len(joints), _TOGETHER)][::-1]
+    tried: list[tuple[float, float]] = []
+    size = 1.0
+    while True:
         reached = Reached(situation)
-        for begin in range(0, len(joints), _TOGETHER):
-            values = joints[begin : begin + _TOGETHER]
+        for number, (begin, values) in enumerate(groups):
             try:
                 reached.add(
                     values, _recordings(situation, trajectory, values, seed + begin, threads)
@@ -47,12 +51,34 @@ def held_by_all(
                     f"the loop is not stable{_unstable(situation, trajectory, values)}: {error}"
                 )
                 return trajectory, reached.peaks(trajectory), problem
-        share = max(reached.shares(trajectory).values())
+            share = max(reached.shares(trajectory).values())
+            if share > 1.0 and len(tried) < _STEPS - 1:
+                groups.insert(0, groups.pop(number))
+                break
         if share <= 1.0:
             return trajectory, reached.peaks(trajectory), ""
-        if step < _STEPS - 1:
-            trajectory = _smaller(trajectory, 0.99 / share)
-    return trajectory, reached.peaks(trajectory), exceeded(situation, trajectory, reached)
+        if len(tried) == _STEPS - 1:
+            return trajectory, reached.peaks(trajectory), exceeded(situation, trajectory, reached)
+        tried.append((size, share))
+        smaller = _next_size(tried)
+        trajectory, size = _smaller(trajectory, smaller / size), smaller
+
+
+def _next_size(tried: Sequence[tuple[float, float]]) -> float:
+    """Return the size of the next motion, from the sizes tried and the largest share of a limit in each.
+
+    A position scales with the motion; of a torque friction and gravity stay. So from the second size on the share is
+    extrapolated along the last two, but not to less than four fifths of the size.
+    """
+    size, share = tried[-1]
+    proportional = _AIM / share * size
+    if len(tried) < 2:
+        return proportional
+    larger, before = tried[-2]
+    slope = (before - share) / (larger - size)
+    if slope <= 0.0:
+        return max(proportional, _LEAST * size) * _LEAST
+    return min(proportional, max(size - (share - _AIM) / slope, _LEAST * size))
 
 
 def _recordings(
