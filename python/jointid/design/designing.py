@@ -35,7 +35,7 @@ Callback = Callable[[DesignProgress], object]
 
 _RUNS = 2  # searches, of which the better motion is taken by rehearsing both
 _COARSE = 2  # times the control period, in the search
-_ALIKE = 0.1  # how much errors may differ by that
+_ALIKE = 0.2  # of an error: what the search may take for the same, before the finest judge decides
 _FIRST = 48  # motions drawn at random, from which follows what can be asked of which joint
 _DETERMINED = 0.15  # relative error that one of them must reach
 _TRIED = 0.2  # of the rehearsals, to tell the motions found apart
