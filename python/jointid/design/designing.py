@@ -24,7 +24,7 @@ from jointid.design.known import Known
 from jointid.design.motion_limits import MotionLimits
 from jointid.design.prior import Prior, ranges_of, with_room
 from jointid.design.rehearsal import Rehearsal, rehearse
-from jointid.design.stated import check_gain, check_signs, check_stated
+from jointid.design.stated import check_gain, check_length, check_signs, check_stated
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller, positive
 from jointid.simulation.plant import control_estimates, torque_limit
@@ -135,6 +135,7 @@ def design_excitation(
         raise InputError(
             f"known are {' and '.join(CRITERIA)}", argument="criterion", value=criterion
         )
+    check_length(positive("duration", duration), positive("control_period", control_period))
     joint = _with_model(joint)
     asked = free_parameters(joint, parameters)
     ranges = ranges_of(joint, asked.names, prior)
@@ -150,8 +151,8 @@ def design_excitation(
         limits=held,
         controller=default_controller(nominal, held.torque) if controller is None else controller,
         sensors=assumed_sensors(joint, held.torque) if sensors is None else sensors,
-        duration=positive("duration", duration),
-        control_period=positive("control_period", control_period),
+        duration=float(duration),
+        control_period=float(control_period),
         criterion=criterion,
         known=_matrix(known, asked.names),
     )

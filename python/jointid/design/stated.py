@@ -12,6 +12,8 @@ from jointid.design.prior import Ranges
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import LAWS, Controller
 
+_FEWEST, _MOST = 8, 1_000_000  # control periods of a motion: more of them would fill the memory
+
 
 def check_stated(
     joint: Joint,
@@ -69,6 +71,22 @@ def check_signs(asked: Asked, ranges: Ranges) -> None:
             raise InputError(
                 "it cannot be below 0", argument=name, value=[low, high], place="prior"
             )
+
+
+def check_length(duration: float, control_period: float) -> None:
+    """Check that a motion is long enough for a recording, and short enough to be simulated many times.
+
+    Raises
+    ------
+    InputError
+        Names the duration.
+    """
+    if not _FEWEST <= duration / control_period <= _MOST:
+        raise InputError(
+            f"{_FEWEST} to {_MOST} control periods of {control_period:g} s are expected",
+            argument="duration",
+            value=duration,
+        )
 
 
 def check_gain(joint: Joint, asked: Asked) -> None:
