@@ -90,6 +90,16 @@ def test_the_options_say_law_period_and_sensors(bench: Path, tmp_path: Path) -> 
     assert (design.criterion, design.seed) == ("determinant", 7)
 
 
+def test_a_sensor_that_is_stated_leaves_the_noise_that_is_assumed(bench: Path) -> None:
+    text = bench.read_text(encoding="utf-8")
+    Path("bare.toml").write_text(text[: text.index("[session]")], encoding="utf-8")
+    words = ["design", "bare.toml", *QUICK, *WITHIN, "--output", "motion.toml"]
+    assert main([*words, "--sensor", "encoder_counts=16000"]) == 0
+    sensors = jid.load_design("motion.toml").sensors
+    assert sensors.encoder_counts == 16000.0
+    assert sensors.torque_noise == pytest.approx(0.48, abs=0.001)  # 0.3 % of the torque limit
+
+
 def test_a_motion_that_keeps_no_limit_is_not_written(bench: Path, capsys: Printed) -> None:
     words = ["design", "joint.toml", *QUICK, *WITHIN, "--torque", "75", "--output", "motion.toml"]
     assert main(words) == 2

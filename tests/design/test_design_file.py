@@ -3,6 +3,7 @@
 import json
 import math
 import tomllib
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -168,3 +169,17 @@ def test_the_file_simulates_the_same(path: Path) -> None:
     first = jid.simulate(JOINT, DESIGN.controller, motion(), duration=1.0)
     again = jid.simulate(found.joint, found.controller, found.trajectory, duration=1.0)
     assert (first.position == again.position).all()
+
+
+def test_a_session_does_not_run_the_file_of_a_later_jointid(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    path.write_text(text.replace("schema = 1", "schema = 2", 1), encoding="utf-8")
+    with pytest.raises(jid.InputError, match=r"schema is 2: this jointid reads up to 1; update"):
+        load_motion(path)
+
+
+@pytest.mark.parametrize("read", [load_motion, jid.load_design])
+def test_a_range_the_wrong_way_round_is_named(read: Callable[[Path], object], path: Path) -> None:
+    designed(believed={"coulomb": (30.0, 20.0)}).save(path)
+    with pytest.raises(jid.InputError, match=r"believed\.coulomb: .*must not be above the second"):
+        read(path)

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 import jointid as jid
@@ -54,6 +55,20 @@ def test_the_smaller_of_torque_and_current_counts() -> None:
 def test_limits_that_cannot_be_used_are_named(given: Any, says: str) -> None:
     with pytest.raises(jid.InputError) as refused:
         MotionLimits.of(given, JOINT)
+    assert says in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"position": np.array([-9.0, 9.0])}, "position is [-9.0, 9.0]: it reaches beyond"),
+        ({"velocity": np.float32(9.0)}, "velocity is 9.0: it is beyond the joint's own limit of 4"),
+        ({"velocity": np.int64(9)}, "velocity is 9.0: it is beyond the joint's own limit of 4"),
+    ],
+)
+def test_limits_of_numpy_are_held_within_the_joints_own(changes: Any, says: str) -> None:
+    with pytest.raises(jid.InputError) as refused:
+        MotionLimits.of(STATED | changes, JOINT)
     assert says in str(refused.value)
 
 

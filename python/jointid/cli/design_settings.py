@@ -116,19 +116,22 @@ def controller_for(
 def sensors_for(
     pairs: Sequence[tuple[str, str]], limits: MotionLimits, joint: Joint, bench: Bench | None
 ) -> Sensors | None:
-    """The sensors of the options, and beside them the session's encoder and velocity; None: the default ones."""
+    """The sensors of the options, beside the session's encoder and what else is assumed; None: the default ones."""
     from jointid.design.balance_noise import assumed_sensors
 
     # What a drive's type calls otherwise is not known here, and stays the default.
     counts = getattr(None if bench is None else bench.drive, "counts_per_turn", None)
-    if bench is None or counts is None or limits.torque is None:
-        return sensors_of(pairs) if pairs else None
-    own = assumed_sensors(joint, limits.torque).replace(
-        encoder_counts=float(counts),
-        velocity="counts",
-        velocity_counts=bench.options.velocity_counts,
-        velocity_time=bench.options.velocity_time,
-    )
+    assert limits.torque is not None  # MotionLimits.of sees to it
+    own = assumed_sensors(joint, limits.torque)
+    if bench is not None and counts is not None:
+        own = own.replace(
+            encoder_counts=float(counts),
+            velocity="counts",
+            velocity_counts=bench.options.velocity_counts,
+            velocity_time=bench.options.velocity_time,
+        )
+    elif not pairs:
+        return None
     stated = sensors_of(pairs).asdict()
     return own.replace(**{name: stated[name] for name, _ in pairs})
 

@@ -82,7 +82,7 @@ def _believed(design: argparse.ArgumentParser) -> None:
     )
     design.add_argument(
         "--controller",
-        help="as in simulate; default: the one of [session.controller], or adaptive_robust",
+        help="as in simulate; default: the one of [session.controller], or adaptive_robust without torque feedback",
     )
     design.add_argument(
         "--believe",

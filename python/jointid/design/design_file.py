@@ -19,7 +19,14 @@ from jointid.design.design import CRITERIA, Design
 from jointid.design.expected_error import ExpectedError
 from jointid.design.motion_limits import MotionLimits
 from jointid.joint.joint_file import joint_document, joint_from_document
-from jointid.simulation.motion_file import COMMENTS, motion_of, motion_table
+from jointid.simulation.motion_file import (
+    COMMENTS,
+    SCHEMA,
+    believed_of,
+    check_schema,
+    motion_of,
+    motion_table,
+)
 from jointid.simulation.setting_tables import (
     controller_table,
     plain,
@@ -27,9 +34,6 @@ from jointid.simulation.setting_tables import (
     read_sensors,
     sensors_table,
 )
-
-SCHEMA = 1
-"""Increased when a reader of the earlier format would misread the new one."""
 
 _SIZE, _ERROR = Number(low=0.0), Number(low=0.0, infinite=True)
 _COUNT = Number(low=0, high=2**63 - 1, whole=True)  # as TOML's whole numbers
@@ -174,14 +178,7 @@ def _design(document: Mapping[str, Any], place: Path) -> Design:
         raise InputError(
             "this is a motion without a table [design], which says what to expect of it"
         )
-    schema = document.get("schema")
-    if isinstance(schema, int) and not isinstance(schema, bool) and schema > SCHEMA:
-        raise InputError(
-            f"this jointid reads up to {SCHEMA}",
-            argument="schema",
-            value=schema,
-            remedy="update jointid",
-        )
+    check_schema(document)
     tables = _FILE.read(dict(document), "")
     motion = motion_of({name: tables[name] for name in ("trajectory", "peaks")})
     assert motion.peaks is not None  # the schema asks for it
@@ -207,5 +204,5 @@ def _design(document: Mapping[str, Any], place: Path) -> Design:
         peaks=motion.peaks,
         parameters=expected,
         reference=tables.get("reference", {}),
-        believed={name: (low, high) for name, (low, high) in tables.get("believed", {}).items()},
+        believed=believed_of(tables),
     )

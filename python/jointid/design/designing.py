@@ -15,7 +15,7 @@ from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.design.asked import free_parameters
 from jointid.design.balance_noise import assumed_sensors
-from jointid.design.design import COMPLETE, Design
+from jointid.design.design import COMPLETE, CRITERIA, Design
 from jointid.design.design_search import DesignProgress, DesignSearch
 from jointid.design.expectation import expected_errors, what_limits
 from jointid.design.holding import held_by_all
@@ -24,7 +24,7 @@ from jointid.design.known import Known
 from jointid.design.motion_limits import MotionLimits
 from jointid.design.prior import Prior, ranges_of, with_room
 from jointid.design.rehearsal import Rehearsal, rehearse
-from jointid.design.stated import check_signs, check_stated
+from jointid.design.stated import check_gain, check_length, check_signs, check_stated
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller, positive
 from jointid.simulation.plant import control_estimates, torque_limit
@@ -131,13 +131,17 @@ def design_excitation(
             value=held.torque,
             place="limits",
         )
-    if criterion not in ("worst", "determinant"):
-        raise InputError("known are worst and determinant", argument="criterion", value=criterion)
+    if criterion not in CRITERIA:
+        raise InputError(
+            f"known are {' and '.join(CRITERIA)}", argument="criterion", value=criterion
+        )
+    check_length(positive("duration", duration), positive("control_period", control_period))
     joint = _with_model(joint)
     asked = free_parameters(joint, parameters)
     ranges = ranges_of(joint, asked.names, prior)
     check_signs(asked, ranges)
     joint = with_room(joint, ranges.ranges)
+    check_gain(joint, asked)
     nominal = joint.with_parameters(ranges.nominal)
     assert held.torque is not None
     situation = Situation(
@@ -147,8 +151,8 @@ def design_excitation(
         limits=held,
         controller=default_controller(nominal, held.torque) if controller is None else controller,
         sensors=assumed_sensors(joint, held.torque) if sensors is None else sensors,
-        duration=positive("duration", duration),
-        control_period=positive("control_period", control_period),
+        duration=float(duration),
+        control_period=float(control_period),
         criterion=criterion,
         known=_matrix(known, asked.names),
     )
@@ -297,7 +301,11 @@ class _Designing:
                 callback=observe,
             )
             self._evaluations += found.evaluations
-            if found.penalty >= _UNSTABLE:
+            # A motion far beyond a limit costs as much as one whose loop is not stable.
+            if (
+                found.penalty >= _UNSTABLE
+                and _judged(judge, _trajectory(judge, found.best)) is None
+            ):
                 raise InputError(
                     "along none of the motions tried is the loop stable for all joints of the prior",
                     argument="controller",

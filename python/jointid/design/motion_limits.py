@@ -143,7 +143,8 @@ class MotionLimits:
                 argument=first,
                 place=_OWNER,
             )
-        _within(limits, joint)
+        made = cls(**limits)
+        _within(made, joint)
         if limits.get("sensor_range") is not None and not joint.sensor:
             raise InputError(
                 "the joint has no torque sensor",
@@ -151,7 +152,7 @@ class MotionLimits:
                 value=limits["sensor_range"],
                 place=_OWNER,
             )
-        return cls(**limits)
+        return made
 
     def asdict(self) -> dict[str, Any]:
         """Return the limits that are stated, by name."""
@@ -159,27 +160,23 @@ class MotionLimits:
         return {name: value for name, value in values.items() if value is not None}
 
 
-def _within(limits: Mapping[str, Any], joint: Joint) -> None:
+def _within(limits: MotionLimits, joint: Joint) -> None:
     """Refuse limits beyond the joint's own."""
-    known, window = joint.limits, limits["position"]
-    fastest, velocity = known.velocity, limits["velocity"]
-    if fastest is not None and isinstance(velocity, int | float) and velocity > fastest:
+    fastest, window = joint.limits.velocity, joint.limits.position
+    if fastest is not None and limits.velocity > fastest:
         raise InputError(
             f"it is beyond the joint's own limit of {fastest:g}",
             argument="velocity",
-            value=velocity,
+            value=limits.velocity,
             place=_OWNER,
         )
-    numbers = isinstance(window, list | tuple) and all(isinstance(v, int | float) for v in window)
-    if known.position is not None and numbers and len(window) == 2:
-        low, high = known.position
-        if min(window) < low or max(window) > high:
-            raise InputError(
-                f"it reaches beyond the joint's own window, {low:g} to {high:g}",
-                argument="position",
-                value=list(window),
-                place=_OWNER,
-            )
+    if window is not None and not window[0] <= limits.position[0] < limits.position[1] <= window[1]:
+        raise InputError(
+            f"it reaches beyond the joint's own window, {window[0]:g} to {window[1]:g}",
+            argument="position",
+            value=list(limits.position),
+            place=_OWNER,
+        )
 
 
 def _own(joint: Joint) -> dict[str, Any]:

@@ -12,6 +12,8 @@ from jointid.design.prior import Ranges
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import LAWS, Controller
 
+_FEWEST, _MOST = 8, 1_000_000  # control periods of a motion: more of them would fill the memory
+
 
 def check_stated(
     joint: Joint,
@@ -47,10 +49,10 @@ def check_stated(
             value=sensors.torque_noise,
             remedy="state its encoder, encoder_counts",
         )
-    if isinstance(parameters, str):
-        raise InputError(
-            "a list of names is expected, not one name", argument="parameters", value=parameters
-        )
+    if parameters is not None and (
+        isinstance(parameters, str) or not isinstance(parameters, Sequence)
+    ):
+        raise InputError("a list of names is expected", argument="parameters", value=parameters)
     if callback is not None and not callable(callback):
         raise InputError("a callable is expected", argument="callback", value=callback)
 
@@ -69,3 +71,40 @@ def check_signs(asked: Asked, ranges: Ranges) -> None:
             raise InputError(
                 "it cannot be below 0", argument=name, value=[low, high], place="prior"
             )
+
+
+def check_length(duration: float, control_period: float) -> None:
+    """Check that a motion is long enough for a recording, and short enough to be simulated many times.
+
+    Raises
+    ------
+    InputError
+        Names the duration.
+    """
+    if not _FEWEST <= duration / control_period <= _MOST:
+        raise InputError(
+            f"{_FEWEST} to {_MOST} control periods of {control_period:g} s are expected",
+            argument="duration",
+            value=duration,
+        )
+
+
+def check_gain(joint: Joint, asked: Asked) -> None:
+    """Check that the sensor's gain, as it is believed and bounded, cannot be 0.
+
+    Raises
+    ------
+    InputError
+        Names the range in which the gain lies.
+    """
+    gain = joint.parameters.get("sensor_gain")
+    if gain is None or "sensor_gain" not in asked.names or gain.min is None or gain.max is None:
+        return
+    if gain.min <= 0.0 <= gain.max:
+        raise InputError(
+            "what is believed and the joint's bounds contain 0, a sensor that reads nothing",
+            argument="sensor_gain",
+            value=[gain.min, gain.max],
+            place="prior",
+            remedy="give the joint bounds of the gain's sign",
+        )

@@ -102,8 +102,9 @@ def _remarks(design: Design) -> list[str]:
     worst = design.parameters[design.weakest].worst if design.weakest in design.parameters else None
     weakest = "" if worst is None else f"weakest: {design.weakest}, {_share(worst)} at worst"
     limited = f"; {design.limited_by}" if design.limited_by else ""
+    joints = f"{design.joints} joint{'' if design.joints == 1 else 's'}"
     judged = (
-        f"judged with {design.joints} joints drawn from what is believed, {design.evaluations} motions tried, "
+        f"judged with {joints} drawn from what is believed, {design.evaluations} motions tried, "
         f"criterion {design.criterion}, seed {design.seed}"
     )
     return [

@@ -19,6 +19,9 @@ from jointid.simulation.peaks import Peaks
 from jointid.simulation.setting_tables import read_controller
 from jointid.simulation.trajectory import Trajectory
 
+SCHEMA = 1
+"""Of a design's file; increased when a reader of the earlier format would misread the new one."""
+
 _SINES = "sines"
 _FORMS = (_SINES, "thesis", "sine", "multisine", "sigmoid", "step", "trapezoid")
 _MOST_SINES = 10_000
@@ -105,6 +108,8 @@ def motion_of(document: Mapping[str, Any], source: str = "the motion") -> Motion
     InputError
         Names the key.
     """
+    if "trajectory" in document:  # else it is another file, such as a joint's
+        check_schema(document)
     tables = _FILE.read(dict(document), "")
     peaks = tables.get("peaks")
     trajectory = _trajectory(tables["trajectory"])
@@ -113,6 +118,43 @@ def motion_of(document: Mapping[str, Any], source: str = "the motion") -> Motion
         peaks=None if peaks is None else Peaks(**peaks | {"position": tuple(peaks["position"])}),
         designed_for=_designed_for(tables, trajectory, source) if "design" in tables else None,
     )
+
+
+def check_schema(document: Mapping[str, Any]) -> None:
+    """Refuse the file of a later jointid; one that was written by hand states no schema.
+
+    Raises
+    ------
+    InputError
+        Names the schema.
+    """
+    schema = document.get("schema")
+    if isinstance(schema, int) and not isinstance(schema, bool) and schema > SCHEMA:
+        raise InputError(
+            f"this jointid reads up to {SCHEMA}",
+            argument="schema",
+            value=schema,
+            remedy="update jointid",
+        )
+
+
+def believed_of(tables: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
+    """Return the ranges of a table `[believed]`, if there is one.
+
+    Raises
+    ------
+    InputError
+        A range whose ends are the wrong way round.
+    """
+    found = {name: (low, high) for name, (low, high) in tables.get("believed", {}).items()}
+    for name, (low, high) in found.items():
+        if low > high:
+            raise InputError(
+                "the first must not be above the second",
+                value=[low, high],
+                place=f"believed.{name}",
+            )
+    return found
 
 
 def motion_table(trajectory: Trajectory) -> dict[str, Any]:
@@ -142,7 +184,7 @@ def _designed_for(tables: Mapping[str, Any], trajectory: Trajectory, source: str
         joint=joint_from_document(TableOf(Plain()).read(read["joint"], "joint"), "[joint]"),
         controller=read_controller(read["controller"], "controller"),
         control_period=read["design"]["control_period"],
-        believed={name: (low, high) for name, (low, high) in read.get("believed", {}).items()},
+        believed=believed_of(read),
     )
 
 
