@@ -20,7 +20,7 @@ from jointid.robot.attempt import Asked, Attempt, attempted
 from jointid.robot.findings import FRICTION, doubtful_joints
 from jointid.robot.naming import named_error, named_fact
 from jointid.robot.robot import Robot
-from jointid.robot.small_errors import ZERO, SmallError, refined, small_error
+from jointid.robot.small_errors import ZERO, SmallError, refined, small_errors
 from jointid.robot.wrong_facts import WrongFact, wrong_fact
 
 Array = NDArray[np.float64]
@@ -29,6 +29,7 @@ _ROBOT = "Robot.from_urdf"
 _MOST = 3  # facts that are looked for
 _REFINED = 3  # identifications without a fact, at most
 _BETTER = 0.02  # fall of the joints' logarithmic residuals, summed: less is no correction
+_SIMPLER = 0.3  # of the same: what an error with more values has to gain on a simpler one
 _POOR = 0.15  # of a joint's torque: what is left says that more is wrong
 
 
@@ -79,9 +80,12 @@ def _corrected(
 ) -> _Corrected | None:
     """The fact that explains most, if it is corrected: what the identification without it leaves decides."""
     found = []
-    small = small_error(attempt)
-    if small is not None:
-        found.append(_without_error(small, recordings, robot, asked, attempt))
+    small = [
+        _without_error(each, recordings, robot, asked, attempt) for each in small_errors(attempt)
+    ]
+    if small:
+        left = [_misfit(each.attempt) for each in small]
+        found.append(small[-1] if left[0] - left[-1] > _SIMPLER else small[0])
     suspects = doubtful_joints(attempt.estimate)
     looks = list(attempt.looks.values())
     wrong = wrong_fact(attempt.robot, looks, attempt.duration, suspects) if suspects else None

@@ -50,7 +50,7 @@ def named_fact(wrong: WrongFact, shown: str) -> Finding:
         "swapped_joints": f"the columns of {both} are probably exchanged",
         "swapped_torques": f"the torques of {both} are probably exchanged",
         "wrong_sign": f"{first} probably turns the other way: its position and torque have the wrong sign, or its gear "
-        "ratio",
+        f"ratio{_or_other(wrong)}",
         "wrong_motion_sign": f"{first} is probably recorded with its position of the wrong sign, and its torque of the "
         "right one",
         "wrong_torque_sign": f"the torque of {first} probably has the wrong sign",
@@ -195,6 +195,11 @@ _WORDED = {
 def _or(wrong: WrongFact) -> str:
     nearly = " and ".join(f"{each.coupling or 0.0:g}" for each in wrong.others)
     return f" ({nearly} is nearly as good; the sign rests on little)" if nearly else ""
+
+
+def _or_other(wrong: WrongFact) -> str:
+    names = [name for each in wrong.others for name in each.joints]
+    return f" (or {' or '.join(names)} does: this motion does not tell them apart)" if names else ""
 
 
 def _call(arguments: Mapping[str, object]) -> Action:

@@ -95,13 +95,19 @@ def looked_at(
     if not rows.torque.size:
         return None
     columns = inertia_columns(robot, mode)
+    # A rotor's inertia that no motion separates from the links' would make the columns dependent.
+    kept = [
+        place
+        for place, (joint, name) in enumerate(balance.labels)
+        if name != "rotor_inertia" or joint not in columns.dropped
+    ]
     wanted = rows.torque - columns.known(balance)
-    table = np.column_stack([balance.matrix, columns.columns(balance), wanted])
+    table = np.column_stack([balance.matrix[:, kept], columns.columns(balance), wanted])
     products = Products.of([table[place] for place in balance.places], list(balance.places), rows)
-    least = np.append(balance.least, np.full(len(columns.names), -np.inf))
+    least = np.append(balance.least[kept], np.full(len(columns.names), -np.inf))
     solution = solved(products, least, Known.nothing(products.columns))
     values = solution.values * (products.norms[-1] / products.norms[:-1])
-    held = [label for label, at in zip(balance.labels, solution.at_bound, strict=False) if at]
+    held = [balance.labels[place] for place, at in zip(kept, solution.at_bound, strict=False) if at]
     return Look(balance=balance, residual=wanted - table[:, :-1] @ values, held=tuple(held))
 
 

@@ -73,8 +73,15 @@ class SmallError:
     others: tuple[tuple[str, int | None], ...] = ()
 
 
-def small_error(attempt: Attempt) -> SmallError | None:
-    """Return the small error of a given fact that explains most of what an attempt leaves, or None."""
+_Told = tuple[str, int | None, Share]
+"""Kind, joint, and what it explains."""
+
+
+def small_errors(attempt: Attempt) -> list[SmallError]:
+    """Return the small error of a given fact that explains most of what an attempt leaves, if there is one.
+
+    A simpler one that explains nearly as much stands before it: what each leaves if it is corrected decides.
+    """
     found = [
         (kind, joint, told)
         for kind, joint, told in _shares(attempt)
@@ -82,18 +89,27 @@ def small_error(attempt: Attempt) -> SmallError | None:
         and told.certainty > _CERTAIN
         and told.wald > _WALD
         and _size(attempt, kind, joint, told.values) > _MATTERS[kind]
+        and not (kind in (TORQUE, LINK) and told.values[0] <= -1.0)  # a sign, or no body
     ]
     if not found:
-        return None
-    best = max(told.share for _, _, told in found)
-    near = [each for each in found if each[2].share >= _AS_GOOD * best]
-    kind, joint, told = min(near, key=lambda each: (each[2].values.size, -each[2].share))
+        return []
+    best = max(found, key=lambda each: each[2].share)
+    near = [each for each in found if each[2].share >= _AS_GOOD * best[2].share]
+    simple = min(near, key=lambda each: (each[2].values.size, -each[2].share))
+    simpler = simple[2].values.size < best[2].values.size
+    return [_error(attempt, near, each) for each in ((simple, best) if simpler else (simple,))]
+
+
+def _error(attempt: Attempt, near: list[_Told], of: _Told) -> SmallError:
+    """One of the errors that explain nearly the same, with those that may be it."""
+    kind, joint, told = of
+    best = max(each.share for _, _, each in near)
     others = tuple(
-        (other, of)
-        for other, of, each in near
-        if (other, of) != (kind, joint)
+        (other, place)
+        for other, place, each in near
+        if (other, place) != (kind, joint)
         and each.share >= _MAY_BE * best
-        and each.values.size <= told.values.size
+        and each.values.size == told.values.size
     )
     return SmallError(
         kind=kind,

@@ -49,7 +49,7 @@ class WrongFact:
     order, torque_order : ndarray of int or None
         Columns of the recording, if they should be exchanged: of positions, and of torques.
     others : tuple of WrongFact
-        The same coupling with another factor, which is nearly as good.
+        The same coupling with another factor, or the sign of another joint, which is nearly as good.
     """
 
     kind: str
@@ -106,15 +106,15 @@ def wrong_fact(
         was, other = given[mode], _look(trial.robot, trial.motions, duration, mode)
         if was is None or other is None:
             continue
-        if mode == FREE and other.held > was.held:
-            continue  # friction that takes no power away
         before, after = _relative(was, other)
         plain = given[URDF]
         if mode == FREE and plain is not None:
             # Free inertias may end far off where another fact is wrong; that is no merit of the coupling.
             before = np.minimum(before, _relative(plain, other)[0])
-        fall = np.log(before / after)
-        falls.append((float(fall.sum()), trial, before, after))
+        fall = float(np.log(before / after).sum())
+        if mode == FREE and other.held > was.held and fall < _BETTER:
+            continue  # friction that takes no power away, and a balance that hardly says otherwise
+        falls.append((fall, trial, before, after))
     if not falls:
         return None
     falls.sort(key=lambda each: each[0], reverse=True)
@@ -125,7 +125,13 @@ def wrong_fact(
     others = [
         (fall, each) for fall, each, _, _ in falls[1:] if fall > max(best - _CLEARLY, 0.5 * best)
     ]
-    same = [each for _, each in others if each.joints == trial.joints and each.coupling]
+    # Of an arm that moves in one plane the mirror image fits as well: the other joint turns the other way.
+    same = [
+        each
+        for _, each in others
+        if (each.joints == trial.joints and each.coupling)
+        or each.kind == trial.kind == "wrong_sign"
+    ]
     if len(same) < len(others):
         return None
     told = int(np.argmax(before / after))
@@ -142,6 +148,9 @@ def wrong_fact(
         )
         for each in (trial, *same)
     ]
+    if trial.kind == "wrong_sign":
+        beside = [(each, [other for other in found if other is not each]) for each in found]
+        found = [replace(each, others=tuple(rest)) for each, rest in beside]
     return replace(found[0], others=tuple(found[1:]))
 
 
