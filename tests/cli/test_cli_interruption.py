@@ -54,7 +54,7 @@ def test_the_command_line_ends_in_one_line(tmp_path: Path) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for one program")
 def test_a_program_that_imports_jointid_keeps_its_interruption(tmp_path: Path) -> None:
     program = tmp_path / "mine.py"
-    program.write_text("import jointid\n", encoding="utf-8")
+    program.write_text("import jointid\njointid.identify\n", encoding="utf-8")
     code, said = interrupted(tmp_path / "mine", str(program))
     assert code == 1
     assert "a bad install" in said

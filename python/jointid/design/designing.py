@@ -19,7 +19,7 @@ from jointid.design.design import COMPLETE, CRITERIA, Design
 from jointid.design.design_search import DesignProgress, DesignSearch
 from jointid.design.expectation import expected_errors, what_limits
 from jointid.design.holding import held_by_all
-from jointid.design.judging import Situation, fade_of
+from jointid.design.judging import Situation, alike, fade_of
 from jointid.design.known import Known
 from jointid.design.motion_limits import MotionLimits
 from jointid.design.prior import Prior, ranges_of, with_room
@@ -35,7 +35,6 @@ Callback = Callable[[DesignProgress], object]
 
 _RUNS = 2  # searches, of which the better motion is taken by rehearsing both
 _COARSE = 2  # times the control period, in the search
-_ALIKE = 0.2  # of an error: what the search may take for the same, before the finest judge decides
 _FIRST = 48  # motions drawn at random, from which follows what can be asked of which joint
 _DETERMINED = 0.15  # relative error that one of them must reach
 _TRIED = 0.2  # of the rehearsals, to tell the motions found apart
@@ -267,7 +266,7 @@ class _Designing:
         judge = situation.judge(self._values, coarse=_COARSE, believed=True)
         for column in range(3):
             motion = _trajectory(fine, first[:, column])
-            if not _alike(_judged(fine, motion), _judged(judge, motion)):
+            if not alike(_judged(fine, motion), _judged(judge, motion)):
                 judge = fine
                 break
         judge.leave_out(first, largest=_DETERMINED, threads=threads)
@@ -353,15 +352,6 @@ def _judged(judge: _core.Excitation, motion: Trajectory) -> list[_core.MotionJud
         return list(judge.judge(motion.core))
     except InputError:
         return None
-
-
-def _alike(
-    fine: list[_core.MotionJudgement] | None, coarse: list[_core.MotionJudgement] | None
-) -> bool:
-    if fine is None or coarse is None:
-        return fine is None and coarse is None
-    ratios = [np.abs(np.log(a.errors / b.errors)) for a, b in zip(fine, coarse, strict=True)]
-    return bool(np.max(ratios) < _ALIKE)
 
 
 def _with_model(joint: Joint) -> Joint:

@@ -23,6 +23,7 @@ from jointid.simulation.batch import setup_of
 Array = NDArray[np.float64]
 
 SINES = 8
+_ALIKE = 0.2  # of an error: what the search may take for the same, before the finest judge decides
 _FADE = 0.5  # s, of a motion of 10 s or more
 _WINDOW = 0.01  # s
 _MARGIN = 0.01  # of each limit, that the reference leaves to the joint
@@ -223,3 +224,13 @@ class Situation:
             )
             dry = max(dry, friction + load + abs(made.torque_offset) + abs(made.load))
         return inertia, viscous, dry
+
+
+def alike(
+    fine: list[_core.MotionJudgement] | None, coarse: list[_core.MotionJudgement] | None
+) -> bool:
+    """Whether the judgements of a motion at two control periods hardly differ, for every joint."""
+    if fine is None or coarse is None:
+        return fine is None and coarse is None
+    ratios = [np.abs(np.log(a.errors / b.errors)) for a, b in zip(fine, coarse, strict=True)]
+    return bool(np.max(ratios) < _ALIKE)
