@@ -106,9 +106,8 @@ def test_a_coupling_is_named_though_its_motor_has_no_friction_of_its_own(
     time, q, torque = moved(path, seed)
     coupling, ratio = np.eye(6), 40.0
     coupling[5, 4] = 1.0
-    run = recorded(
-        time, ratio * q @ coupling.T, np.linalg.solve(coupling.T, torque.T).T / ratio, side="motor"
-    )
+    pushed: Array = np.asarray(np.linalg.solve(coupling.T, torque.T).T / ratio, dtype=np.float64)
+    run = recorded(time, ratio * q @ coupling.T, pushed, side="motor")
     found = jid.identify_robot(run, jid.Robot.from_urdf(path, gear_ratios=[ratio] * 6))
     assert warned(found)[:1] == ["wrong_coupling"]
     assert found.findings[0].advice[0].arguments == {"couplings": {"j6": {"j5": 1.0}}}

@@ -17,10 +17,10 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.attempt import Asked, Attempt, attempted
+from jointid.robot.error_candidates import ZERO, SmallError, refined, small_errors
 from jointid.robot.findings import FRICTION, doubtful_joints
 from jointid.robot.naming import named_error, named_fact
 from jointid.robot.robot import Robot
-from jointid.robot.small_errors import ZERO, SmallError, refined, small_errors
 from jointid.robot.wrong_facts import WrongFact, wrong_fact
 
 Array = NDArray[np.float64]

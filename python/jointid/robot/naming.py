@@ -9,9 +9,9 @@ import numpy as np
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent, two_digits
+from jointid.robot.error_candidates import CENTRE, LINK, PAYLOAD, TILT, TORQUE, ZERO, SmallError
 from jointid.robot.inertia import FREE, SCALED
 from jointid.robot.robot import Robot
-from jointid.robot.small_errors import CENTRE, LINK, PAYLOAD, TILT, TORQUE, ZERO, SmallError
 from jointid.robot.wrong_facts import WrongFact
 from jointid.robot.zeros import Zeros
 
