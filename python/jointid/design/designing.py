@@ -38,7 +38,8 @@ _COARSE = 2  # times the control period, in the search
 _FIRST = 48  # motions drawn at random, from which follows what can be asked of which joint
 _DETERMINED = 0.15  # relative error that one of them must reach
 _TRIED = 0.2  # of the rehearsals, to tell the motions found apart
-_CONTRADICTED = 1.25  # times the error that the information tells
+_CONTRADICTED = 1.25  # times the error that the information tells: it does not know something
+_OVERSTATED = 1.5  # times the error counted; less may be the luck of few rehearsals
 _USUAL = math.radians(20.0)  # of the thesis's motion [rad]
 _CYCLE = 6.0  # the same [s]
 _ROBUST = 0.03  # of the torque limit: the robust term of a controller that is chosen here
@@ -251,7 +252,7 @@ class _Designing:
                 own = float(judgement.bias[place])
                 beside = max(bias[name] ** 2 - own**2, 0.0)
                 told = math.sqrt(float(judgement.errors[place]) ** 2 + beside)
-                low, high = counted[name] / _CONTRADICTED, counted[name] * _CONTRADICTED
+                low, high = counted[name] / _CONTRADICTED, counted[name] * _OVERSTATED
                 shares.append(min(max(told, low), high))
         if self._situation.criterion == "worst":
             return float(max(shares))
