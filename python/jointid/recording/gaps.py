@@ -1,9 +1,8 @@
 """Gaps in a recording."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from jointid.base.values import dataclass
 from jointid.recording.signals import FloatArray
 
 _LONG = 3.5  # median sample periods: two lost samples in a row make no gap, three do

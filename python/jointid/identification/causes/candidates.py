@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.values import dataclass
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.loads import load_friction_of_sensor, load_frictions_of_motion
 from jointid.recording.recording import Recording

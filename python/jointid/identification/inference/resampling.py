@@ -8,10 +8,11 @@ the estimate, inside the bounds of the search: exact for all coefficients, to fi
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+from jointid.base.values import dataclass
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]

@@ -8,12 +8,12 @@ reversals is nearly so. The rule is fixed in advance, and knows nothing of the r
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.values import dataclass
 from jointid.problem.problem import Problem
 
 Array = NDArray[np.float64]

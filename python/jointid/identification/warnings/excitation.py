@@ -5,11 +5,11 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.base.values import dataclass
 from jointid.estimate.findings import Measured
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import percent
