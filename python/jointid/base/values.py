@@ -38,6 +38,7 @@ else:
 def _frozen(cls: type[Any], **options: bool) -> type[Any]:
     compares, shows = options.get("eq", True), options.get("repr", True)
     options |= {"init": False, "eq": False, "repr": False, "frozen": False}
+    cls.__doc__ = cls.__doc__ or cls.__name__  # or it is made from the signature, which takes long
     cls = dataclasses.dataclass(**options)(cls)
     said = cls.__dataclass_params__
     said.init, said.eq, said.repr, said.frozen = True, compares, shows, True

@@ -15,6 +15,7 @@ from jointid.recording.derived import DerivedVelocity, derived_velocity
 from jointid.recording.extra import checked_extra, rows_of_extra, unit_of_extra
 from jointid.recording.gaps import Gap, find_gaps
 from jointid.recording.identity import fingerprint_of, line_of, same_fields
+from jointid.recording.order_statistics import median
 from jointid.recording.resampling import resampled
 from jointid.recording.signals import (
     SIGNALS,
@@ -204,7 +205,7 @@ class Recording(Changes):
     @functools.cached_property
     def sample_period(self) -> float:
         """Median time between samples [s]."""
-        return float(np.median(np.diff(self.time)))
+        return median(np.diff(self.time))
 
     @property
     def duration(self) -> float:

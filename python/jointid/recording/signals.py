@@ -120,8 +120,9 @@ def signal_array(name: str, values: npt.ArrayLike, place: str = "") -> FloatArra
     """
     if _frozen(values):
         return values
-    if isinstance(values, np.ma.MaskedArray) and np.ma.getmaskarray(values).any():
-        index = int(np.flatnonzero(np.ma.getmaskarray(values))[0])
+    # Only what has a mask is worth the import of numpy.ma.
+    if hasattr(values, "mask") and isinstance(values, np.ma.MaskedArray) and values.mask.any():
+        index = int(np.flatnonzero(values.mask)[0])
         raise InputError(
             f"masked at index {index}", argument=name, place=place, remedy="leave such samples out"
         )
