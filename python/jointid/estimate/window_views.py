@@ -24,9 +24,9 @@ def fitted_signal(estimate: Estimate) -> tuple[str, str]:
     return "force" if kind == "prismatic" else "torque", torque_unit(kind)
 
 
-def map_velocities(peak: float) -> Array:
-    """Return velocities up to the peak in both directions, dense near rest, where friction is nonlinear."""
-    half = peak * np.linspace(0.0, 1.0, 400) ** 3
+def map_velocities(peak: float, count: int = 400) -> Array:
+    """Return velocities up to the peak, so many in each direction, dense near rest, where friction is nonlinear."""
+    half = peak * np.linspace(0.0, 1.0, count) ** 3
     half[0] = 1e-9 * peak
     return np.concatenate([-half[::-1], half])
 

@@ -17,6 +17,8 @@ from jointid.joint.units import torque_unit, velocity_label
 from jointid.report.drawing.marks import Band, Level, Line, Mark, Panel, Points
 from jointid.report.figure import captioned
 
+_SPEEDS = 150  # of the curve in each direction: at most 5 units of the picture apart
+
 
 def picture_sections(estimate: Estimate) -> list[Html]:
     """The pictures with their headings, which findings link to."""
@@ -38,7 +40,7 @@ def friction_picture(estimate: Estimate) -> Html:
     """The friction map, with what it shows."""
     windows = estimate.windows
     whole = whole_windows(windows)
-    curve = estimate.friction(map_velocities(float(np.abs(windows.velocity).max())))
+    curve = estimate.friction(map_velocities(float(np.abs(windows.velocity).max()), _SPEEDS))
     rest = len(curve.velocity) // 2  # friction takes any value there: two curves
     gap = np.nan
     velocity, torque, lower, upper = (

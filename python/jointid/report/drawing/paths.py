@@ -1,4 +1,4 @@
-"""Path strings of SVG for places in whole tenths of a unit: short, exact, and written by `str` of a list."""
+"""Path strings of SVG for places in whole tenths of a unit: short, exact, and written by one format."""
 
 from __future__ import annotations
 
@@ -31,10 +31,7 @@ def line_path(across: Places, up: Places) -> str:
 
 def points_path(across: Places, up: Places) -> str:
     """Return a path of dots: lines of no length with round ends, which no scaling distorts."""
-    if len(across) == 0:
-        return ""
-    pairs = str(np.column_stack([across, up]).tolist())
-    return f"M{pairs[2:-2].replace('], [', 'h0M').replace(',', '')}h0"
+    return ("M%d %dh0" * len(across)) % tuple(np.column_stack([across, up]).ravel().tolist())
 
 
 def area_path(across: Places, low: Places, high: Places) -> str:
@@ -50,4 +47,4 @@ def bars_path(left: Places, right: Places, top: Places, foot: int) -> str:
 
 
 def _numbers(steps: Places) -> str:
-    return str(steps.ravel().tolist())[1:-1].replace(", ", " ")
+    return ("%d " * steps.size) % tuple(steps.ravel().tolist())
