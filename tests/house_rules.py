@@ -123,9 +123,13 @@ FOLDERS: dict[str, Folder] = {
         packages={"numpy", "matplotlib"},
     ),
     "report": Folder(
-        may_use={"base", "estimate", "joints", "robot", "plot", "identification/warnings"},
-        packages={"numpy", "matplotlib"},
+        may_use={
+            *("base", "joint", "estimate", "joints", "robot", "identification/warnings"),
+            "report/drawing",
+        },
+        packages={"numpy"},
     ),
+    "report/drawing": Folder(may_use={"base"}, packages={"numpy"}),
     "exports": Folder(
         may_use={"base", "joint", "estimate", "simulation", "identification", "problem", "robot"},
         packages={"numpy", "scipy"},

@@ -17,7 +17,7 @@ from matplotlib import pyplot
 from matplotlib.axes import Axes
 
 import jointid as jid
-from jointid.plot.units import parameter_unit
+from jointid.joint.units import parameter_unit
 
 TRUE = thesis_joint().with_parameters(TRUTH)
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from jointid.base.errors import InputError
 from jointid.joint.joint import Joint
+from jointid.joint.units import velocity_label
 from jointid.plot.appearance import FITTED, MEASURED, SECOND, style
 from jointid.plot.friction import friction_curves
-from jointid.plot.units import velocity_label
 from jointid.simulation.peaks import Peaks
 from jointid.simulation.trajectory import FloatArray, Trajectory
 

@@ -10,27 +10,19 @@ from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import FrictionCurve
+from jointid.estimate.window_views import (
+    fitted_signal,
+    map_velocities,
+    whole_windows,
+    window_centres,
+    with_gaps,
+)
+from jointid.joint.units import torque_unit, velocity_label
 from jointid.plot.appearance import FITTED, MEASURED, SECOND, axes_or_new
-from jointid.plot.units import torque_unit, velocity_label
 from jointid.recording.recording import Recording
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-
-def _measured(estimate: Estimate) -> tuple[str, str]:
-    """Return the quantity that the model is fitted to, and its unit."""
-    if estimate.settings["residual"] != "torque":
-        return "sensor reading", "sensor units"
-    kind = estimate.settings["kind"]
-    return "force" if kind == "prismatic" else "torque", torque_unit(kind)
-
-
-def _speeds(peak: float) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """Return velocities up to the peak in both directions, dense near rest, where friction is nonlinear."""
-    half = peak * np.linspace(0.0, 1.0, 400) ** 3
-    half[0] = 1e-9 * peak
-    return np.concatenate([-half[::-1], half])
 
 
 def _draw_curve(axes: Axes, curve: FrictionCurve) -> None:
@@ -77,7 +69,7 @@ def friction_map(recording: Recording | None, estimate: Estimate, axes: Axes | N
     require_kind("estimate", estimate, Estimate)
     axes = axes_or_new(axes)
     windows = estimate.windows if recording is None else estimate.predict(recording).windows
-    whole = windows.duration > 0.5 * float(np.median(windows.duration))
+    whole = whole_windows(windows)
     axes.plot(
         windows.velocity[whole],
         windows.friction[whole],
@@ -88,7 +80,7 @@ def friction_map(recording: Recording | None, estimate: Estimate, axes: Axes | N
         rasterized=True,
     )
     peak = float(np.abs(windows.velocity).max())
-    _draw_curve(axes, estimate.friction(_speeds(peak)))
+    _draw_curve(axes, estimate.friction(map_velocities(peak)))
     kind = estimate.settings["kind"]
     axes.set_xlabel(velocity_label(kind))
     axes.set_ylabel(f"friction [{torque_unit(kind)}]")
@@ -118,8 +110,8 @@ def window_means(estimate: Estimate, axes: Axes | None = None) -> Axes:
     require_kind("estimate", estimate, Estimate)
     axes = axes_or_new(axes)
     windows = estimate.windows
-    signal, unit = _measured(estimate)
-    centre = _centres(estimate)
+    signal, unit = fitted_signal(estimate)
+    centre = window_centres(windows)
     axes.plot(
         centre,
         windows.measured / windows.duration,
@@ -129,7 +121,7 @@ def window_means(estimate: Estimate, axes: Axes | None = None) -> Axes:
         label="measured",
     )
     axes.plot(
-        *_with_gaps(estimate, windows.fitted / windows.duration),
+        *with_gaps(centre, windows.fitted / windows.duration),
         color=FITTED,
         linewidth=1.0,
         label="fitted",
@@ -162,39 +154,18 @@ def residuals(estimate: Estimate, axes: Axes | None = None) -> Axes:
     require_kind("estimate", estimate, Estimate)
     axes = axes_or_new(axes)
     windows = estimate.windows
-    _, unit = _measured(estimate)
+    _, unit = fitted_signal(estimate)
     axes.axhline(0.0, color="black", linewidth=0.6)
     axes.plot(
-        _centres(estimate), windows.residual / windows.duration, ".", color=SECOND, markersize=3
+        window_centres(windows),
+        windows.residual / windows.duration,
+        ".",
+        color=SECOND,
+        markersize=3,
     )
     axes.set_xlabel("time [s]")
     axes.set_ylabel(f"residual [{unit}]")
     return axes
-
-
-def _centres(estimate: Estimate) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """Return the window centres on one time axis, on which recordings follow one another."""
-    windows = estimate.windows
-    centre = 0.5 * (windows.start + windows.stop)
-    begin = 0.0
-    for run in np.unique(windows.recording):
-        same = windows.recording == run
-        first, last = float(windows.start[same].min()), float(windows.stop[same].max())
-        if begin:
-            centre[same] += begin - first
-        begin += last - first if begin else last
-    return np.asarray(centre)
-
-
-def _with_gaps(
-    estimate: Estimate, values: np.ndarray[tuple[int], np.dtype[np.float64]]
-) -> tuple[
-    np.ndarray[tuple[int], np.dtype[np.float64]], np.ndarray[tuple[int], np.dtype[np.float64]]
-]:
-    """Return a line that is interrupted where windows are missing: nothing was measured there."""
-    centre = _centres(estimate)
-    breaks = np.flatnonzero(np.diff(centre) > 2.5 * float(np.median(np.diff(centre)))) + 1
-    return np.insert(centre, breaks, np.nan), np.insert(values, breaks, np.nan)
 
 
 def convergence(estimate: Estimate, axes: Axes | None = None) -> Axes:
@@ -231,7 +202,7 @@ def convergence(estimate: Estimate, axes: Axes | None = None) -> Axes:
     last = "result, with polish" if polished else "result, without polish"
     axes.axhline(estimate.penalty, color=FITTED, linestyle="--", label=last)
     axes.set_xlabel("generation")
-    unit = _measured(estimate)[1]
+    unit = fitted_signal(estimate)[1]
     axes.set_ylabel(f"penalty [({unit}·s)²]")
     axes.legend(loc="best", frameon=False)
     return axes

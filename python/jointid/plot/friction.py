@@ -14,8 +14,8 @@ from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.friction_map import friction_torque
 from jointid.joint.joint import Joint
+from jointid.joint.units import torque_unit, velocity_label
 from jointid.plot.appearance import MEASURED, SECOND, axes_or_new, line_style
-from jointid.plot.units import torque_unit, velocity_label
 from jointid.recording.recording import Recording
 
 if TYPE_CHECKING:

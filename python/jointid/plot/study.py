@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from jointid.base.argument_checks import require_kind
 from jointid.base.error_text import alternatives
 from jointid.base.errors import InputError
+from jointid.joint.units import parameter_unit
 from jointid.plot.appearance import MEASURED, axes_or_new, line_style
-from jointid.plot.units import parameter_unit
 from jointid.study.study_result import Study
 
 if TYPE_CHECKING:
