@@ -57,7 +57,7 @@ def test_something_else_is_refused(wanted: Any, message: str) -> None:
 
 def test_a_recording_is_no_sequence() -> None:
     with pytest.raises(TypeError, match="not iterable"):
-        iter(recording())
+        iter(recording())  # type: ignore[call-overload]
 
 
 @pytest.mark.parametrize(

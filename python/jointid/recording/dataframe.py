@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from jointid.base.frames import data_frame
 from jointid.base.errors import InputError
+from jointid.base.frames import data_frame
 from jointid.recording.extra import PREFIX
 from jointid.recording.saving import attributes_text, saved_attributes
 from jointid.recording.signals import FloatArray, signal_array

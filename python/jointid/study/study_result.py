@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.argument_checks import require_path
-from jointid.base.frames import data_frame
 from jointid.base.errors import InputError
+from jointid.base.frames import data_frame
 from jointid.joint.checks import suggestion
 from jointid.study import study_file, tables
 from jointid.study.row import Row

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jointid.base.frames import data_frame
 from jointid.base.error_text import printable
 from jointid.base.errors import InputError
+from jointid.base.frames import data_frame
 from jointid.study.row import REFUSED, Row
 
 if TYPE_CHECKING:
