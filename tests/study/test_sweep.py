@@ -651,7 +651,7 @@ def test_a_plot_shows_each_cell(study: jid.Study) -> None:
         assert len(heat.texts) == 4
         assert (heat.get_xlabel(), heat.get_ylabel()) == ("ga.population", "ga.generations")
         axes = pyplot.subplots()[1]
-        assert jid.plot.sweep(study, "ga.generations", value="static", axes=axes) is axes
+        assert jid.plot.sweep(study, "ga.generations", value="static", ax=axes) is axes
         assert "N·m" in axes.get_ylabel()
         worst = jid.plot.sweep(study, value="error.worst", statistic="worst")
         errors = [
