@@ -166,7 +166,7 @@ def _windows(joint: RobotJoint) -> tuple[Panel, Panel]:
         across="time [s]",
         up=f"torque [{unit}]",
         marks=(
-            Line(look="measured", label="measured", across=time, up=measured),
+            Points(look="measured", label="measured", across=time, up=measured),
             Line(label="fitted", across=time, up=fitted),
         ),
     )

@@ -13,6 +13,7 @@ from jointid.report.drawing.ticks import Ticks, superscript
 WIDTH = 560  # units of the picture
 # Tenths of a unit. Rooms for texts are for the large text of a narrow screen, see the palette.
 _LETTER = 105
+_NARROW, _BROAD = frozenset("iljtfrI,.:;'!|()[] -"), frozenset("mwMW%@−")
 _LINE = 210
 _RIGHT = 170
 _SWATCH = 250
@@ -53,8 +54,9 @@ def drawn(panels: Sequence[Panel], title: str, description: str = "") -> Html:
     below = 0
     for number, (panel, up, each) in enumerate(zip(panels, ranges, ticks, strict=True)):
         legend, below = _legend(panel, below)
-        top = below + _LINE + 60
-        title_place = element("text", _axis_title(panel.up, each.exponent), x="40", y=str(top - 80))
+        top = below + _LINE + 90
+        named = _axis_title(panel.up, each.exponent)
+        title_place = element("text", named, x="40", y=str(top - 110))
         foot = top + panel.height * UNIT
         upright = Scale(*up, foot, top, panel.logarithmic)
         last = number == len(panels) - 1
@@ -131,7 +133,7 @@ def _legend(panel: Panel, top: int) -> tuple[list[Html | str], int]:
     if len(labelled) == 0:
         return [], top
     for mark in labelled:
-        width = _SWATCH + _LETTER * len(mark.label) + _BETWEEN
+        width = _SWATCH + _width(mark.label) + _BETWEEN
         if x > 40 and x + width - _BETWEEN > WIDTH * UNIT:
             x, y = 40, y + _LINE
         parts += [
@@ -140,6 +142,12 @@ def _legend(panel: Panel, top: int) -> tuple[list[Html | str], int]:
         ]
         x += width
     return parts, y + 60
+
+
+def _width(text: str) -> int:
+    """About how wide a text is in a broad font."""
+    narrow, broad = sum(map(_NARROW.__contains__, text)), sum(map(_BROAD.__contains__, text))
+    return _LETTER * len(text) + (_LETTER * (broad - narrow)) // 2
 
 
 def _summary(
