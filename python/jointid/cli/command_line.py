@@ -31,7 +31,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         130 interrupted by Ctrl-C.
     """
     _show_every_character()
-    # What is imported stays: to look through it for garbage, and once more at the end, takes a tenth of a short command.
+    # What is imported stays: looking through it for garbage takes a tenth of a short command.
     gc.set_threshold(_SELDOM, *gc.get_threshold()[1:])
     atexit.register(gc.freeze)
     grammar = command_parser()
