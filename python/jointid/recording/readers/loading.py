@@ -23,7 +23,7 @@ from jointid.recording.table import Table
 from jointid.recording.wide.choosing import OneJoint, also_joints, one_joint
 from jointid.recording.wide.sides import at_joint, checked_ratio
 
-_SURROGATE = re.compile("[\ud800-\udfff]")
+_SURROGATE = "[\ud800-\udfff]"
 
 
 def load(
@@ -290,7 +290,7 @@ def file_name(file: Path, fields: Mapping[str, Any], name: str | None) -> Any:
     """Return a recording's name: as given, as saved, or the file's without its ending."""
     stem = file.resolve().name if file.is_dir() else file.name[: -len(ending_of(file, endings()))]
     # Bytes of a file name that are not UTF-8 reach Python as surrogates, which no file can hold.
-    stem = _SURROGATE.sub("\ufffd", stem)
+    stem = re.sub(_SURROGATE, "\ufffd", stem)
     return fields.get("name", stem) if name is None else name
 
 
