@@ -76,9 +76,7 @@ def test_it_is_saved_predicted_and_drawn(
     assert found.bootstrap(20).parameters["elbow.viscous_difference"].interval is not None
 
 
-def test_a_urdf_has_no_place_for_it(
-    path: Path, found: jid.RobotEstimate, tmp_path: Path
-) -> None:
+def test_a_urdf_has_no_place_for_it(path: Path, found: jid.RobotEstimate, tmp_path: Path) -> None:
     target = tmp_path / "arm.urdf"
     with pytest.raises(jid.InputError, match="elbow has friction that differs"):
         jid.export(found, target, into=path)

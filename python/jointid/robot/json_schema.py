@@ -12,7 +12,9 @@ _TRIPLE = ListOf(_SIZE, 3, 3)
 
 _JOINT = Record(
     {
-        "model": Text(known=tuple(modelled(n, a) for n in (PLAIN, STRIBECK) for a in (False, True))),
+        "model": Text(
+            known=tuple(modelled(n, a) for n in (PLAIN, STRIBECK) for a in (False, True))
+        ),
         "parameters": TableOf(PARAMETER),
         "residuals": RESIDUALS,
         "windows": OrNull(WINDOWS),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from jointid.base.errors import InputError
-from jointid.joint.model import Model
+from jointid.joint.model import FIELDS, Model
 from jointid.robot.robot import Robot
 
 PLAIN, STRIBECK, AUTO = "coulomb_viscous", "stribeck", "auto"
@@ -26,11 +26,11 @@ def friction_models(model: object, robot: Robot) -> list[str]:
     InputError
         No such joint, or a model that is not known here.
     """
-    if isinstance(model, Mapping) and any(name in robot.names for name in model):
+    if isinstance(model, Mapping) and not (model and set(model) <= set(FIELDS)):
         for name in model:
             if name not in robot.names:
                 raise InputError(
-                    f"the robot has the joints {', '.join(robot.names)}",
+                    f"the robot has no such joint; it has {', '.join(robot.names)}",
                     argument="model",
                     value=name,
                 )
