@@ -106,15 +106,9 @@ def pages(estimate: jid.Estimate) -> list[str]:
     return [report.html_report(estimate), estimate._repr_html_()]
 
 
-@pytest.fixture
-def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Pictures are drawn as PNG, which holds no markup, and take most of the time."""
-    monkeypatch.setattr(report, "_pictures", lambda _: [])
-
-
 @pytest.mark.parametrize("schema", [1, 2, 3])
 @pytest.mark.parametrize("junk", JUNK)
-def test_every_place_of_a_saved_estimate(junk: str, schema: int, no_pictures: None) -> None:
+def test_every_place_of_a_saved_estimate(junk: str, schema: int) -> None:
     accepted = 0
     for path in paths(document(schema)):
         estimate = read(damaged(path, JUNK[junk], schema))
@@ -125,16 +119,14 @@ def test_every_place_of_a_saved_estimate(junk: str, schema: int, no_pictures: No
     assert (accepted == 0) == (junk in ("huge", "nan", "deep", "many digits", "half a letter"))
 
 
-def test_every_key_of_a_saved_estimate(no_pictures: None) -> None:
+def test_every_key_of_a_saved_estimate() -> None:
     for path in paths(document()):
         if path and isinstance(path[-1], str):
             for page in pages(found) if (found := read(renamed(path, SCRIPT))) else ():
                 assert "<script" not in page.lower(), path
 
 
-def test_a_script_reaches_the_page_where_nothing_escapes(
-    no_pictures: None, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_script_reaches_the_page_where_nothing_escapes(monkeypatch: pytest.MonkeyPatch) -> None:
     """What the tests above look for would be found."""
     monkeypatch.setattr(html, "escape", lambda text: text)
     for path in (("joint", "name"), ("settings", "version"), ("findings", 0, "cause")):
