@@ -287,6 +287,24 @@ def moved(broken: jid.Estimate, sound: jid.Estimate, truths: Sequence[dict[str, 
     return False
 
 
+def varied(recording: jid.Recording, estimate: jid.Estimate, sensor: bool) -> bool:
+    """Whether a coefficient that is no constant is off, at its extremes, by a share of it or two errors."""
+    plant = recording.metadata["plant"]
+    halves = {
+        "viscous": 0.5 * abs(plant["viscous_drift"] * plant["viscous"]),
+        "coulomb": 0.5 * abs(plant["coulomb_drift"] * plant["coulomb"]),
+    }
+    if not sensor:  # behind a sensor the link's inertia is no coefficient
+        halves["inertia"] = (
+            0.5 * plant["pose_inertia"] * float(np.ptp(np.cos(2.0 * recording.position)))
+        )
+    return any(
+        p is not None and half > min(HARM * abs(p.value), 2.0 * (p.stderr or np.inf))
+        for name, half in halves.items()
+        if (p := estimate.parameters.get(name)) is not None
+    )
+
+
 @dataclass
 class Row:
     """What was named for one case."""
@@ -344,9 +362,7 @@ def table(
                 as_it_is = identified(case, broken, sensor, {}) if late else estimate
                 truths = [dict(each.truth or {}) for each in (broken, sound)]
                 harmed = moved(as_it_is, identified(case, sound, sensor), truths)
-                plant = broken.metadata["plant"]
-                drift = max(abs(plant[f"{name}_drift"]) for name in ("coulomb", "viscous"))
-                harmed |= 0.5 * drift > HARM
+                harmed |= varied(broken, as_it_is, sensor)
             rows[case.name].add(case.right, harmed, found)
             if verbose:
                 print(case.name, harmed, found, flush=True)
@@ -371,11 +387,11 @@ is measured, and moves no parameter by more than 5 % or two errors is a note (se
 moves: it is no name here.
 
 *Moves a value*: against the same joint with the same noise and nothing broken, a parameter is off by more than 5 % or
-two standard errors; a coefficient that drifts is off by half of its change. *Named*: the right name is among the causes
-of these; `slow_motion`, `presliding` and `stribeck_exponent` count as one. *First*: the right name is the first one.
-*None*: no name. *Without need*: named rightly, though no value moves so far. *Only others*: a wrong name and not the
-right one. *First names* are of all joints. An elastic gear, its backlash, and a varying inertia behind a sensor have no
-name, so that any name is a wrong one.
+two standard errors; so is a coefficient that is no constant (friction that drifts, an inertia that varies) by half of
+its range. *Named*: the right name is among the causes of these; `slow_motion`, `presliding` and `stribeck_exponent`
+count as one. *First*: the right name is the first one. *None*: no name. *Without need*: named rightly, though no
+value moves so far. *Only others*: a wrong name and not the right one. *First names* are of all joints. An elastic
+gear, its backlash, and a varying inertia behind a sensor have no name, so that any name is a wrong one.
 
 A wrong torque constant has a name (`wrong_scale`) only beside a known inertia. Without one nothing in a recording shows
 it: with inertia, frictions, gravity and offset all multiplied by the same factor, the torque balance is the same, so

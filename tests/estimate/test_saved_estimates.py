@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 import jointid as jid
 from jointid.base import html
@@ -106,9 +105,15 @@ def pages(estimate: jid.Estimate) -> list[str]:
     return [report.html_report(estimate), estimate._repr_html_()]
 
 
+@pytest.fixture
+def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pictures have tests of their own below, and take most of the time."""
+    monkeypatch.setattr(report, "picture_sections", lambda *_: [])
+
+
 @pytest.mark.parametrize("schema", [1, 2, 3])
 @pytest.mark.parametrize("junk", JUNK)
-def test_every_place_of_a_saved_estimate(junk: str, schema: int) -> None:
+def test_every_place_of_a_saved_estimate(junk: str, schema: int, no_pictures: None) -> None:
     accepted = 0
     for path in paths(document(schema)):
         estimate = read(damaged(path, JUNK[junk], schema))
@@ -119,14 +124,16 @@ def test_every_place_of_a_saved_estimate(junk: str, schema: int) -> None:
     assert (accepted == 0) == (junk in ("huge", "nan", "deep", "many digits", "half a letter"))
 
 
-def test_every_key_of_a_saved_estimate() -> None:
+def test_every_key_of_a_saved_estimate(no_pictures: None) -> None:
     for path in paths(document()):
         if path and isinstance(path[-1], str):
             for page in pages(found) if (found := read(renamed(path, SCRIPT))) else ():
                 assert "<script" not in page.lower(), path
 
 
-def test_a_script_reaches_the_page_where_nothing_escapes(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_script_reaches_the_page_where_nothing_escapes(
+    no_pictures: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """What the tests above look for would be found."""
     monkeypatch.setattr(html, "escape", lambda text: text)
     for path in (("joint", "name"), ("settings", "version"), ("findings", 0, "cause")):
@@ -137,9 +144,8 @@ def test_a_script_reaches_the_page_where_nothing_escapes(monkeypatch: pytest.Mon
 
 @pytest.mark.filterwarnings("ignore:.*(overflow|invalid value):RuntimeWarning")
 @pytest.mark.parametrize("junk", ["null", "table", "list", "negative", "large", "script"])
-def test_whole_pages_of_what_was_accepted(junk: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_whole_pages_of_what_was_accepted(junk: str) -> None:
     """Every picture is drawn, too, from the places that pictures are drawn from."""
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: figure.draw_without_rendering())
     drawn = ("convergence", "covariance", "settings", "windows")
     most = 12 if junk in ("negative", "large") else 2  # else hardly any number is accepted
     seen: set[tuple[str, ...]] = set()

@@ -91,10 +91,14 @@ def saved_attributes(text: str, place: str) -> dict[str, object]:
     InputError
         The text is not what `save_recording` writes, or a later version wrote it.
     """
+    from jointid.base.schema import read_json
+    from jointid.recording.saved_schema import SAVED
+
     try:
-        attributes = json.loads(text)
-    except (ValueError, RecursionError):
-        raise InputError("the description of the recording is damaged JSON", place=place) from None
+        attributes = read_json(text)
+    except InputError as error:
+        reason = f"the description of the recording is damaged JSON ({error.reason})"
+        raise InputError(reason, place=place) from None
     if not isinstance(attributes, dict):
         raise InputError("the description of the recording is not a JSON object", place=place)
     schema = attributes.get("schema")
@@ -110,4 +114,8 @@ def saved_attributes(text: str, place: str) -> dict[str, object]:
         raise InputError(
             f"{' or '.join(KINDS)} is expected", argument="kind", value=kind, place=place
         )
-    return {key: attributes[key] for key in (*_ATTRIBUTES, "robot") if key in attributes}
+    try:
+        checked = SAVED.read(attributes, "")
+    except InputError as error:
+        raise error.at(place) from None
+    return {key: checked[key] for key in (*_ATTRIBUTES, "robot") if key in checked}
