@@ -140,7 +140,12 @@ def _saved_estimate() -> Example:
 
 
 def _several() -> Example:
-    one = {"status": "identified", "error": None, "side": "joint", "explained_by_others": 0.0}
+    one: dict[str, Any] = {
+        "status": "identified",
+        "error": None,
+        "side": "joint",
+        "explained_by_others": 0.0,
+    }
     one |= {"others": [], "sentences": [], "estimate": {"schema": 3}}
 
     def use(path: Path) -> None:
