@@ -9,11 +9,12 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any, NoReturn, Protocol
 
 from jointid.base.errors import NOT_GIVEN, InputError
+from jointid.base.values import dataclass
 
 LARGEST = 500_000_000  # bytes of a file, characters of a text; an estimate of an hour's recording has 20 million
 DEEPEST = 32  # lists and tables inside each other; an estimate has 5

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import argparse
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
 from jointid.base.errors import NOT_GIVEN, InputError
+from jointid.base.values import dataclass
 from jointid.cli.advice import option_with_value, words_of_action
 from jointid.cli.next_motion import words_of_next_motion
 from jointid.cli.options import FLAGS, OPTIONS, PLACEHOLDERS, option_of

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from jointid import _core
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.comparison.held_out import Fold, folds_by_block, folds_by_recording
 from jointid.comparison.parsimony import counted, judge, refusal
 from jointid.comparison.result import ComparedModel, Comparison

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from jointid.base.values import dataclass
 from jointid.identification.causes.causes import attributed
 from jointid.identification.gain import penalty_as_fitted
 

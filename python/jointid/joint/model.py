@@ -5,12 +5,13 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import KW_ONLY, dataclass, fields, replace
+from dataclasses import KW_ONLY, fields, replace
 from typing import Any, Literal, Self, get_args
 
 from jointid import _core
 from jointid.base.argument_checks import number_in
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.joint.checks import check_choice, check_flag, finite_number, suggestion
 from jointid.joint.own_terms import NO_TERMS, OwnTerms
 

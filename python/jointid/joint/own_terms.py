@@ -5,11 +5,11 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from jointid import _core
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.joint.checks import suggestion
 
 # Kind → the words that begin the names of its parameters; "_of_SIGNAL" follows.

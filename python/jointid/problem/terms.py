@@ -2,11 +2,12 @@
 
 import functools
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.joint.checks import check_choice
 from jointid.joint.joint import Joint
 from jointid.joint.model import Load, Model, ResolvedModel

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
 import numpy.typing as npt
 
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.recording.column_lookup import column_index
 from jointid.recording.columns import check_scale
 from jointid.recording.headers import parsed

@@ -1,9 +1,9 @@
 """Headers: which signal and which unit they name."""
 
 import re
-from dataclasses import dataclass
 from functools import lru_cache
 
+from jointid.base.values import dataclass
 from jointid.recording.header_words import PLAIN, Meaning, meaning_of
 from jointid.recording.signals import dimensions
 from jointid.recording.units import Unit, find_unit, is_mega

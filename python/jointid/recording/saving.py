@@ -33,7 +33,8 @@ def save_recording(recording: "Recording", path: str | os.PathLike[str]) -> None
     write_whole(target, writer(recording))
 
 
-def _attributes(recording: "Recording") -> str:
+def attributes_text(recording: "Recording") -> str:
+    """Return what of a recording is no column, as JSON; `saved_attributes` reads it."""
     attributes = {name: getattr(recording, name) for name in _ATTRIBUTES}
     for name in ("metadata", "truth"):  # JSON knows dict, not read-only views
         attributes[name] = None if attributes[name] is None else dict(attributes[name])
@@ -47,14 +48,14 @@ def _csv(recording: "Recording") -> bytes:
     columns = [getattr(recording, name).tolist() for name in names]
     columns += [values.tolist() for values in recording.extra.values()]
     rows = (",".join(map(repr, row)) for row in zip(*columns, strict=True))
-    lines = [CSV_MARK + _attributes(recording), ",".join(headers), *rows, ""]
+    lines = [CSV_MARK + attributes_text(recording), ",".join(headers), *rows, ""]
     return "\n".join(lines).encode("ascii")
 
 
 def _npz(recording: "Recording") -> bytes:
     arrays = {name: getattr(recording, name) for name in recording.signals}
     arrays |= {PREFIX + name: values for name, values in recording.extra.items()}
-    arrays[NPZ_MEMBER] = np.array(_attributes(recording))
+    arrays[NPZ_MEMBER] = np.array(attributes_text(recording))
     stream = io.BytesIO()
     np.savez_compressed(stream, allow_pickle=False, **arrays)
     return stream.getvalue()

@@ -2,13 +2,13 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from jointid.base.values import dataclass
 from jointid.recording.headers import plain
 from jointid.recording.signals import FloatArray
 from jointid.recording.stamp_units import unit_of_stamps

@@ -2,12 +2,12 @@
 
 import math
 import re
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 
 _BLANKS = str.maketrans("", "", "·⋅*. \u00a0")
 _SPELLINGS = {"°": "deg", "º": "deg", "µ": "u", "μ": "u", "/": "_", "_per_": "_"}

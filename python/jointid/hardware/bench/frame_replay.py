@@ -115,8 +115,8 @@ def replay(
     sensor = _column(cycles, "reading")
     reference = None if session is None else session.reference
     if trajectory is not None:
-        wanted = trajectory.sample(due)
-        reference = target_at(*wanted, capped(shift, period))
+        position, velocity, acceleration = trajectory.sample(due)
+        reference = target_at(position, velocity, acceleration, capped(shift, period))
     fields = dict[str, Any](
         time=due + shift,
         position=_column(cycles, "position"),

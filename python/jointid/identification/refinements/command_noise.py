@@ -8,13 +8,14 @@ that repeats the noise before the reading does proves that the recorded reading 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.base.values import dataclass
 from jointid.identification.refinements.shift_fit import Shift
 from jointid.identification.refinements.stretches import Piece
+from jointid.recording.order_statistics import median
 
 Array = NDArray[np.float64]
 
@@ -115,7 +116,7 @@ def _products(piece: Piece) -> Array:
 
 
 def _size(signal: Array) -> float:
-    return 1.4826 * float(np.median(np.abs(np.diff(signal, 3)[::2])))
+    return 1.4826 * median(np.abs(np.diff(signal, 3)[::2]))
 
 
 def _differences(signal: Array) -> Array:

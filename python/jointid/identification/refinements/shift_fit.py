@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.base.values import dataclass
 from jointid.identification.refinements.smooth_windows import SmoothWindows
+from jointid.recording.order_statistics import median
 
 Array = NDArray[np.float64]
 
@@ -196,7 +197,7 @@ def fit_shift(
             break
         if robust and turn < _ROUNDS - 1:
             size = np.abs(missed)
-            weights = 1.0 / np.maximum(1.0, size / (_CLIPPED * float(np.median(size)) + 1e-300))
+            weights = 1.0 / np.maximum(1.0, size / (_CLIPPED * median(size) + 1e-300))
             projection = _Projection(balance.columns, weights)
     groups = _clusters(balance.windows)
     own = _errors(total[:, None], missed, weights, groups, projection.rank)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 
 from jointid import _core
 from jointid.base.argument_checks import require_path, whole_number
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.joint.checks import check_choice
 
 Callback = Callable[[_core.Generation], bool | None]

@@ -1,8 +1,10 @@
 """The datasets of an HDF5 file that hold numbers, each split into vectors."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
+
+from jointid.base.values import dataclass
 
 _WIDEST = 256  # columns of a matrix: a wider one is not a table of signals
 _MATLAB_NUMBERS = (

@@ -8,12 +8,12 @@ import itertools
 import math
 import zlib
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from jointid.base.values import dataclass
 from jointid.recording.unpacking import Room
 
 Array = npt.NDArray[Any]

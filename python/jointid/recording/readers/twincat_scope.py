@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from io import StringIO
 from types import MappingProxyType
 from typing import Any
@@ -10,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.recording.headers import understood
+from jointid.recording.order_statistics import median
 from jointid.recording.readers.csv_dialect import number_of
 from jointid.recording.signals import FloatArray
 from jointid.recording.stamps import Stamps, looks_exact, stamps_of
@@ -136,7 +137,7 @@ class ScopeTable:
             time, values = self._samples(self._of[self._channels[column - 1]], column)
             if len(time) != len(base) or not np.array_equal(time, base):
                 if not np.isin(base, time).all():
-                    period = f"{np.median(np.diff(time)):g} ms" if len(time) > 1 else "one sample"
+                    period = f"{median(np.diff(time)):g} ms" if len(time) > 1 else "one sample"
                     self.notes.setdefault("interpolated", {})[self.headers[column]] = period
                 values = np.interp(base, time, values) if len(time) else np.full(len(base), np.nan)
             found.append(values)
@@ -144,9 +145,7 @@ class ScopeTable:
 
     def _common(self, every: Mapping[int, FloatArray]) -> FloatArray:
         """Return the instants of the fastest channels at which all have samples."""
-        fastest = min(
-            every.values(), key=lambda t: float(np.median(np.diff(t))) if len(t) > 1 else np.inf
-        )
+        fastest = min(every.values(), key=lambda t: median(np.diff(t)) if len(t) > 1 else np.inf)
         base = fastest
         for time in every.values():
             if len(time) and len(base):
@@ -164,7 +163,7 @@ class ScopeTable:
         time, _ = self._samples(self._of[self._channels[column - 1]])
         if not len(time) or not len(base):
             return
-        period = float(np.median(np.diff(time))) if len(time) > 1 else 0.0
+        period = median(np.diff(time)) if len(time) > 1 else 0.0
         if time[0] - period > base[0] or time[-1] + period < base[-1]:
             raise InputError(
                 f"its samples are from {time[0] / 1e3:.6g} to {time[-1] / 1e3:.6g} s, the others' from "

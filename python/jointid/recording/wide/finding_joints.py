@@ -2,8 +2,9 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from jointid.base.values import dataclass
 from jointid.recording.headers import parsed
 from jointid.recording.units import find_unit
 from jointid.recording.wide.words import (
