@@ -127,6 +127,8 @@ def test_a_ratio_has_a_verdict_for_the_search_and_one_for_the_whole_call(tmp_pat
         "pygmo cmaes | NumPy": 0.06,
         "pycma fmin2 | NumPy": 0.12,
         "pygmo de | compiled": 0.1,
+        "variable projection, SciPy minimize_scalar | NumPy": 0.001,
+        "SciPy differential_evolution, eliminated | NumPy": 0.0005,
         "SciPy least_squares, start within 20 % | NumPy": 0.003,
     }
     store = Store(tmp_path / "runs.jsonl", {})
@@ -143,10 +145,11 @@ def test_a_ratio_has_a_verdict_for_the_search_and_one_for_the_whole_call(tmp_pat
         "SciPy differential evolution": (True, False),
         "CMA-ES": (False, False),
         "genetic algorithms and DE": (True, False),
+        "variable projection": (False, False),
         "SciPy least squares from a good start": (True, False),
     }
     cmaes = next(f for f in floors(store, list(seconds)) if f.claim.group.startswith("CMA"))
     assert cmaes.claim.quickest == "pygmo cmaes, NumPy"
     assert cmaes.allowed == pytest.approx(0.0015)
     assert (cmaes.compression, cmaes.rest) == pytest.approx((1e-3, 4e-3))
-    assert len(floors(store, list(seconds))) == 4
+    assert len(floors(store, list(seconds))) == 5
