@@ -206,7 +206,7 @@ def _write(study: Study, arguments: argparse.Namespace) -> None:
 
         figure = Figure(figsize=(6.4, 4.0), constrained_layout=True)
         y = study.swept[1] if len(study.swept) > 1 else None
-        draw(study, y=y, axes=figure.subplots())
+        draw(study, y=y, ax=figure.subplots())
         figure.savefig(arguments.plot, dpi=160)
     summary = study.summary()
     print(json.dumps(summary.asdict(), indent=1, ensure_ascii=False) if arguments.json else summary)

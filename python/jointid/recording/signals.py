@@ -1,7 +1,7 @@
 """The signals of a recording: their names, dimensions and units, and checks of their values."""
 
 from collections.abc import Callable, Collection, Mapping
-from typing import TypeGuard
+from typing import Literal, TypeGuard, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +15,9 @@ SIGNALS = (
     *("time", "position", "velocity", "torque", "sensor", "reference", "link_position"),
     *("temperature", "motor_torque", "current", "late"),
 )
-KINDS = ("revolute", "prismatic")
+Kind = Literal["revolute", "prismatic"]
+TorqueHold = Literal["zoh", "linear"]
+KINDS: tuple[str, ...] = get_args(Kind)
 SHORTEST = 8  # samples: fewer give no window with a residual
 
 # For a revolute and for a prismatic joint; the first dimension is the one stored.

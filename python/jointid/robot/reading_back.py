@@ -132,7 +132,7 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield from _of_robot(d["robot"])
     names = [each["name"] for each in d["robot"]["joints"]]
     if list(d["joints"]) != names:
-        yield "joints", f"the robot has {', '.join(names)}, in this order"
+        yield "joints", f"the robot has {' '.join(', '.join(names).split())}, in this order"
     for name, each in d["joints"].items():
         yield from _of_joint(name, each, len(d["settings"]["recordings"]))
     if len(d["inertial"]) != len(names):

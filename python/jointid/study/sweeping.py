@@ -19,6 +19,7 @@ from jointid.joint.model import Model
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
 from jointid.simulation.scenario import Scenario
+from jointid.study import study_file
 from jointid.study.execution import finished_rows
 from jointid.study.header import header_of_work
 from jointid.study.planning import work_of
@@ -210,6 +211,8 @@ def sweep(
     except BrokenExecutor as error:
         raise StudyBrokenError(study_of(header, rows, time.perf_counter() - began)) from error
     except KeyboardInterrupt as interrupt:
+        if output is not None:  # it may hold rows that were written as Ctrl-C came
+            rows = study_file.read(output)[1]
         study = study_of(header, rows, time.perf_counter() - began)
         raise StudyInterruptedError(study) from interrupt
     if rows and all(row.status == REFUSED for row in rows):
