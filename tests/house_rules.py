@@ -125,7 +125,7 @@ FOLDERS: dict[str, Folder] = {
     "report": Folder(
         may_use={
             *("base", "joint", "estimate", "joints", "robot", "identification/warnings"),
-            "report/drawing",
+            *("report/drawing", "recording", "commissioning"),
         },
         packages={"numpy"},
     ),

@@ -75,6 +75,12 @@ def reading_arguments(command: argparse.ArgumentParser) -> None:
         help="group of an HDF5 or MATLAB 7.3 file that is the recording (default: the only one)",
     )
     command.add_argument(
+        "--unpacked",
+        type=whole,
+        metavar="BYTES",
+        help="what a compressed file may hold (default: 64 MB or 50 times its size)",
+    )
+    command.add_argument(
         "--drop-copies",
         action="store_true",
         help="leave out rows that repeat the one before, as a logger makes them that is faster than the bus",
@@ -253,6 +259,7 @@ def how_to_read(arguments: argparse.Namespace, models: Sequence[Model] = ()) -> 
         "where": where or None,
         "topic": arguments.topic,
         "group": arguments.group,
+        "unpacked": arguments.unpacked,
     }
 
 

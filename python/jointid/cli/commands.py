@@ -236,7 +236,12 @@ def _unrecognised(arguments: argparse.Namespace) -> str:
     from jointid.recording.headers import understood
     from jointid.recording.readers.loading import table_of
 
-    table = table_of(arguments.recording, topic=arguments.topic, group=arguments.group)
+    table = table_of(
+        arguments.recording,
+        topic=arguments.topic,
+        group=arguments.group,
+        unpacked=arguments.unpacked,
+    )
     if table.saved is not None:
         return ""
     named = {header for _, header in (*arguments.column, *arguments.extra)}

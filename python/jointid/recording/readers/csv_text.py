@@ -5,7 +5,9 @@ import zlib
 from pathlib import Path
 
 from jointid import _core
+from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
+from jointid.recording.unpacking import Room
 
 _GZIP = b"\x1f\x8b"
 _BOM = b"\xef\xbb\xbf"
@@ -65,13 +67,12 @@ def _unzipped(path: Path, content: bytes) -> bytes:
             place=str(path),
             remedy="name it .csv if it is text",
         )
-    import gzip
-
     try:
-        return gzip.decompress(content)
+        return Room(path, len(content)).gunzip(content)
     except EOFError:
         raise InputError(
             "the compressed file is truncated", place=str(path), remedy="copy or record it again"
         ) from None
-    except (OSError, zlib.error) as error:
-        raise InputError(f"the compressed file is damaged ({error})", place=str(path)) from None
+    except zlib.error as error:
+        reason = "CRC check failed" if "data check" in str(error) else reason_of(error)
+        raise InputError(f"the compressed file is damaged ({reason})", place=str(path)) from None
