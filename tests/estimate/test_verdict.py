@@ -156,3 +156,24 @@ def test_the_page_begins_with_it() -> None:
     assert '<p class="verdict usable-with-care"><b>Usable with care.</b></p>' in page
     assert "<b>compensation: usable with care</b>: static (above Coulomb)" in page
     assert "<li>reason 2</li><li>and 2 more, below</li>" in page
+
+
+def test_text_and_numbers_have_it() -> None:
+    lines = estimate().report().splitlines()
+    assert lines[:3] == [f"jointid estimate — {estimate().joint.name}", "", "verdict: usable"]
+    moved = Finding(code="inertia_varies", cause="it varies", parameters=("static",))
+    found = with_findings(moved)
+    assert found.report().splitlines()[2:6] == [
+        "verdict: usable with care",
+        "  compensation: usable with care (static)",
+        "  simulation: usable with care (static)",
+        "  monitoring: usable",
+    ]
+    document = json.loads(found.to_json())["verdict"]
+    assert document == found.verdict.document()
+    assert document["uses"]["compensation"] == {
+        "level": "usable with care",
+        "parameters": ["static"],
+        "codes": ["inertia_varies"],
+    }
+    assert jid.Estimate.from_json(found.to_json()).verdict == found.verdict

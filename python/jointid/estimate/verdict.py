@@ -70,6 +70,13 @@ class Verdict:
             return str(next(iter(self.uses.values())))
         return "; ".join(f"for {purpose}: {use}" for purpose, use in self.uses.items())
 
+    def lines(self) -> list[str]:
+        """The verdict as text: one line, and one for each purpose where they differ."""
+        if len({(use.level, use.parameters) for use in self.uses.values()}) == 1:
+            return [f"verdict: {self}"]
+        uses = [f"  {purpose}: {use}" for purpose, use in self.uses.items()]
+        return [f"verdict: {self.level}", *uses]
+
     def document(self) -> dict[str, Any]:
         """The verdict, of JSON's types."""
         return {
