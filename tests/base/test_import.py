@@ -162,6 +162,15 @@ def test_a_report_brings_only_numpy(recording: Path, tmp_path: Path) -> None:
     assert not modules & {"numpy.random", "numpy.fft", "numpy.testing", "numpy.polynomial"}
 
 
+def test_a_session_with_its_report_brings_no_plotting(tmp_path: Path) -> None:
+    bench = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
+    runs = tmp_path / "runs"
+    session = command("run", str(bench), "--emulate", "--cycles", "0", "--output", str(runs))
+    modules = loaded(session)
+    assert not roots(modules) & {"matplotlib", "scipy", "pandas"}
+    assert (runs / "report.html").read_text(encoding="utf-8").count("<svg ") == 1
+
+
 def test_identifying_a_file_brings_only_numpy(recording: Path) -> None:
     modules = loaded(command("identify", str(recording)))
     assert roots(modules) == {"jointid", "numpy"}

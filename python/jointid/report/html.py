@@ -32,8 +32,12 @@ def html_report(estimate: Estimate, action: Callable[[Action], str] = str) -> st
         Words the advice of a finding. Default: as at a Python prompt.
     """
     title = f"{estimate.joint.name or 'joint'}: friction identified by jointid"
-    body = [
-        element("h1", title),
+    return page(title, STYLE, element("h1", title), *sections(estimate, action), footer(estimate))
+
+
+def sections(estimate: Estimate, action: Callable[[Action], str] = str) -> list[Html]:
+    """All that is told of an estimate, under its headings."""
+    return [
         element("h2", "Parameters"),
         html_table(estimate),
         element("h2", "Warnings"),
@@ -53,9 +57,7 @@ def html_report(estimate: Estimate, action: Callable[[Action], str] = str) -> st
         html_correlation(estimate),
         element("h2", "Fit and search"),
         html_quality(estimate),
-        _footer(estimate),
     ]
-    return page(title, STYLE, *body)
 
 
 def shown_by(estimate: Estimate) -> dict[str, str]:
@@ -95,7 +97,8 @@ def save_report(
     return target
 
 
-def _footer(estimate: Estimate) -> Html:
+def footer(estimate: Estimate) -> Html:
+    """What an estimate was made by and of."""
     settings = estimate.settings
     runs = "; ".join(
         f"{run['name'] or 'recording'} ({run['fingerprint']})" for run in settings["recordings"]
