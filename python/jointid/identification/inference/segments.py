@@ -88,8 +88,10 @@ def motion_segments(motion: Motion) -> Segments:
     """Return the segments of a motion: between reversals, merged or divided to a usual length."""
     length = motion.segment_length
     cuts = [0]
-    for number in np.unique(motion.recording):
+    for number in range(int(motion.recording[-1]) + 1):
         first, last = np.searchsorted(motion.recording, (number, number + 1))
+        if first == last:  # a recording without a window
+            continue
         mine = slice(first, last)
         ends = _cut(motion.start[mine], motion.stop[mine], motion.travel[mine], length)
         cuts += [int(first) + each for each in ends]
