@@ -1,7 +1,7 @@
 """Instructions of warm calls, counted by callgrind: what does not depend on what else the machine does. Markdown.
 
-A program with some calls, less one with fewer: imports and the first call drop out. Needs valgrind on a path; it emulates
-AVX2. On one thread and with one thread of BLAS, since threads that wait count, too.
+A program with some calls, less one with fewer: imports and the first call drop out. Needs valgrind, which emulates
+AVX2. With one thread of BLAS, since threads that wait count, too.
 """
 
 import argparse

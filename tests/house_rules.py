@@ -58,7 +58,7 @@ _FOUND = {*_DATA, "problem", "estimate"}
 _SOUGHT = {*_FOUND, "identification", "identification/search"}
 
 FOLDERS: dict[str, Folder] = {
-    "base": Folder(may_use=set()),
+    "base": Folder(may_use=set(), packages={"pandas"}),
     "recording": Folder(may_use={"base"}, packages={"numpy", "pandas"}),
     "recording/messages": Folder(
         may_use={"base", "recording"}, packages={"numpy", "mcap", "rosbags", "lz4", "zstandard"}
@@ -73,7 +73,7 @@ FOLDERS: dict[str, Folder] = {
     ),
     "joint": Folder(may_use={"base", "recording"}, packages={"numpy", "tomlkit"}),
     "problem": Folder(may_use=_DATA, packages={"numpy"}),
-    "estimate": Folder(may_use={*_DATA, "problem"}, packages={"numpy"}),
+    "estimate": Folder(may_use={*_DATA, "problem"}, packages={"numpy", "pandas"}),
     "identification": Folder(
         may_use={
             *_SOUGHT,
@@ -116,16 +116,20 @@ FOLDERS: dict[str, Folder] = {
             *("base", "recording", "recording/wide", "joint", "problem", "estimate", "joints"),
             *("identification/inference", "identification/search"),
         },
-        packages={"numpy", "scipy", "pinocchio"},
+        packages={"numpy", "pinocchio"},
     ),
     "plot": Folder(
         may_use={*_DATA, "simulation", "estimate", "study"},
         packages={"numpy", "matplotlib"},
     ),
     "report": Folder(
-        may_use={"base", "estimate", "joints", "robot", "plot", "identification/warnings"},
-        packages={"numpy", "matplotlib"},
+        may_use={
+            *("base", "joint", "estimate", "joints", "robot", "identification/warnings"),
+            *("report/drawing", "recording", "commissioning"),
+        },
+        packages={"numpy"},
     ),
+    "report/drawing": Folder(may_use={"base"}, packages={"numpy"}),
     "exports": Folder(
         may_use={"base", "joint", "estimate", "simulation", "identification", "problem", "robot"},
         packages={"numpy", "scipy"},

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import jointid as jid
 from jointid import _core
+from jointid.identification.search.search import Method
 from peers.contest import WINDOWS, Contest, Objective
 from peers.peer import Peer, Solve
 from peers.starts import near_optimum
@@ -12,7 +13,7 @@ POLISH = "jointid polish, start within 20 %"
 POPULATION, GENERATIONS = 200, 1500  # of the thesis presets
 
 
-def whole_identify(method: str, windows: int | None) -> Solve:
+def whole_identify(method: Method, windows: int | None) -> Solve:
     """The call a user makes: checks, penalty, search, polish, standard errors, warnings."""
 
     def solve(objective: Objective, seed: int) -> None:

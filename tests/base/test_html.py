@@ -14,6 +14,13 @@ def test_texts_and_attributes_are_escaped() -> None:
     assert "<i>" not in whole
 
 
+def test_characters_that_no_document_holds_are_replaced() -> None:
+    """A page is written as UTF-8 and read by strict parsers, whatever a file's name holds."""
+    made = str(element("p", "a\x00b\udce9c\ufffe\n\td é", class_="\x1b[31m"))
+    assert made == '<p class="\ufffd[31m">a\ufffdb\ufffdc\ufffd\n\td é</p>'
+    assert made.encode()
+
+
 def test_markup_in_a_text_is_no_markup() -> None:
     class Text(str):
         """A text that claims to be markup."""

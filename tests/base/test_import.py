@@ -142,14 +142,37 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_identifying_a_file_brings_only_numpy(recording: Path) -> None:
-    script = (
-        "import runpy\n"
-        f"sys.argv = ['jointid', 'identify', {str(recording)!r}, '--quiet']\n"
+def command(*arguments: str) -> str:
+    """A script that is one call of the command line."""
+    return (
+        f"import runpy\nsys.argv = ['jointid', *{arguments!r}, '--quiet']\n"
         "try: runpy.run_module('jointid', run_name='__main__')\n"
         "except SystemExit as end: assert not end.code"
     )
-    modules = loaded(script)
+
+
+def test_a_report_brings_only_numpy(recording: Path, tmp_path: Path) -> None:
+    """Pictures too: they are drawn without a plotting library."""
+    page = tmp_path / "report.html"
+    modules = loaded(command("identify", str(recording), "--report", str(page)))
+    assert roots(modules) == {"jointid", "numpy"}
+    assert page.read_text(encoding="utf-8").count("<svg ") > 1
+    rooms = ("jointid.plot", "jointid.study", "jointid.simulation", "jointid.robot")
+    assert not [name for name in modules if name.startswith(rooms)]
+    assert not modules & {"numpy.random", "numpy.fft", "numpy.testing", "numpy.polynomial"}
+
+
+def test_a_session_with_its_report_brings_no_plotting(tmp_path: Path) -> None:
+    bench = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
+    runs = tmp_path / "runs"
+    session = command("run", str(bench), "--emulate", "--cycles", "0", "--output", str(runs))
+    modules = loaded(session)
+    assert not roots(modules) & {"matplotlib", "scipy", "pandas"}
+    assert (runs / "report.html").read_text(encoding="utf-8").count("<svg ") == 1
+
+
+def test_identifying_a_file_brings_only_numpy(recording: Path) -> None:
+    modules = loaded(command("identify", str(recording)))
     assert roots(modules) == {"jointid", "numpy"}
     others = ("cli.study", "design", "hardware", "online", "plot", "report", "robot", "study")
     rooms = tuple(f"jointid.{room}" for room in (*others, "exports", "identification.self_test"))

@@ -1,6 +1,7 @@
 """The compressed penalty against the direct sum, as `identify` uses them."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ CANDIDATES = 10_000
 
 @dataclass(frozen=True)
 class Case:
-    model: str
+    model: Any
     residual: str
     asymmetric: bool = False
     ripple: tuple[float, ...] = ()

@@ -1,6 +1,7 @@
 """Plots show the numbers: curves, units, legends; input that cannot be drawn raises InputError."""
 
 import dataclasses
+import functools
 import inspect
 import math
 import re
@@ -13,11 +14,12 @@ import pytest
 
 matplotlib.use("Agg")
 from closed_loop import TRUTH, thesis_joint, well_excited, wrong_controller
+from cycler import cycler
 from matplotlib import pyplot
 from matplotlib.axes import Axes
 
 import jointid as jid
-from jointid.plot.units import parameter_unit
+from jointid.joint.units import parameter_unit
 
 TRUE = thesis_joint().with_parameters(TRUTH)
 
@@ -205,6 +207,9 @@ def test_docstrings_are_complete(name: str) -> None:
     text = inspect.getdoc(function) or ""
     signature = inspect.signature(function)
     for parameter in signature.parameters:
+        if parameter == "style":
+            assert "\n**style\n" in text
+            continue
         assert re.search(rf"^(\w+, )*{parameter}(, \w+)* : ", text, re.MULTILINE), parameter
     if "axes" in signature.parameters:
         assert "\nReturns\n" in text
@@ -216,3 +221,64 @@ def test_parameters_have_the_units_of_the_terms() -> None:
     assert parameter_unit("stribeck") == "s²/rad²"
     assert parameter_unit("viscous", "prismatic") == "N·s/m"
     assert parameter_unit("penalty") == ""
+
+
+def _drawn(name: str, ax: Any, **style: Any) -> Any:
+    """Call a plot function with what it needs."""
+    estimate, run = _made()
+    drawn: dict[str, Callable[..., Any]] = {
+        "adaptation": lambda **k: jid.plot.adaptation(jid.GaOptions(), **k),
+        "convergence": lambda **k: jid.plot.convergence(estimate, **k),
+        "friction_curves": lambda **k: jid.plot.friction_curves({"found": estimate}, **k),
+        "friction_map": lambda **k: jid.plot.friction_map(run, estimate, **k),
+        "residuals": lambda **k: jid.plot.residuals(estimate, **k),
+        "sensitivity": lambda **k: jid.plot.sensitivity(TRUE, "viscous", **k),
+        "signal": lambda **k: jid.plot.signal(run, "torque", **k),
+        "torque_over_velocity": lambda **k: jid.plot.torque_over_velocity(run, **k),
+        "tracking_error": lambda **k: jid.plot.tracking_error(run, **k),
+        "trajectory": lambda **k: jid.plot.trajectory(jid.Trajectory.thesis(), **k),
+        "window_means": lambda **k: jid.plot.window_means(estimate, **k),
+    }
+    return drawn[name](ax=ax, **style)
+
+
+@functools.cache
+def _made() -> tuple[jid.Estimate, jid.SimulatedRecording]:
+    run = jid.simulate(TRUE, wrong_controller(), well_excited(3.0))
+    return jid.identify(
+        run, thesis_joint(), search=jid.Search(ga=jid.GaOptions(generations=3))
+    ), run
+
+
+_CURVES = sorted(set(jid.plot.__all__) - {"style", "line_style", "sweep", "designed_motion"})
+
+
+@pytest.mark.parametrize("name", _CURVES)
+def test_keywords_of_curves_are_passed_on_and_axes_are_drawn_into(name: str) -> None:
+    ax = pyplot.subplots()[1]
+    assert _drawn(name, ax, color="#123456", lw=3.25) is ax
+    assert any(line.get_color() == "#123456" and line.get_linewidth() == 3.25 for line in ax.lines)
+
+
+@pytest.mark.parametrize("name", _CURVES)
+def test_something_that_is_no_axes_is_refused(name: str) -> None:
+    with pytest.raises(jid.InputError, match="axes are expected"):
+        _drawn(name, pyplot.figure())
+    with pytest.raises(jid.InputError, match="given as `ax`"):
+        _drawn(name, None, axes=pyplot.subplots()[1])
+
+
+def test_settings_that_the_user_has_chosen_stay() -> None:
+    chosen: Any = {
+        "lines.linewidth": 4.0,
+        "font.size": 17.0,
+        "axes.prop_cycle": cycler(color=["#aa0000", "#00aa00"]),
+    }
+    with matplotlib.rc_context(chosen):
+        axes = jid.plot.friction_curves({"a": TRUE, "b": TRUE})
+        assert [line.get_color() for line in axes.lines] == ["#aa0000", "#00aa00"]
+        assert {line.get_linewidth() for line in axes.lines} == {4.0}
+        assert axes.xaxis.label.get_fontsize() == 17.0
+    plain = jid.plot.friction_curves({"a": TRUE})
+    assert plain.xaxis.label.get_fontsize() == 9.0
+    assert plain.lines[0].get_linewidth() == 1.2

@@ -189,7 +189,7 @@ BAD: list[Bad] = [
         {},
         "line 1: kind is 'x': revolute or prismatic is",
     ),
-    ("a.csv", marked('{"schema": 1, "name": 3}'), {}, "name is 3: a string is expected"),
+    ("a.csv", marked('{"schema": 1, "name": 3}'), {}, "line 1: name: this is 3: text is expected"),
     (
         *("a.csv", marked('{"schema": 1, "kind": "revolute"}'), {"kind": "prismatic"}),
         "kind is 'prismatic': the recording was saved as revolute; leave it out",

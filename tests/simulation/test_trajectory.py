@@ -3,12 +3,14 @@
 import math
 import pickle
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
 import jointid as jid
+from jointid.base.errors import InputError
 
 Trajectory = jid.Trajectory
 TIMES = np.arange(0.0, 4.0, 1e-4)
@@ -159,3 +161,25 @@ def test_what_is_no_motion_is_refused(make: Callable[[], object], complaint: str
     with pytest.raises(jid.InputError, match=r"^Trajectory[^\n]*$") as refusal:
         make()
     assert complaint in str(refusal.value)
+
+
+def test_one_time_gives_numbers_and_several_give_arrays() -> None:
+    motion = Trajectory.sine(0.5, 0.25, duration=8.0)
+    one = motion.sample(1.0)
+    many = motion.sample([1.0, 2.0])
+    assert all(isinstance(value, float) for value in one)
+    assert one == tuple(values[0] for values in many)
+
+
+@pytest.mark.parametrize("time", ["a", [[1.0]], math.nan, None, [1.0, math.inf]])
+def test_times_that_are_none_are_refused(time: Any) -> None:
+    with pytest.raises(InputError, match=r"times \[s\] are expected"):
+        Trajectory.sine(0.5, 0.25, duration=8.0).sample(time)
+
+
+def test_a_trajectory_of_many_samples_shows_one_short_line() -> None:
+    time = np.linspace(0.0, 2.0, 500)
+    motion = Trajectory.from_samples(time, np.sin(time))
+    assert len(repr(motion)) < 120
+    assert "2 s" in repr(motion)
+    assert "rad/s" in motion._repr_html_()

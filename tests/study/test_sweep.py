@@ -22,6 +22,7 @@ import jointid as jid
 from jointid import _core
 from jointid.cli.demo import data_folder
 from jointid.study.row import Row
+from jointid.study.study_file import StudyFile
 from jointid.study.summary import Summary
 
 GRID = {"ga.population": [8, 12], "ga.generations": [5, 15]}
@@ -101,7 +102,7 @@ def test_a_row_is_what_identify_gives_with_its_seed(
 
 @pytest.mark.parametrize("method", ["random", "separable"])
 def test_other_methods_are_those_of_identify(
-    recording: jid.Recording, joint: jid.Joint, method: str
+    recording: jid.Recording, joint: jid.Joint, method: Any
 ) -> None:
     options = jid.GaOptions(population=20, generations=10)
     found = jid.sweep(
@@ -651,7 +652,7 @@ def test_a_plot_shows_each_cell(study: jid.Study) -> None:
         assert len(heat.texts) == 4
         assert (heat.get_xlabel(), heat.get_ylabel()) == ("ga.population", "ga.generations")
         axes = pyplot.subplots()[1]
-        assert jid.plot.sweep(study, "ga.generations", value="static", axes=axes) is axes
+        assert jid.plot.sweep(study, "ga.generations", value="static", ax=axes) is axes
         assert "N·m" in axes.get_ylabel()
         worst = jid.plot.sweep(study, value="error.worst", statistic="worst")
         errors = [
@@ -710,3 +711,20 @@ def test_a_summary_has_no_control_characters(recording: jid.Recording, joint: ji
     )
     assert "\x1b" not in str(found)
     assert "a\ufffd[2J" in str(found)
+
+
+def test_an_interrupted_study_knows_the_rows_that_were_written_as_it_was_stopped(
+    recording: jid.Recording, joint: jid.Joint, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "study.jsonl"
+    append = StudyFile.append
+
+    def stopped(file: StudyFile, rows: Any) -> None:
+        append(file, rows)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(StudyFile, "append", stopped)
+    with pytest.raises(jid.StudyInterruptedError) as caught:
+        jid.sweep(recording, joint, grid={"windows": [50, 60]}, trials=2, output=path)
+    assert len(caught.value.study) > 0
+    assert caught.value.study.rows == jid.Study.load(path).rows

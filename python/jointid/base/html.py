@@ -14,16 +14,24 @@ _TAGS = frozenset(
         *("html", "head", "meta", "title", "style", "body", "section", "footer", "div", "span"),
         *("h1", "h2", "h3", "p", "br", "b", "em", "strong", "small", "sub", "sup", "code", "a"),
         *("figure", "figcaption", "img", "table", "caption", "thead", "tbody", "tr", "th", "td"),
-        *("ul", "ol", "li"),
+        *("ul", "ol", "li", "svg", "path", "text", "desc"),
     )
 )
 _EMPTY = frozenset(("br", "img", "meta"))
-_ATTRIBUTES = frozenset(["alt", "charset", "class", "colspan", "href", "id", "lang", "src"])
+_ATTRIBUTES = frozenset(
+    (
+        *("alt", "charset", "class", "colspan", "content", "href", "id", "lang", "name", "src"),
+        *("d", "role", "viewBox", "x", "y"),
+    )
+)
 # A page of ours needs no other file: pictures are inside, links stay on the page.
 _SAFE = {
     "src": re.compile(r"data:image/png;base64,[A-Za-z0-9+/=]*"),
     "href": re.compile(r"#[\w-]*"),
+    "d": re.compile(r"[MlHhVvz0-9 -]*"),
 }
+# No document may hold these: control characters, halves of a pair, what is no character.
+_UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 
 
 class Html:
@@ -70,7 +78,7 @@ def element(tag: str, *children: Html | str, **attributes: str) -> Html:
         name = key.removesuffix("_")
         if name not in _ATTRIBUTES or (name in _SAFE and not _SAFE[name].fullmatch(value)):
             raise ValueError(f"no attribute {name}='{value[:40]}' in a report")
-        opened += f' {name}="{escape(value)}"'
+        opened += f' {name}="{_escaped(value)}"'
     if tag in _EMPTY:
         return _made(f"<{opened}>")
     return _made(f"<{opened}>{''.join(map(_inside, children))}</{tag}>")
@@ -98,7 +106,11 @@ def page(title: str, style: str, *body: Html | str) -> str:
     *body : Html or str
     """
     head = element(
-        "head", element("meta", charset="utf-8"), element("title", title), element("style", style)
+        "head",
+        element("meta", charset="utf-8"),
+        element("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        element("title", title),
+        element("style", style),
     )
     return f"<!doctype html>{element('html', head, element('body', *body), lang='en')}"
 
@@ -110,7 +122,11 @@ def _cell(child: Html | str) -> Html:
 
 def _inside(child: Html | str) -> str:
     # Anything else, even a number, is a text: nothing is trusted for what it claims to be.
-    return child._markup if type(child) is Html else escape(str(child))
+    return child._markup if type(child) is Html else _escaped(str(child))
+
+
+def _escaped(text: str) -> str:
+    return escape(text if text.isprintable() else _UNFIT.sub("\ufffd", text))
 
 
 def _made(markup: str) -> Html:

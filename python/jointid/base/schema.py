@@ -9,11 +9,12 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any, NoReturn, Protocol
 
 from jointid.base.errors import NOT_GIVEN, InputError
+from jointid.base.values import dataclass
 
 LARGEST = 500_000_000  # bytes of a file, characters of a text; an estimate of an hour's recording has 20 million
 DEEPEST = 32  # lists and tables inside each other; an estimate has 5
@@ -38,17 +39,30 @@ def read_text(path: Path) -> str:
     """
     place = str(path)
     try:
-        data = bytearray()
-        with path.open("rb") as file:  # a device or a pipe does not state its size
-            while chunk := file.read(min(_CHUNK, LARGEST + 1 - len(data))):
-                data += chunk
-                if len(data) > LARGEST:
-                    raise InputError(f"too large: {LARGEST} bytes are allowed", place=place)
-        return data.decode("utf-8")
+        return read_bytes(path).decode("utf-8")
     except UnicodeDecodeError:
         raise InputError("this is not text in UTF-8", place=place) from None
     except OSError as error:
         raise InputError(f"it cannot be read: {error.strerror}", place=place) from error
+
+
+def read_bytes(path: Path) -> bytes:
+    """Return the bytes of a file of ours.
+
+    Raises
+    ------
+    InputError
+        It is too large; names the file.
+    OSError
+        It cannot be read.
+    """
+    data = bytearray()
+    with path.open("rb") as file:  # a device or a pipe does not state its size
+        while chunk := file.read(min(_CHUNK, LARGEST + 1 - len(data))):
+            data += chunk
+            if len(data) > LARGEST:
+                raise InputError(f"too large: {LARGEST} bytes are allowed", place=str(path))
+    return bytes(data)
 
 
 def read_json(text: str) -> Any:
@@ -116,6 +130,14 @@ class Number:
     whole: bool = False
     infinite: bool = False
     undefined: bool = False
+
+    def holds(self, values: list[Any]) -> bool:
+        """Whether a list is of ordinary numbers that `read` returns as they are: quick for thousands."""
+        if set(map(type, values)) != {int if self.whole else float}:
+            return False
+        if not (self.whole or all(map(math.isfinite, values))):
+            return False
+        return bool(self.low <= min(values) and max(values) <= self.high)
 
     def read(self, value: Any, place: str) -> float | int:
         """Return a float, or an int when whole."""
@@ -198,15 +220,18 @@ class ListOf:
         if not self.shortest <= len(value) <= self.longest:
             many = f"{self.shortest} to {self.longest} items are expected, not {len(value)}"
             _refuse(place, NOT_GIVEN, many)
+        if isinstance(self.item, Number) and self.item.holds(value):
+            return value
         return [self.item.read(each, f"{place}[{i}]") for i, each in enumerate(value)]
 
 
 @dataclass(frozen=True, slots=True)
 class TableOf:
-    """A table with any names, at most `longest`, and entries of one kind."""
+    """A table with any names, at most `longest` of `longest_name` characters, and entries of one kind."""
 
     entry: Kind
     longest: int = 10_000
+    longest_name: int = 200
 
     def read(self, value: Any, place: str) -> dict[str, Any]:
         """Return a dict in the file's order."""
@@ -214,7 +239,7 @@ class TableOf:
         if len(table) > self.longest:
             reason = f"at most {self.longest} entries are expected, not {len(table)}"
             _refuse(place, NOT_GIVEN, reason)
-        name = Text(longest=200)
+        name = Text(longest=self.longest_name)
         return {
             name.read(key, place): self.entry.read(entry, _inside(place, key))
             for key, entry in table.items()
@@ -259,6 +284,29 @@ class Plain:
         if isinstance(value, str):
             return Text().read(value, place)
         if isinstance(value, int | float) and not isinstance(value, bool):
+            Number().read(value, place)
+        return value
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Json:
+    """Any value of JSON's types, of any length; its numbers are finite unless `finite` is False."""
+
+    finite: bool = True
+
+    def read(self, value: Any, place: str) -> Any:
+        """Return the value."""
+        if isinstance(value, list):
+            return [self.read(each, f"{place}[{i}]") for i, each in enumerate(value)]
+        if isinstance(value, dict):
+            text = Text(longest=LARGEST)
+            return {
+                text.read(key, place): self.read(entry, _inside(place, key))
+                for key, entry in value.items()
+            }
+        if isinstance(value, str):
+            return Text(longest=LARGEST).read(value, place)
+        if self.finite and isinstance(value, int | float) and not isinstance(value, bool):
             Number().read(value, place)
         return value
 

@@ -1,11 +1,11 @@
 """The demonstration: identify joint 1 of a KUKA KR300 from its log, which ships with the package."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
 from jointid._core import Generation
+from jointid.base.values import dataclass
 from jointid.estimate.estimate import Estimate
 from jointid.identification.identification import identify
 from jointid.identification.search.search import Search

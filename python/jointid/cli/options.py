@@ -13,6 +13,7 @@ _READING = {
     "gear_ratio": "--gear-ratio",
     "topic": "--topic",
     "group": "--group",
+    "unpacked": "--unpacked",
     "drop_copies": "--drop-copies",
     "drop_invalid": "--drop-invalid",
     "extra": "--extra",
@@ -170,7 +171,7 @@ FILES: Mapping[str, str] = {
 }
 """Options that take a file, and what stands for one that the user has to choose."""
 
-NUMBERS: Mapping[str, str] = {"--gear-ratio": "RATIO"}
+NUMBERS: Mapping[str, str] = {"--gear-ratio": "RATIO", "--unpacked": "BYTES"}
 """Options that take a number, and what stands for one that the user has to choose."""
 
 FLAGS = frozenset(

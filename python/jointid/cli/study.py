@@ -26,6 +26,7 @@ from jointid.cli.arguments import (
     with_terms,
 )
 from jointid.cli.outputs import check_folder
+from jointid.cli.parser import CommandParser
 from jointid.cli.scenario import scenario_arguments, scenario_of
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from jointid.study.study_result import Study
 
 
-def add_sweep(sweep: argparse.ArgumentParser) -> None:
+def add_sweep(sweep: CommandParser) -> None:
     """Add the command's grammar."""
     sweep.epilog = (
         "examples:\n"
@@ -205,7 +206,7 @@ def _write(study: Study, arguments: argparse.Namespace) -> None:
 
         figure = Figure(figsize=(6.4, 4.0), constrained_layout=True)
         y = study.swept[1] if len(study.swept) > 1 else None
-        draw(study, y=y, axes=figure.subplots())
+        draw(study, y=y, ax=figure.subplots())
         figure.savefig(arguments.plot, dpi=160)
     summary = study.summary()
     print(json.dumps(summary.asdict(), indent=1, ensure_ascii=False) if arguments.json else summary)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.prediction import predicted_torque
 from jointid.problem.window_table import WindowTable

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from html import escape
 from typing import Any
 
 from jointid.base.error_text import printable
+from jointid.base.values import dataclass
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.settings import residual_text
 from jointid.joint.model import Model

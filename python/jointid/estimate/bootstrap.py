@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, field
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from jointid.base.error_text import printable
 from jointid.base.text_table import aligned
+from jointid.base.values import dataclass
 from jointid.estimate.wording import number, percent, two_digits
 
 Array = NDArray[np.float64]

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from types import MappingProxyType
 from typing import Any
 
 from jointid.base.advice import Action
+from jointid.base.values import dataclass
 from jointid.estimate.findings import Measured
 from jointid.estimate.wording import percent
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.base.values import dataclass
 from jointid.estimate.intervals import BESIDE, quantile_of, squared_half_widths
 from jointid.problem.constant_torque import undivided
 

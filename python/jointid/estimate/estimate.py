@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from jointid.base.argument_checks import require_kind, require_path
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.estimate.delays import Delay
 from jointid.estimate.findings import Finding
 from jointid.estimate.questions import Questions
@@ -26,6 +27,8 @@ from jointid.estimate.statistics import (
 from jointid.problem.window_table import Prediction, WindowTable
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from jointid.estimate.derived import DerivedValue
     from jointid.estimate.follow_up import FollowUp
     from jointid.joint.joint import Joint
@@ -116,6 +119,35 @@ class Estimate(Questions):
         values = ", ".join(f"{p.name}={p.value:.6g}" for p in self.parameters.values())
         return f"Estimate({values}; {len(self.warnings)} warnings)"
 
+    __iter__ = None  # `parameters` is what a loop goes over
+
+    def __getitem__(self, name: str) -> ParameterEstimate | DerivedValue:
+        """Return a parameter, or a derived quantity, by its name.
+
+        Raises
+        ------
+        InputError
+            The estimate has neither.
+
+        Examples
+        --------
+        >>> bool(abs(estimate["coulomb"].value - 25.0) < 0.1)
+        True
+        """
+        known: dict[str, ParameterEstimate | DerivedValue] = {**self.parameters, **self.derived}
+        if not isinstance(name, str) or name not in known:
+            from jointid.joint.checks import suggestion
+
+            raise InputError(
+                f"the estimate has no such parameter; {suggestion(name, known)}",
+                argument="estimate[...]",
+                value=name,
+            )
+        return known[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.parameters or name in self.derived
+
     @property
     def derived(self) -> Mapping[str, DerivedValue]:
         """Breakaway friction and Stribeck velocity with standard errors, if the model has them."""
@@ -193,6 +225,30 @@ class Estimate(Questions):
         from jointid.estimate.html_tables import html_summary
 
         return str(html_summary(self))
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return the parameters and derived quantities as a data frame, one row each.
+
+        Returns
+        -------
+        DataFrame
+            Indexed by name, with the attributes of `ParameterEstimate`: value, stderr, systematic, the ends of
+            the interval (low, high), bounds (min, max), vary, at_bound, unit, meaning. What a derived quantity
+            does not have is missing.
+
+        Raises
+        ------
+        InputError
+            pandas is not installed; the extra `jointid[pandas]` installs it.
+
+        Examples
+        --------
+        >>> estimate.to_pandas().loc["coulomb", "unit"]
+        'N·m'
+        """
+        from jointid.estimate.frame import parameter_frame
+
+        return parameter_frame(self)
 
     def to_json(self) -> str:
         """Return the whole estimate as JSON with a schema version; `Estimate.from_json` reads it."""

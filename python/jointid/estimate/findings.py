@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from types import MappingProxyType
 from typing import Any, Literal, get_args
 
 from jointid.base.advice import Action
+from jointid.base.values import dataclass
 
 Severity = Literal["info", "warning", "blocking"]
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.estimate.friction_map import shared_value
 from jointid.estimate.settings import model_of
 from jointid.problem.problem import Problem

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from jointid.base.schema import ListOf, Number, OrNull, Record, Text
+from jointid.base.values import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

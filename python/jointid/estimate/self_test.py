@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 
 from jointid.base.error_text import printable
 from jointid.base.html import Html, element, table
+from jointid.base.values import dataclass
 from jointid.estimate.wording import number, percent, two_digits
 
 SCHEMA = 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.argument_checks import whole_number
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.estimate.causes import Cause
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.selection import Selection

@@ -4,15 +4,16 @@ import functools
 import math
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import field, fields, replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal, Self, get_args
+from typing import TYPE_CHECKING, Any, Self, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.joint.checks import (
     check_choice,
     check_flag,
@@ -26,12 +27,10 @@ from jointid.joint.link import GravityCoefficients, Limits, Link
 from jointid.joint.model import Model
 from jointid.joint.parameters import Parameter, merge, parameter_table
 from jointid.joint.tolerances import Tolerances
+from jointid.recording.signals import Kind, TorqueHold
 
 if TYPE_CHECKING:
     from jointid.recording.recording import Recording
-
-Kind = Literal["revolute", "prismatic"]
-TorqueHold = Literal["zoh", "linear"]
 
 # Two values of the same inertia may differ by this share: printed values are rounded.
 _INERTIA_TOLERANCE = 1e-3
@@ -384,6 +383,11 @@ class Joint:
         usual = _values(Joint())
         shown = [f"{name}={v!r}" for name, v in _values(self).items() if v != usual[name]]
         return f"Joint({', '.join(shown)})"
+
+    def _repr_html_(self) -> str:
+        from jointid.joint.html import html_facts
+
+        return str(html_facts(self))
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Through the constructor: read-only mappings cannot be pickled.

@@ -12,6 +12,7 @@ from jointid import _core
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
+from jointid.base.schema import read_bytes
 from jointid.joint.angles import ANGLE_EXPECTED, in_radians, text_in
 from jointid.joint.checks import check_flag, check_parameter_name, suggestion
 from jointid.joint.joint import Joint
@@ -299,7 +300,7 @@ def _refuse_key(source: str, table: str, key: str, known: tuple[str, ...]) -> No
 
 def _text(path: Path) -> str:
     try:
-        content = path.read_bytes()
+        content = read_bytes(path)
     except FileNotFoundError:
         raise InputError(
             "there is no such file", place=str(path), remedy="check the path"

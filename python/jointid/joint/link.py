@@ -1,8 +1,7 @@
 """The link on a joint, and the joint's limits."""
 
-from dataclasses import dataclass
-
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.joint.checks import (
     finite_number,
     not_negative,

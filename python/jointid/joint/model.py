@@ -5,17 +5,20 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import KW_ONLY, dataclass, fields, replace
+from dataclasses import KW_ONLY, fields, replace
 from typing import Any, Literal, Self, get_args
 
 from jointid import _core
 from jointid.base.argument_checks import number_in
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.joint.checks import check_choice, check_flag, finite_number, suggestion
 from jointid.joint.own_terms import NO_TERMS, OwnTerms
 
 Gravity = Literal["none", "known", "free"]
 Load = Literal["drive", "link"]
+ModelName = Literal["coulomb_viscous", "stribeck", "stribeck_general", "auto"]
+"""Names of models, for type checkers; text with options is `Model.parse`'s."""
 
 AUTO = "auto"
 """Name of a model that `identify` chooses from the recordings; as good as no name."""
@@ -77,7 +80,7 @@ class Model:
     True
     """
 
-    name: str | None = None
+    name: ModelName | None = None
     _: KW_ONLY
     gravity: Gravity | None = None
     asymmetric: bool | None = None
@@ -167,10 +170,11 @@ class Model:
             if key in options:
                 raise InputError("it is given twice", argument=key, value=text)
             options[key] = _read(key, value) if separator else True
-        return cls(name or None, **options)
+        options["name"] = name or None
+        return cls(**options)
 
     def __str__(self) -> str:
-        parts = [self.name or ""]
+        parts: list[str] = [self.name or ""]
         for name, value in self.stated().items():
             if name != "name":
                 parts.append(name if value is True else f"{name}={_written(value)}")

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.base.values import dataclass
 from jointid.estimate.estimate import Estimate
 from jointid.identification.causes.attribution import Score, at_scales, score_of, steadiness
 from jointid.identification.causes.fitted import Fitted

@@ -35,7 +35,12 @@ def load_estimate(path: Path, joint: str | None = None) -> Estimate:
     joints = document.get("joints") if isinstance(document, dict) else None
     if not isinstance(joints, dict) or document.get("kind") != KIND:
         if joint is not None:
-            raise InputError("the file holds one joint's estimate", argument="joints", value=joint)
+            raise InputError(
+                "the file holds one joint's estimate",
+                argument="joints",
+                value=joint,
+                place=str(path),
+            )
         return Estimate.load(path)
     if joint is None:
         if len(joints) != 1:
@@ -46,7 +51,10 @@ def load_estimate(path: Path, joint: str | None = None) -> Estimate:
                 remedy=Action("call", {"joint": first}, "or another one", "load"),
             )
         joint = next(iter(joints))
-    name = joint_named(joint, list(joints), "", "joints", "load")
+    try:
+        name = joint_named(joint, list(joints), "", "joints", "load")
+    except InputError as error:
+        raise error.at(str(path)) from None
     found = joints[name]
     estimate = found.get("estimate") if isinstance(found, dict) else None
     if estimate is None:

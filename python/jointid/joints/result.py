@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.estimate.estimate import Estimate
 from jointid.joints.coupling import Share
 from jointid.joints.signals import MEANING

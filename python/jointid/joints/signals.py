@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.base.values import dataclass
 from jointid.identification.causes.fitted import Fitted
 from jointid.recording.recording import Recording
 

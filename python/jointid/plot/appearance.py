@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, cast
+
+from jointid.base.errors import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,13 +32,15 @@ _STYLE: dict[str, Any] = {
     "axes.spines.right": False,
     "grid.alpha": 0.3,
     "legend.frameon": False,
-    "lines.linewidth": 1.5,
+    "lines.linewidth": 1.2,
 }
 
 
 @contextmanager
 def style() -> Iterator[None]:
     """Apply the Matplotlib settings of all our plots within a `with` block.
+
+    A setting that was changed from Matplotlib's own, by a style sheet or in `rcParams`, stays as it is.
 
     Examples
     --------
@@ -47,7 +51,7 @@ def style() -> Iterator[None]:
 
     drawing = is_interactive()
     try:
-        with rc_context(cast("Any", _STYLE)):
+        with rc_context(cast("Any", _left_to_us())):
             try:
                 yield
             finally:
@@ -57,10 +61,54 @@ def style() -> Iterator[None]:
         interactive(drawing)
 
 
-def axes_or_new(axes: Axes | None) -> Axes:
-    """Return these axes, or new ones in our style for None."""
-    if axes is not None:
-        return axes
+def _left_to_us() -> dict[str, Any]:
+    """Our settings, except those that the user has chosen."""
+    return {name: ours for name, ours in _STYLE.items() if _chosen(name) is None}
+
+
+def _chosen(setting: str) -> Any:
+    """The user's value of a setting of Matplotlib; None where it is Matplotlib's own."""
+    import matplotlib
+
+    settings: tuple[Any, Any] = (matplotlib.rcParams, matplotlib.rcParamsDefault)
+    now, usual = (each[setting] for each in settings)
+    return None if now == usual else now
+
+
+def look(style: Mapping[str, Any], **ours: Any) -> dict[str, Any]:
+    """Return the keywords of a curve: the user's, and ours where he gives none.
+
+    Short names count, too: ``lw`` is ``linewidth``.
+
+    Raises
+    ------
+    InputError
+        ``axes`` is among them: it is the name of what is called `ax`.
+    """
+    from matplotlib.cbook import normalize_kwargs
+    from matplotlib.lines import Line2D
+
+    if "axes" in style:
+        raise InputError("axes to draw into are given as `ax`", argument="axes")
+    return {**ours, **normalize_kwargs(dict(style), Line2D)}
+
+
+def axes_or_new(ax: Axes | None) -> Axes:
+    """Return these axes, or new ones in our style for None.
+
+    Raises
+    ------
+    InputError
+        Something else.
+    """
+    from matplotlib.axes import Axes
+
+    if ax is not None:
+        if not isinstance(ax, Axes):
+            raise InputError(
+                "Matplotlib axes are expected, as of pyplot.subplots()", argument="ax", value=ax
+            )
+        return ax
     from matplotlib import pyplot
 
     with style():
@@ -82,7 +130,13 @@ def line_style(number: int, count: int = 0) -> dict[str, Any]:
     dict of str to object
     """
     colour, dash, marker = _LINES[number % len(_LINES)]
-    keywords: dict[str, Any] = {"color": colour, "linestyle": dash, "linewidth": 1.2}
+    cycle = _chosen("axes.prop_cycle")
+    own = [] if cycle is None else cycle.by_key().get("color", [])
+    keywords: dict[str, Any] = {
+        "color": own[number % len(own)] if own else colour,
+        "linestyle": dash,
+        "linewidth": _chosen("lines.linewidth") or _STYLE["lines.linewidth"],
+    }
     if count:
         step = max(1, count // 12)
         keywords |= {

@@ -5,15 +5,15 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from jointid.base.errors import InputError
 from jointid.joint.joint import Joint
-from jointid.plot.appearance import FITTED, MEASURED, SECOND, style
+from jointid.joint.units import velocity_label
+from jointid.plot.appearance import FITTED, MEASURED, SECOND, look, style
 from jointid.plot.friction import friction_curves
-from jointid.plot.units import velocity_label
 from jointid.simulation.peaks import Peaks
 from jointid.simulation.trajectory import FloatArray, Trajectory
 
@@ -49,15 +49,19 @@ _SAMPLES = 6001
 _BINS = 60
 
 
-def designed_motion(design: _Design, axes: Sequence[Axes] | None = None) -> tuple[Axes, Axes, Axes]:
+def designed_motion(
+    design: _Design, ax: Sequence[Axes] | None = None, **style: Any
+) -> tuple[Axes, Axes, Axes]:
     """Draw a design: position and velocity over time, and how long it moves at each velocity.
 
     Parameters
     ----------
     design : Design
         Of `design_excitation`, or read by `load_design`.
-    axes : sequence of three Axes, optional
+    ax : sequence of three Axes, optional
         Drawn into. Default: new axes.
+    **style
+        Keywords of Matplotlib's `Axes.plot` for the reference, e.g. ``color="black"``.
 
     Returns
     -------
@@ -76,7 +80,7 @@ def designed_motion(design: _Design, axes: Sequence[Axes] | None = None) -> tupl
     >>> design = jid.load_design("motion.toml")
     >>> jid.plot.designed_motion(design)
     """
-    over_time, speeds, sampled = _axes(axes)
+    over_time, speeds, sampled = _axes(ax)
     time = np.linspace(0.0, design.duration, _SAMPLES)
     position, velocity, _ = design.trajectory.sample(time)
     slides = design.joint.kind == "prismatic"
@@ -98,7 +102,7 @@ def designed_motion(design: _Design, axes: Sequence[Axes] | None = None) -> tupl
         ),
     ):
         drawn.axhspan(*reached, color=MEASURED, alpha=0.25, linewidth=0.0, label="joints reach")
-        drawn.plot(time, values, color=SECOND, linewidth=1.2, label="reference")
+        drawn.plot(time, values, **look(style, color=SECOND, label="reference"))
         for number, limit in enumerate(allowed):
             drawn.axhline(
                 limit,
@@ -146,5 +150,5 @@ def _axes(axes: Sequence[Axes] | None) -> tuple[Axes, Axes, Axes]:
         return drawn[0], drawn[1], drawn[2]
     given = list(itertools.islice(axes, 4))
     if len(given) != 3:
-        raise InputError("three axes are expected", argument="axes", value=len(given))
+        raise InputError("three axes are expected", argument="ax", value=len(given))
     return given[0], given[1], given[2]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +14,8 @@ from jointid.base.errors import InputError
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.friction_map import friction_torque
 from jointid.joint.joint import Joint
-from jointid.plot.appearance import MEASURED, SECOND, axes_or_new, line_style
-from jointid.plot.units import torque_unit, velocity_label
+from jointid.joint.units import torque_unit, velocity_label
+from jointid.plot.appearance import MEASURED, SECOND, axes_or_new, line_style, look
 from jointid.recording.recording import Recording
 
 if TYPE_CHECKING:
@@ -26,7 +26,11 @@ _SENSOR = ("sensor_gain", "sensor_offset")
 
 
 def friction_curves(
-    joints: Mapping[str, Joint | Estimate], axes: Axes | None = None, *, peak: float = 1.0
+    joints: Mapping[str, Joint | Estimate],
+    ax: Axes | None = None,
+    *,
+    peak: float = 1.0,
+    **style: Any,
 ) -> Axes:
     """Draw friction over velocity of several joints or estimates, for comparison.
 
@@ -34,10 +38,12 @@ def friction_curves(
     ----------
     joints : mapping of str to Joint or Estimate
         Label → a joint whose friction parameters have values, or an estimate.
-    axes : Axes, optional
+    ax : Axes, optional
         Drawn into. Default: new axes.
     peak : float
         Largest speed [rad/s] or [m/s]. Default 1.
+    **style
+        Keywords of Matplotlib's `Axes.plot` for the curves, e.g. ``color="black"``.
 
     Returns
     -------
@@ -60,9 +66,9 @@ def friction_curves(
         raise InputError("at least one joint or estimate is expected", argument="joints", value={})
     for name, joint in joints.items():
         _check_friction(_values(_joint(joint)), f"joints.{name}")
-    axes = axes_or_new(axes)
+    axes = axes_or_new(ax)
     for number, (name, joint) in enumerate(joints.items()):
-        _draw(axes, _values(_joint(joint)), peak, number, name)
+        _draw(axes, _values(_joint(joint)), peak, look(style, **line_style(number), label=name))
     kinds = {_joint(joint).kind for joint in joints.values()}
     _label(axes, "friction", "prismatic" if kinds == {"prismatic"} else "revolute")
     axes.legend(loc="best", frameon=False)
@@ -72,11 +78,12 @@ def friction_curves(
 def sensitivity(
     joint: Joint,
     parameter: str,
-    axes: Axes | None = None,
+    ax: Axes | None = None,
     *,
     share: float = 0.1,
     peak: float = 0.6,
     reading: float = 5.0,
+    **style: Any,
 ) -> Axes:
     """Draw the torque at constant speed and sensor reading, and how an error of a parameter changes it.
 
@@ -90,7 +97,7 @@ def sensitivity(
         With values for its parameters.
     parameter : str
         A friction parameter, `sensor_gain` or `sensor_offset`.
-    axes : Axes, optional
+    ax : Axes, optional
         Drawn into. Default: new axes.
     share : float
         Relative change of the parameter. Default 0.1.
@@ -98,6 +105,8 @@ def sensitivity(
         Largest speed [rad/s] or [m/s]. Default 0.6.
     reading : float
         Raw reading of the torque sensor. Default 5.
+    **style
+        Keywords of Matplotlib's `Axes.plot` for the curves, e.g. ``color="black"``.
 
     Returns
     -------
@@ -122,7 +131,7 @@ def sensitivity(
             value=parameter,
         )
     _check_friction(values, "joint")
-    axes = axes_or_new(axes)
+    axes = axes_or_new(ax)
     for number, (name, factor) in enumerate(
         (
             ("nominal", 1.0),
@@ -134,7 +143,8 @@ def sensitivity(
         link = 0.0
         if joint.sensor:
             link = changed.get("sensor_gain", 0.0) * reading + changed.get("sensor_offset", 0.0)
-        _draw(axes, changed, peak, number, f"{parameter} {name}", above=link, forward=True)
+        keywords = look(style, **line_style(number), label=f"{parameter} {name}")
+        _draw(axes, changed, peak, keywords, above=link, forward=True)
     _label(axes, "torque at constant speed", joint.kind)
     axes.legend(loc="best", frameon=False)
     return axes
@@ -142,10 +152,11 @@ def sensitivity(
 
 def torque_over_velocity(
     recording: Recording,
-    axes: Axes | None = None,
+    ax: Axes | None = None,
     *,
     sensed_by: Joint | Estimate | None = None,
     curve: Joint | Estimate | None = None,
+    **style: Any,
 ) -> Axes:
     """Draw the recorded torque over velocity, sample by sample: a friction map without a fit.
 
@@ -153,13 +164,15 @@ def torque_over_velocity(
     ----------
     recording : Recording
         With a torque.
-    axes : Axes, optional
+    ax : Axes, optional
         Drawn into. Default: new axes.
     sensed_by : Joint or Estimate, optional
         Its sensor gain and offset convert the sensor's reading to the link's torque, which is
         subtracted. Default: nothing is subtracted.
     curve : Joint or Estimate, optional
         Its friction is drawn over the samples. Default: no curve.
+    **style
+        Keywords of Matplotlib's `Axes.plot` for the samples, e.g. ``color="black"``.
 
     Returns
     -------
@@ -187,19 +200,24 @@ def torque_over_velocity(
             )
         torque = torque - known["sensor_gain"] * recording.sensor - known["sensor_offset"]
         what = "torque minus sensed link torque"
-    axes = axes_or_new(axes)
+    axes = axes_or_new(ax)
     axes.plot(
         recording.velocity,
         torque,
-        ".",
-        color=MEASURED,
-        markersize=1.5,
-        label="recorded samples",
-        rasterized=True,
+        **look(
+            style,
+            color=MEASURED,
+            marker=".",
+            linestyle="none",
+            markersize=1.5,
+            label="recorded samples",
+            rasterized=True,
+        ),
     )
     if curve is not None:
         peak = float(np.abs(recording.velocity).max())
-        _draw(axes, _values(_joint(curve)), peak, 0, "friction of the model", colour=SECOND)
+        keywords = {**line_style(0), "color": SECOND, "label": "friction of the model"}
+        _draw(axes, _values(_joint(curve)), peak, keywords)
     _label(axes, what, recording.kind)
     axes.legend(loc="lower right", frameon=False, markerscale=4.0, fontsize="small")
     return axes
@@ -235,25 +253,20 @@ def _draw(
     axes: Axes,
     values: Mapping[str, float],
     peak: float,
-    number: int,
-    label: str,
+    keywords: Mapping[str, Any],
     *,
     above: float = 0.0,
     forward: bool = False,
-    colour: str | None = None,
 ) -> None:
     """Draw one curve, interrupted at rest, where friction takes any value in between."""
     speed = peak * np.linspace(0.0, 1.0, 300) ** 2  # dense near rest, where friction is nonlinear
     speed[0] = 1e-9 * peak
     velocity = np.concatenate([-speed[::-1], speed])
     torque = friction_torque(_terms(values), values, velocity) + above
-    keywords = line_style(number)
-    if colour is not None:
-        keywords["color"] = colour
     middle = len(speed)
     velocity, torque = np.insert(velocity, middle, 0.0), np.insert(torque, middle, np.nan)
     shown = slice(middle + 1, None) if forward else slice(None)
-    axes.plot(velocity[shown], torque[shown], label=label, **keywords)
+    axes.plot(velocity[shown], torque[shown], **keywords)
 
 
 def _label(axes: Axes, what: str, kind: str) -> None:

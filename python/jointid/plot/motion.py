@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from jointid.base.argument_checks import require_kind, require_mapping
 from jointid.base.error_text import alternatives
 from jointid.base.errors import InputError
-from jointid.plot.appearance import axes_or_new, line_style
+from jointid.plot.appearance import axes_or_new, line_style, look
 from jointid.recording.recording import Recording
 from jointid.simulation.simulated_recording import SimulatedRecording
 from jointid.simulation.trajectory import FloatArray, Trajectory
@@ -33,7 +33,9 @@ _UNITS = {
 _SIGNALS = tuple(name for name in _UNITS if name != "acceleration")
 
 
-def tracking_error(runs: Runs, axes: Axes | None = None, *, settling: float | None = None) -> Axes:
+def tracking_error(
+    runs: Runs, ax: Axes | None = None, *, settling: float | None = None, **style: Any
+) -> Axes:
     """Draw the tracking error (position minus reference) over time, with its RMS in the legend.
 
     Parameters
@@ -41,10 +43,12 @@ def tracking_error(runs: Runs, axes: Axes | None = None, *, settling: float | No
     runs : Recording or mapping of str to Recording
         One run, or several by name, e.g. ``{"before": a, "after": b}``. For a simulated run the
         true position is used, not the encoder's.
-    axes : Axes, optional
+    ax : Axes, optional
         Drawn into. Default: new axes.
     settling : float, optional
         Time at the start that the RMS excludes [s]. Default: a sixth of each run.
+    **style
+        Keywords of Matplotlib's `Axes.plot` for the curves, e.g. ``color="black"``.
 
     Returns
     -------
@@ -62,14 +66,14 @@ def tracking_error(runs: Runs, axes: Axes | None = None, *, settling: float | No
     """
     named = _named(runs)
     errors = [1e3 * _error(run, name) for name, run in named.items()]
-    axes = axes_or_new(axes)
+    axes = axes_or_new(ax)
     for number, ((name, run), error) in enumerate(zip(named.items(), errors, strict=True)):
         elapsed = run.time - run.time[0]
         later = elapsed >= (elapsed[-1] / 6.0 if settling is None else settling)
         size = float(np.sqrt(np.mean(error[later] ** 2)))
         text = f"RMS {size:.3g} {_small_unit(run)}"
         label = f"{name}: {text}" if name else text
-        axes.plot(elapsed, error, label=label, **line_style(number, len(elapsed)))
+        axes.plot(elapsed, error, **look(style, **line_style(number, len(elapsed)), label=label))
     axes.set_xlabel("time [s]")
     axes.set_ylabel(f"tracking error [{_small_unit(next(iter(named.values())))}]")
     _room_for_legend(axes)
@@ -77,7 +81,7 @@ def tracking_error(runs: Runs, axes: Axes | None = None, *, settling: float | No
     return axes
 
 
-def signal(runs: Runs, name: str, axes: Axes | None = None) -> Axes:
+def signal(runs: Runs, name: str, ax: Axes | None = None, **style: Any) -> Axes:
     """Draw one signal of a run, or of several, over time.
 
     Parameters
@@ -86,8 +90,10 @@ def signal(runs: Runs, name: str, axes: Axes | None = None) -> Axes:
         One run, or several by name.
     name : str
         "position", "velocity", "torque", "motor_torque", "current", "sensor" or "reference".
-    axes : Axes, optional
+    ax : Axes, optional
         Drawn into. Default: new axes.
+    **style
+        Keywords of Matplotlib's `Axes.plot` for the curves, e.g. ``color="black"``.
 
     Returns
     -------
@@ -108,11 +114,11 @@ def signal(runs: Runs, name: str, axes: Axes | None = None) -> Axes:
                 f"the recording has no {name}; it has {', '.join(run.signals)}",
                 argument=_argument(label),
             )
-    axes = axes_or_new(axes)
+    axes = axes_or_new(ax)
     for number, (label, run) in enumerate(named.items()):
         values = getattr(run, name)
         count = len(run.time) if len(named) > 1 else 0
-        axes.plot(run.time, values, label=label, **line_style(number, count))
+        axes.plot(run.time, values, **look(style, **line_style(number, count), label=label))
     unit = _UNITS[name][next(iter(named.values())).kind == "prismatic"]
     axes.set_xlabel("time [s]")
     axes.set_ylabel(f"{name.replace('_', ' ')} [{unit}]")
@@ -122,7 +128,12 @@ def signal(runs: Runs, name: str, axes: Axes | None = None) -> Axes:
 
 
 def trajectory(
-    wanted: Trajectory, what: str = "position", axes: Axes | None = None, *, label: str = ""
+    wanted: Trajectory,
+    what: str = "position",
+    ax: Axes | None = None,
+    *,
+    label: str = "",
+    **style: Any,
 ) -> Axes:
     """Draw a desired motion over time.
 
@@ -132,10 +143,12 @@ def trajectory(
         Of a revolute joint.
     what : {"position", "velocity", "acceleration"}
         Default "position".
-    axes : Axes, optional
+    ax : Axes, optional
         Drawn into; several motions in the same axes differ in colour and dash. Default: new axes.
     label : str
         For the legend. Default: no legend.
+    **style
+        Keywords of Matplotlib's `Axes.plot` for the curve, e.g. ``color="black"``.
 
     Returns
     -------
@@ -150,10 +163,11 @@ def trajectory(
     derivatives = ("position", "velocity", "acceleration")
     if what not in derivatives:
         raise InputError(f"{alternatives(derivatives)} is expected", argument="what", value=what)
-    axes = axes_or_new(axes)
+    axes = axes_or_new(ax)
     time = np.linspace(0.0, wanted.duration, 1201)
     values = wanted.sample(time)[derivatives.index(what)]
-    axes.plot(time, values, label=label or None, **line_style(len(axes.lines)))
+    keywords = look(style, **line_style(len(axes.lines)), label=label or None)
+    axes.plot(time, values, **keywords)
     axes.set_xlabel("time [s]")
     axes.set_ylabel(f"desired {what} [{_UNITS[what][0]}]")
     if label:

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from jointid._core import GaOptions, Generation
 from jointid.base.argument_checks import require_kind
-from jointid.plot.appearance import axes_or_new, line_style
+from jointid.plot.appearance import axes_or_new, line_style, look
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
 def adaptation(
-    options: GaOptions, generations: Sequence[Generation] = (), axes: Axes | None = None
+    options: GaOptions,
+    generations: Sequence[Generation] = (),
+    ax: Axes | None = None,
+    **style: Any,
 ) -> Axes:
     """Draw the crossover and mutation probabilities over the diversity measure (3.2.2).
 
@@ -24,8 +27,10 @@ def adaptation(
         If they are not adaptive, both lines are constant.
     generations : sequence of Generation
         Of a search with these options; each adds one point to both lines. Default: none.
-    axes : Axes, optional
+    ax : Axes, optional
         Drawn into. Default: new axes.
+    **style
+        Keywords of Matplotlib's `Axes.plot` for the lines, e.g. ``color="black"``.
 
     Returns
     -------
@@ -38,7 +43,7 @@ def adaptation(
         `options` is not a `GaOptions`.
     """
     require_kind("options", options, GaOptions)
-    axes = axes_or_new(axes)
+    axes = axes_or_new(ax)
     corner = [0.0, options.diversity_low, options.diversity_high, 1.0]
     for number, (name, diverse, equal) in enumerate(
         (
@@ -47,8 +52,8 @@ def adaptation(
         )
     ):
         end = equal if options.adaptive else diverse
-        keywords = line_style(number)
-        axes.plot(corner, [diverse, diverse, end, end], label=f"{name} probability", **keywords)
+        keywords = look(style, **line_style(number), label=f"{name} probability")
+        axes.plot(corner, [diverse, diverse, end, end], **keywords)
         if generations:
             axes.plot(
                 [generation.diversity for generation in generations],

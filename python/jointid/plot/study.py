@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from jointid.base.argument_checks import require_kind
 from jointid.base.error_text import alternatives
 from jointid.base.errors import InputError
-from jointid.plot.appearance import MEASURED, axes_or_new, line_style
-from jointid.plot.units import parameter_unit
+from jointid.joint.units import parameter_unit
+from jointid.plot.appearance import MEASURED, axes_or_new, line_style, look
 from jointid.study.study_result import Study
 
 if TYPE_CHECKING:
@@ -36,7 +36,8 @@ def sweep(
     y: str | None = None,
     value: str = "penalty",
     statistic: str = "median",
-    axes: Axes | None = None,
+    ax: Axes | None = None,
+    **style: Any,
 ) -> Axes:
     """Draw a quantity over one swept setting as points and a line, over two as a heat map.
 
@@ -44,7 +45,7 @@ def sweep(
     ----------
     study : Study
     x, y : str, optional
-        Swept settings. Default: the first two; `y` none if only one is swept or `axes` are given.
+        Swept settings. Default: the first two; `y` none if only one is swept or `ax` is given.
         Trials of the other settings are combined.
     value : str
         A column of the study's table (``"penalty"``, a parameter, ``"tracking_after"``, …), or
@@ -53,8 +54,10 @@ def sweep(
     statistic : str
         "median" (default), "mean", "spread", "best" or "worst" of the trials; of an error, its
         magnitude.
-    axes : Axes, optional
+    ax : Axes, optional
         Drawn into. Default: new axes.
+    **style
+        Keywords of Matplotlib's `Axes.plot` for the line, of `Axes.imshow` for the map, e.g. ``color="black"``.
 
     Returns
     -------
@@ -79,7 +82,7 @@ def sweep(
     if not study.swept:
         raise InputError("no setting was swept", argument="study")
     x = study.swept[0] if x is None else x
-    if y is None and len(study.swept) > 1 and axes is None:
+    if y is None and len(study.swept) > 1 and ax is None:
         y = next((name for name in study.swept if name != x), None)
     for argument, name in (("x", x), ("y", y)):
         if name is not None and name not in study.swept:
@@ -90,14 +93,14 @@ def sweep(
             )
     values, title = _values(study, value)
     across = _labels(study, x)
-    axes = axes_or_new(axes)
+    axes = axes_or_new(ax)
     if y is None:
-        _line(axes, study, x, across, values, statistic)
+        _line(axes, study, x, across, values, statistic, style)
         axes.set_ylabel(title)
         if _needs_log_scale(values):
             axes.set_yscale("log")
         return axes
-    _heat_map(axes, study, (x, across), (y, _labels(study, y)), values, statistic)
+    _heat_map(axes, study, (x, across), (y, _labels(study, y)), values, statistic, style)
     axes.set_title(f"{title}, {statistic} of the trials", fontsize="medium")
     return axes
 
@@ -162,7 +165,13 @@ def _needs_log_scale(values: Array) -> bool:
 
 
 def _line(
-    axes: Axes, study: Study, x: str, labels: list[Any], values: Array, statistic: str
+    axes: Axes,
+    study: Study,
+    x: str,
+    labels: list[Any],
+    values: Array,
+    statistic: str,
+    style: Mapping[str, Any],
 ) -> None:
     numbers = all(isinstance(v, int | float) and not isinstance(v, bool) for v in labels)
     places = labels if numbers else list(range(len(labels)))
@@ -172,8 +181,8 @@ def _line(
         axes.plot([place] * len(trials), trials, ".", color=MEASURED, markersize=4, zorder=1)
         line.append(_statistic(statistic, trials))
     # Settings that are not numbers have no scale: no line between them.
-    look = line_style(2) if numbers else line_style(2) | {"linestyle": "none"}
-    axes.plot(places, line, marker="o", markersize=5, label=statistic, **look)
+    ours = line_style(2) if numbers else line_style(2) | {"linestyle": "none"}
+    axes.plot(places, line, **look(style, **ours, marker="o", markersize=5, label=statistic))
     if numbers and _needs_log_scale(np.array(labels, dtype=np.float64)):
         axes.set_xscale("log")
     if not numbers:
@@ -190,6 +199,7 @@ def _heat_map(
     up: tuple[str, list[Any]],
     values: Array,
     statistic: str,
+    style: Mapping[str, Any],
 ) -> None:
     from matplotlib.colors import LogNorm, Normalize
 
@@ -208,7 +218,8 @@ def _heat_map(
     known = table[np.isfinite(table)]
     low, high = (known.min(), known.max()) if len(known) else (0.0, 1.0)
     norm = LogNorm(low, high) if _needs_log_scale(table) else Normalize(low, high)
-    image = axes.imshow(table, norm=norm, cmap="cividis_r", aspect="auto", origin="lower")
+    ours = {"norm": norm, "cmap": "cividis_r", "aspect": "auto", "origin": "lower"}
+    image = axes.imshow(table, **{**ours, **style})
     for row, column in np.ndindex(table.shape):
         number = table[row, column]
         dark = np.isfinite(number) and float(norm(number)) > 0.55

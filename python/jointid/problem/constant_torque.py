@@ -8,10 +8,11 @@ direction of the parameters nothing is determined, whatever few samples at rest 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+from jointid.base.values import dataclass
 
 Array = NDArray[np.float64]
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.base.values import dataclass
 from jointid.joint.own_terms import FRICTION, INERTIA, OwnTerms
 from jointid.problem.own_integrals import own_series, signal_of
 from jointid.recording.recording import Recording

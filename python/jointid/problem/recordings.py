@@ -47,6 +47,13 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
             value=recordings,
             remedy="name a joint, or call identify_joints",
         )
+    if hasattr(recordings, "columns") or hasattr(recordings, "data_vars"):
+        raise InputError(
+            "a Recording is expected, not a data frame",
+            argument="recordings",
+            value=type(recordings).__name__,
+            remedy="jid.Recording.from_dataframe(frame) reads its columns",
+        )
     if not isinstance(recordings, Iterable) or isinstance(recordings, str):
         raise InputError(_RECORDING_EXPECTED, argument="recordings", value=recordings)
     runs = tuple(recordings)

@@ -2,11 +2,13 @@
 
 import functools
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
+from typing import Literal, get_args
 
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.joint.checks import check_choice
 from jointid.joint.joint import Joint
 from jointid.joint.model import Load, Model, ResolvedModel
@@ -19,7 +21,8 @@ _SENSOR = ("sensor_gain", "sensor_offset")
 
 # What the residual compares: the torque with the part of the reading that the motion explains, the reading
 # with what the torque leaves for it (the thesis), the torque with the reading.
-RESIDUALS = ("instruments", "sensor", "torque")
+Residual = Literal["instruments", "sensor", "torque"]
+RESIDUALS: tuple[str, ...] = get_args(Residual)
 
 
 WEAK_READING = "the motion explains too little of the reading"

@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
 from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.recording.column_lookup import column_index
 from jointid.recording.header_words import OF_A_JOINT, PLAIN
 from jointid.recording.headers import understood

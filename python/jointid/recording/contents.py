@@ -1,7 +1,7 @@
 """The contents of a table: the signals of a recording in SI units, of all rows or of some."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy.typing as npt
 from jointid.base.advice import Action
 from jointid.base.argument_checks import require_mapping
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.recording.attributes import check_kind, check_torque_hold
 from jointid.recording.column_lookup import column_index
 from jointid.recording.columns import Column

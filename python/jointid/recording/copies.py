@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.recording.extra import rows_of_extra
+from jointid.recording.order_statistics import median
 from jointid.recording.signals import SHORTEST, SIGNALS, FloatArray
 
 _FINE = 30.0  # a usual step in smallest steps: an equal position is then no slow motion
@@ -45,7 +46,7 @@ def without_copies(fields: Mapping[str, Any]) -> dict[str, Any]:
     time, position = fields["time"], fields["position"]
     steps = np.abs(np.diff(position))
     moved = steps[steps > 0.0]
-    usual = float(np.median(moved)) if len(moved) else 0.0
+    usual = median(moved) if len(moved) else 0.0
     clear = moved[moved > _ROUNDING * usual]
     if not len(clear) or usual < _FINE * float(clear.min()):
         raise InputError(
@@ -101,7 +102,7 @@ def _evened(
     time: FloatArray, position: FloatArray, resting: NDArray[np.bool_]
 ) -> tuple[FloatArray, float]:
     """Return stamps that are even between standstills, where the positions say so, and the share of such rows."""
-    as_stamped, as_even = _core.timing_errors(time, position, float(np.median(np.diff(time))))
+    as_stamped, as_even = _core.timing_errors(time, position, median(np.diff(time)))
     if not as_even < _EVEN * as_stamped:
         return time, 0.0
     even, changed = time.copy(), 0
@@ -134,7 +135,7 @@ def _copies(same: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[np.bool
     edges = np.flatnonzero(np.diff(np.concatenate([copy, [False]]).astype(np.int8)))
     first, last = edges[::2] + 1, edges[1::2] + 1
     if len(first):
-        longest = 1.0 + _LONGER * float(np.median(last - first))
+        longest = 1.0 + _LONGER * median(last - first)
         for start, stop in zip(first, last, strict=True):
             if stop - start > longest:
                 copy[start:stop] = False

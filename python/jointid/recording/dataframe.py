@@ -1,14 +1,36 @@
-"""Reading a data frame: pandas, or anything with `columns` and `frame[column]`."""
+"""A recording from a data frame, pandas or anything with `columns` and `frame[column]`, and as one."""
+
+from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from jointid.base.errors import InputError
+from jointid.base.frames import data_frame
+from jointid.recording.extra import PREFIX
+from jointid.recording.saving import attributes_text, saved_attributes
 from jointid.recording.signals import FloatArray, signal_array
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from jointid.recording.recording import Recording
+
+ATTRIBUTE = "jointid_recording"
+"""Of a frame's `attrs`: what of a recording is no column, as text."""
+
+
+def frame_of(recording: Recording) -> pd.DataFrame:
+    """Return a recording as a data frame: see `Recording.to_pandas`."""
+    table = {name: getattr(recording, name) for name in recording.signals}
+    table |= {PREFIX + name: values for name, values in recording.extra.items()}
+    frame = data_frame(table, index="time")
+    frame.attrs[ATTRIBUTE] = attributes_text(recording)
+    return frame
 
 
 class FrameTable:
@@ -17,19 +39,23 @@ class FrameTable:
     Parameters
     ----------
     frame : DataFrame
+        Its index is a column of the table, too, if it has a name, or holds dates or durations. An xarray
+        Dataset counts as the frame that its `to_dataframe` returns.
 
     Raises
     ------
     InputError
-        It has no columns.
+        It has no columns, or describes a recording that this version cannot read.
     """
 
     source = "data frame"
     header_place = "data frame"
-    saved: Mapping[str, Any] | None = None
+    saved: Mapping[str, Any] | None
     other_names: Mapping[str, int] = MappingProxyType({})
 
     def __init__(self, frame: Any) -> None:
+        if hasattr(frame, "data_vars"):
+            frame = frame.to_dataframe()
         if not hasattr(frame, "columns") or not hasattr(frame, "__getitem__"):
             raise InputError(
                 "a data frame with columns is expected",
@@ -38,28 +64,56 @@ class FrameTable:
                 remedy="pass arrays as time and position of a Recording",
             )
         self._frame = frame
+        self.saved = None
         self._labels = list(frame.columns)
+        self._index = _named_index(frame)
         self.headers = tuple(map(str, self._labels))
+        if self._index is not None:
+            self.headers = (self._index[0], *self.headers)
+        text = getattr(frame, "attrs", {}).get(ATTRIBUTE)
+        if isinstance(text, str):
+            self.saved = saved_attributes(text, f"{self.source}, attrs")
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
         """Return columns as arrays of shape (n,), or raise `InputError`."""
         return [
-            signal_array(
-                "", self._frame[self._labels[k]], f"{self.source}, column {self.headers[k]!r}"
-            )
+            signal_array("", self._column(k), f"{self.source}, column {self.headers[k]!r}")
             for k in columns
         ]
 
     def raw(self, column: int) -> npt.NDArray[Any]:
         """Return the values of a column as the frame has them; of dates with a zone those of UTC."""
-        values = self._frame[self._labels[column]]
+        values = self._column(column)
         zone = getattr(getattr(values, "dt", None), "tz", None)
-        return np.asarray(values if zone is None else values.dt.tz_convert(None))
+        if zone is not None:
+            return np.asarray(values.dt.tz_convert(None))
+        if getattr(values, "tz", None) is not None:  # an index of dates with a zone
+            return np.asarray(values.tz_convert(None))
+        return np.asarray(values)
 
     def text(self, column: int) -> list[str]:
         """Return the values of a column as text."""
-        return [str(value) for value in np.asarray(self._frame[self._labels[column]]).tolist()]
+        return [str(value) for value in np.asarray(self._column(column)).tolist()]
 
     def place(self, column: int, row: int) -> str:
         """Return row and column of a value."""
         return f"{self.source}, row {row}, column {self.headers[column]!r}"
+
+    def _column(self, number: int) -> Any:
+        if self._index is not None:
+            if number == 0:
+                return self._index[1]
+            number -= 1
+        return self._frame[self._labels[number]]
+
+
+def _named_index(frame: Any) -> tuple[str, Any] | None:
+    """The index of a frame with its name, if it is one that a table can show."""
+    index = getattr(frame, "index", None)
+    if index is None or callable(index) or getattr(index, "nlevels", 1) != 1:
+        return None
+    clock = getattr(getattr(index, "dtype", None), "kind", "") in ("m", "M") or hasattr(index, "tz")
+    name = index.name if index.name is not None else "time" if clock else None
+    if name is None or str(name) in map(str, frame.columns):
+        return None
+    return str(name), index

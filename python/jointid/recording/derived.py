@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from jointid import _core
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.recording.gaps import Gap
 from jointid.recording.signals import FloatArray
 

@@ -1,9 +1,9 @@
 """Gaps in a recording."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from jointid.base.values import dataclass
+from jointid.recording.order_statistics import median
 from jointid.recording.signals import FloatArray
 
 _LONG = 3.5  # median sample periods: two lost samples in a row make no gap, three do
@@ -37,7 +37,7 @@ def find_gaps(time: FloatArray) -> tuple[Gap, ...]:
         Strictly increasing time stamps [s], n at least 2.
     """
     intervals = np.diff(time)
-    longest = _LONG * float(np.median(intervals))
+    longest = _LONG * median(intervals)
     return tuple(
         Gap(index=int(k), start=float(time[k]), duration=float(intervals[k]))
         for k in np.flatnonzero(intervals > longest)

@@ -1,8 +1,9 @@
 """Headers word by word: which signal names like `joint1_pos`, `actual_q_0` or `Axis 1.ActPos` mean."""
 
 import re
-from dataclasses import dataclass
 from functools import lru_cache
+
+from jointid.base.values import dataclass
 
 
 def _words_of(text: str) -> frozenset[str]:

@@ -1,9 +1,10 @@
 """The one column of each signal: chosen among its candidates, left out and said, or refused."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.recording.column_problems import (
     NEEDED,
     TORQUES,

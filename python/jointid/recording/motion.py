@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.recording.recording import Recording
 
 WIDER = "a motion of at least some hundred steps of the encoder"

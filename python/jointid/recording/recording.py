@@ -2,35 +2,37 @@
 
 import functools
 import os
-from collections.abc import Collection, Mapping, Sequence
-from typing import Any, Literal, Self
+from collections.abc import Collection, Mapping
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 import numpy.typing as npt
 
 from jointid.base.errors import InputError
 from jointid.recording.attributes import check_attributes, json_mapping
-from jointid.recording.changes import Changes
 from jointid.recording.derived import DerivedVelocity, derived_velocity
-from jointid.recording.extra import checked_extra, rows_of_extra, unit_of_extra
+from jointid.recording.extra import checked_extra, unit_of_extra
 from jointid.recording.gaps import Gap, find_gaps
 from jointid.recording.identity import fingerprint_of, line_of, same_fields
+from jointid.recording.order_statistics import median
+from jointid.recording.parts import Parts
 from jointid.recording.resampling import resampled
 from jointid.recording.signals import (
     SIGNALS,
     FloatArray,
+    Kind,
+    TorqueHold,
     check_signal_name,
     check_signals,
     shown_unit,
     signal_array,
 )
-from jointid.recording.slicing import slice_between, slices_of
 
-Kind = Literal["revolute", "prismatic"]
-TorqueHold = Literal["zoh", "linear"]
+if TYPE_CHECKING:
+    import pandas as pd
 
 
-class Recording(Changes):
+class Recording(Parts):
     """The signals of one joint over time, in SI units, read-only.
 
     Values are on the output (link) side of the gear unless the name says otherwise. For a
@@ -196,15 +198,10 @@ class Recording(Changes):
         )
         return cls(**contents.fields())
 
-    @property
-    def signals(self) -> tuple[str, ...]:
-        """Names of the signals present, time first, always in the same order."""
-        return tuple(name for name in SIGNALS if getattr(self, name) is not None)
-
     @functools.cached_property
     def sample_period(self) -> float:
         """Median time between samples [s]."""
-        return float(np.median(np.diff(self.time)))
+        return median(np.diff(self.time))
 
     @property
     def duration(self) -> float:
@@ -239,56 +236,6 @@ class Recording(Changes):
         check_signal_name(signal, "signal")
         return shown_unit(signal, self.kind)
 
-    def crop(self, start: float | None = None, stop: float | None = None) -> Self:
-        """Return the samples from one time to another.
-
-        Parameters
-        ----------
-        start, stop : float, optional
-            [s], on the recording's clock, both included. Default: the first and last sample.
-
-        Returns
-        -------
-        Recording
-            With the same time stamps and velocities, derived ones too.
-
-        Raises
-        ------
-        InputError
-            Fewer than 8 samples would be left, or a bound is no number.
-        """
-        return self._part(slice_between(self.time, start, stop))
-
-    def split(
-        self, parts: int | None = None, *, at: Sequence[float] | None = None
-    ) -> tuple[Self, ...]:
-        """Return the recording in consecutive parts that share no sample.
-
-        Parameters
-        ----------
-        parts : int, optional
-            How many; their numbers of samples differ by one at most.
-        at : sequence of float, optional
-            Instead of `parts`: the times [s] at which a new part begins, on the recording's
-            clock, increasing; a sample at such a time is the new part's first.
-
-        Returns
-        -------
-        tuple of Recording
-            Named ``"NAME 1/3"``, ..., with the same time stamps and velocities, derived ones too.
-
-        Raises
-        ------
-        InputError
-            Neither or both are given, a time is not inside the recording, or a part would have
-            fewer than 8 samples.
-        """
-        slices = slices_of(self.time, parts, at)
-        return tuple(
-            self._part(part, name=f"{self.name} {number}/{len(slices)}".lstrip())
-            for number, part in enumerate(slices, start=1)
-        )
-
     def resample(self, *, period: float | None = None, rate: float | None = None) -> Self:
         """Return the recording on a uniform clock.
 
@@ -321,6 +268,32 @@ class Recording(Changes):
         signals = resampled(self, period, rate)
         metadata = {**self.metadata, "resampled_from": self.sample_period}
         return type(self)(**{**self._fields(), **signals, "metadata": metadata})
+
+    def to_pandas(self) -> "pd.DataFrame":
+        """Return the recording as a data frame, one row a sample, in SI units.
+
+        `Recording.from_dataframe` returns an equal recording, bit for bit.
+
+        Returns
+        -------
+        DataFrame
+            The signals by name, the extra ones by ``"extra_NAME"``; indexed by time [s]. Its `attrs` hold what
+            is no column: the joint's kind, how torque is held, metadata.
+
+        Raises
+        ------
+        InputError
+            pandas is not installed; the extra `jointid[pandas]` installs it.
+
+        Examples
+        --------
+        >>> frame = recording.to_pandas()
+        >>> frame.loc[1.0:2.0, "torque"].max() <= recording.torque.max()
+        True
+        """
+        from jointid.recording.dataframe import frame_of
+
+        return frame_of(self)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the recording to a file, whole or not at all.
@@ -357,15 +330,14 @@ class Recording(Changes):
     def __repr__(self) -> str:
         return line_of(self)
 
+    def _repr_html_(self) -> str:
+        from jointid.recording.html import html_facts
+
+        return str(html_facts(self))
+
     def __reduce__(self) -> tuple[Any, ...]:
         # By the constructor: unpickled arrays are writable again.
         return functools.partial(type(self), **self._fields()), ()
-
-    def _part(self, kept: slice, **changes: Any) -> Self:
-        fields = self._fields()
-        fields.update({signal: fields[signal][kept] for signal in self.signals}, **changes)
-        fields["extra"] = rows_of_extra(self.extra, kept)
-        return type(self)(**fields)
 
     def _fields(self) -> dict[str, Any]:
         """Return the arguments that build this recording again."""

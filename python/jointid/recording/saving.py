@@ -1,7 +1,6 @@
 """Writing a recording: .csv, .csv.gz and .npz, which `load` reads back bit for bit."""
 
 import io
-import json
 import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -33,10 +32,13 @@ def save_recording(recording: "Recording", path: str | os.PathLike[str]) -> None
     write_whole(target, writer(recording))
 
 
-def _attributes(recording: "Recording") -> str:
+def attributes_text(recording: "Recording") -> str:
+    """Return what of a recording is no column, as JSON; `saved_attributes` reads it."""
     attributes = {name: getattr(recording, name) for name in _ATTRIBUTES}
     for name in ("metadata", "truth"):  # JSON knows dict, not read-only views
         attributes[name] = None if attributes[name] is None else dict(attributes[name])
+    import json
+
     return json.dumps({"schema": SCHEMA, **attributes})
 
 
@@ -47,14 +49,14 @@ def _csv(recording: "Recording") -> bytes:
     columns = [getattr(recording, name).tolist() for name in names]
     columns += [values.tolist() for values in recording.extra.values()]
     rows = (",".join(map(repr, row)) for row in zip(*columns, strict=True))
-    lines = [CSV_MARK + _attributes(recording), ",".join(headers), *rows, ""]
+    lines = [CSV_MARK + attributes_text(recording), ",".join(headers), *rows, ""]
     return "\n".join(lines).encode("ascii")
 
 
 def _npz(recording: "Recording") -> bytes:
     arrays = {name: getattr(recording, name) for name in recording.signals}
     arrays |= {PREFIX + name: values for name, values in recording.extra.items()}
-    arrays[NPZ_MEMBER] = np.array(_attributes(recording))
+    arrays[NPZ_MEMBER] = np.array(attributes_text(recording))
     stream = io.BytesIO()
     np.savez_compressed(stream, allow_pickle=False, **arrays)
     return stream.getvalue()
@@ -90,10 +92,14 @@ def saved_attributes(text: str, place: str) -> dict[str, object]:
     InputError
         The text is not what `save_recording` writes, or a later version wrote it.
     """
+    from jointid.base.schema import read_json
+    from jointid.recording.saved_schema import SAVED
+
     try:
-        attributes = json.loads(text)
-    except (ValueError, RecursionError):
-        raise InputError("the description of the recording is damaged JSON", place=place) from None
+        attributes = read_json(text)
+    except InputError as error:
+        reason = f"the description of the recording is damaged JSON ({error.reason})"
+        raise InputError(reason, place=place) from None
     if not isinstance(attributes, dict):
         raise InputError("the description of the recording is not a JSON object", place=place)
     schema = attributes.get("schema")
@@ -109,4 +115,8 @@ def saved_attributes(text: str, place: str) -> dict[str, object]:
         raise InputError(
             f"{' or '.join(KINDS)} is expected", argument="kind", value=kind, place=place
         )
-    return {key: attributes[key] for key in (*_ATTRIBUTES, "robot") if key in attributes}
+    try:
+        checked = SAVED.read(attributes, "")
+    except InputError as error:
+        raise error.at(place) from None
+    return {key: checked[key] for key in (*_ATTRIBUTES, "robot") if key in checked}

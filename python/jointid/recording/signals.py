@@ -1,8 +1,7 @@
 """The signals of a recording: their names, dimensions and units, and checks of their values."""
 
-import difflib
 from collections.abc import Callable, Collection, Mapping
-from typing import TypeGuard
+from typing import Literal, TypeGuard, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +15,9 @@ SIGNALS = (
     *("time", "position", "velocity", "torque", "sensor", "reference", "link_position"),
     *("temperature", "motor_torque", "current", "late"),
 )
-KINDS = ("revolute", "prismatic")
+Kind = Literal["revolute", "prismatic"]
+TorqueHold = Literal["zoh", "linear"]
+KINDS: tuple[str, ...] = get_args(Kind)
 SHORTEST = 8  # samples: fewer give no window with a residual
 
 # For a revolute and for a prismatic joint; the first dimension is the one stored.
@@ -95,6 +96,8 @@ def check_signal_name(name: object, argument: str) -> None:
 
 def closest(name: object, known: Collection[str], cutoff: float = 0.6) -> str | None:
     """Return the known name closest to a misspelt one, or None below a likeness of `cutoff`."""
+    import difflib
+
     by_folded = {each.casefold(): each for each in known}
     close = difflib.get_close_matches(str(name).casefold(), by_folded, n=1, cutoff=cutoff)
     return by_folded[close[0]] if close else None
@@ -120,8 +123,9 @@ def signal_array(name: str, values: npt.ArrayLike, place: str = "") -> FloatArra
     """
     if _frozen(values):
         return values
-    if isinstance(values, np.ma.MaskedArray) and np.ma.getmaskarray(values).any():
-        index = int(np.flatnonzero(np.ma.getmaskarray(values))[0])
+    # Only what has a mask is worth the import of numpy.ma.
+    if hasattr(values, "mask") and isinstance(values, np.ma.MaskedArray) and values.mask.any():
+        index = int(np.flatnonzero(values.mask)[0])
         raise InputError(
             f"masked at index {index}", argument=name, place=place, remedy="leave such samples out"
         )

@@ -6,6 +6,7 @@ import numpy as np
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
+from jointid.recording.order_statistics import median
 from jointid.recording.signals import FloatArray
 from jointid.recording.units import UNITS, Unit
 
@@ -54,8 +55,8 @@ def unit_of_stamps(first: float, since: FloatArray, place: str) -> Unit | None:
         steps = np.diff(since[:_EXAMINED])
         steps = steps[(steps > 0.0) & np.isfinite(steps)]
         usual = since[:_EXAMINED][np.isfinite(since[:_EXAMINED])]
-        size = first + float(np.median(usual)) if len(usual) else first
-        step = float(np.median(steps)) if len(steps) else 0.0
+        size = first + median(usual) if len(usual) else first
+        step = median(steps) if len(steps) else 0.0
     fitting = _of_size(size)
     second = UNITS["s"]
     if step <= _STEPS[1] and (second in fitting or not fitting):

@@ -1,11 +1,11 @@
 """Sessions' .csv files: their opening and closing lines, and files that end early (truncated)."""
 
-import json
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from jointid.base.errors import InputError
 from jointid.recording.saving import CSV_MARK
 from jointid.recording.signals import FloatArray
 
@@ -92,8 +92,10 @@ def unrecorded(saved: Mapping[str, Any], values: Mapping[str, FloatArray]) -> li
 
 
 def _json_object(text: str) -> dict[str, Any] | None:
+    from jointid.base.schema import Json, read_json
+
     try:
-        value = json.loads(text)
-    except (ValueError, RecursionError):
+        value = Json(finite=False).read(read_json(text), "")
+    except InputError:
         return None
     return value if isinstance(value, dict) else None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from jointid import _core
+from jointid.recording.order_statistics import median
 from jointid.recording.recording import Recording
 
 
@@ -22,7 +23,7 @@ def noise_of_velocity(recording: Recording) -> float:
     differences, which show neither a delay nor a filter.
     """
     if follows_position(recording):
-        return float(np.median(recording.derived.noise))
+        return median(recording.derived.noise)
     after = [gap.index for gap in recording.gaps]
     return _core.position_noise(
         recording.time, recording.velocity, after, recording.sample_period

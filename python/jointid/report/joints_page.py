@@ -14,20 +14,12 @@ from jointid.estimate.html_tables import html_findings, html_quality
 from jointid.estimate.html_tables import html_table as html_parameters
 from jointid.joints.html_tables import html_couplings, html_shares, html_table
 from jointid.joints.result import JointEstimates, JointResult
-from jointid.report.html import STYLE, friction_picture, shown_by, windows_picture
+from jointid.report.estimate_pictures import friction_picture, windows_picture
+from jointid.report.html import shown_by
+from jointid.report.style import STYLE, WIDE
 
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
-
-WIDE = """
-body { max-width: 76rem; } p, ul { max-width: 56rem; }
-table { font-size: .92rem; } .wide { overflow-x: auto; }
-table.joints td { white-space: nowrap; }
-table.joints td:last-child { white-space: normal; overflow-wrap: anywhere; min-width: 9rem; }
-table.joints th { white-space: normal; }
-@media screen { body { max-width: 96vw; } }
-table.joints td:nth-child(2), table.joints td:nth-child(3) { text-align: left; }
-"""
 
 
 def joints_report(result: JointEstimates, action: Callable[[Action], str] = str) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,14 +11,14 @@ from jointid.base.advice import Action
 from jointid.base.argument_checks import require_path
 from jointid.base.files import write_whole
 from jointid.base.html import Html, element, page, table
-from jointid.report.html import STYLE, picture
-from jointid.report.joints_page import WIDE, slug
+from jointid.estimate.window_views import window_centres, with_gaps
+from jointid.report.drawing.marks import Line, Mark, Panel, Points
+from jointid.report.figure import captioned
+from jointid.report.joints_page import slug
+from jointid.report.style import STYLE, WIDE
 from jointid.robot.comparison_result import RobotComparison
 from jointid.robot.result import RobotEstimate, RobotJoint
 from jointid.robot.tables import base_rows, head, quality, rows
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 def robot_report(
@@ -117,22 +116,23 @@ def _findings(estimate: RobotEstimate, action: Callable[[Action], str]) -> Html:
 def _section(estimate: RobotEstimate, joint: RobotJoint, number: int) -> list[Html | str]:
     return [
         element("h2", joint.name, id=f"joint-{slug(joint.name)}"),
-        picture(
+        captioned(
             "Friction: a grey point is the torque over one window less all but this joint's friction, the line is what "
             "was identified, with the other joints at rest.",
-            lambda axes: _friction(estimate, joint, number, axes[0]),
+            _friction(estimate, joint, number),
         ),
-        picture(
+        captioned(
             "Above: measured and fitted mean torque over each window. Below: the residual.",
-            lambda axes: _windows(joint, axes),
-            rows=2,
+            *_windows(joint),
         ),
     ]
 
 
-def _friction(estimate: RobotEstimate, joint: RobotJoint, number: int, axes: Axes) -> None:
+def _friction(estimate: RobotEstimate, joint: RobotJoint, number: int) -> Panel:
     windows = joint.windows
-    axes.plot(windows.velocity, windows.friction, ".", color="0.65", label="windows")
+    marks: list[Mark] = [
+        Points(look="measured", label="windows", across=windows.velocity, up=windows.friction)
+    ]
     peak = float(np.abs(windows.velocity).max(initial=0.0))
     for sign in (-1.0, 1.0):
         speeds = sign * np.linspace(1e-3, 1.0, 100) * peak
@@ -141,22 +141,39 @@ def _friction(estimate: RobotEstimate, joint: RobotJoint, number: int, axes: Axe
         if "static" in p:
             decay = np.exp(-p["stribeck"].value * speeds**2)
             values = values + sign * p["static"].value * decay
-        axes.plot(speeds, values, color="C0", label="identified" if sign > 0.0 else None)
+        marks.append(Line(label="identified" if sign > 0.0 else "", across=speeds, up=values))
     slides = estimate.robot.tree.prismatic[number]
-    axes.set_xlabel(f"velocity [{'m/s' if slides else 'rad/s'}]")
-    axes.set_ylabel(f"friction [{'N' if slides else 'N·m'}]")
-    axes.legend()
+    return Panel(
+        across=f"velocity [{'m/s' if slides else 'rad/s'}]",
+        up=f"friction [{'N' if slides else 'N·m'}]",
+        marks=tuple(marks),
+    )
 
 
-def _windows(joint: RobotJoint, axes: list[Axes]) -> None:
+def _windows(joint: RobotJoint) -> tuple[Panel, Panel]:
     windows = joint.windows
-    centre = 0.5 * (windows.start + windows.stop)
-    order = np.lexsort((centre, windows.recording))
+    centre = window_centres(windows)
+    order = np.argsort(centre, kind="stable")
     unit = joint.parameters["coulomb"].unit
-    for values, label in ((windows.measured, "measured"), (windows.fitted, "fitted")):
-        axes[0].plot(centre[order], (values / windows.duration)[order], label=label)
-    axes[0].set_ylabel(f"torque [{unit}]")
-    axes[0].legend()
-    axes[1].plot(centre[order], (windows.residual / windows.duration)[order])
-    axes[1].set_ylabel(f"residual [{unit}]")
-    axes[1].set_xlabel("time [s]")
+    time, measured, fitted, residual = with_gaps(
+        centre[order],
+        *(
+            (values / windows.duration)[order]
+            for values in (windows.measured, windows.fitted, windows.residual)
+        ),
+    )
+    means = Panel(
+        across="time [s]",
+        up=f"torque [{unit}]",
+        marks=(
+            Points(look="measured", label="measured", across=time, up=measured),
+            Line(label="fitted", across=time, up=fitted),
+        ),
+    )
+    below = Panel(
+        across="time [s]",
+        up=f"residual [{unit}]",
+        height=110,
+        marks=(Line(look="second", across=time, up=residual),),
+    )
+    return means, below

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 from typing import Any
 
 from jointid.base.errors import InputError
+from jointid.base.schema import Plain, TableOf
+from jointid.base.toml_file import read_toml
 
 KEYS = (
     *("joints", "gear_ratios", "couplings", "rotor_inertias", "zero_offsets", "zero_offsets_deg"),
     *("gravity", "side", "torque_scales", "directions"),
 )
+
+_FACTS = TableOf(Plain())  # `Robot` says more of each value
 
 
 def read_facts(path: Path) -> dict[str, Any]:
@@ -20,19 +23,12 @@ def read_facts(path: Path) -> dict[str, Any]:
     Raises
     ------
     InputError
-        No TOML, or a key that is unknown.
-    OSError
-        The file cannot be read.
+        It cannot be read, is no TOML, or has a key that is unknown or a number that is not finite; names the file.
     """
     try:
-        found = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(
-            f"no TOML: {error}",
-            argument="facts",
-            value=path.name,
-            remedy="write lines like gear_ratios = [32, 32, 45, -48, 45, 32]",
-        ) from None
+        found = _FACTS.read(read_toml(path), "")
+    except InputError as error:
+        raise (error if error.place.startswith(str(path)) else error.at(path.name)) from None
     for key in found:
         if key not in KEYS:
             raise InputError(
@@ -41,10 +37,17 @@ def read_facts(path: Path) -> dict[str, Any]:
                 value=found[key],
                 place=path.name,
             )
+    if found.get("joints") == []:
+        raise InputError(
+            "a list of names is expected", argument="joints", value=[], place=path.name
+        )
     if "zero_offsets_deg" in found:
         if "zero_offsets" in found:
             raise InputError(
-                "it is given twice", argument="zero_offsets", value=path.name, place=path.name
+                "zero_offsets says the same in radians; one of the two is expected",
+                argument="zero_offsets_deg",
+                value=found["zero_offsets_deg"],
+                place=path.name,
             )
         degrees = found.pop("zero_offsets_deg")
         try:

@@ -18,11 +18,11 @@ from jointid.estimate.json import (
 )
 from jointid.estimate.statistics import ResidualStatistics
 from jointid.problem.window_table import WindowTable
-from jointid.robot.columns import MEANINGS
+from jointid.robot.columns import DIFFERENCE, MEANINGS
 from jointid.robot.document import KIND, SCHEMA
 from jointid.robot.json_schema import ROBOT_ESTIMATE
 from jointid.robot.link_tree import LinkTree
-from jointid.robot.models import STRIBECK
+from jointid.robot.models import PLAIN, STRIBECK, modelled
 from jointid.robot.result import RobotEstimate, RobotJoint
 from jointid.robot.robot import Robot
 from jointid.robot.shifts import torque_shift
@@ -132,7 +132,7 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield from _of_robot(d["robot"])
     names = [each["name"] for each in d["robot"]["joints"]]
     if list(d["joints"]) != names:
-        yield "joints", f"the robot has {', '.join(names)}, in this order"
+        yield "joints", f"the robot has {' '.join(', '.join(names).split())}, in this order"
     for name, each in d["joints"].items():
         yield from _of_joint(name, each, len(d["settings"]["recordings"]))
     if len(d["inertial"]) != len(names):
@@ -170,7 +170,8 @@ def _of_joint(name: str, d: Mapping[str, Any], recordings: int) -> Iterator[tupl
     for pair in _PAIRS:
         if len(held.keys() & set(pair)) == 1:
             yield f"{place}.parameters", f"{' and '.join(pair)} go together"
-    if (d["model"] == STRIBECK) != ("static" in held):
+    has = modelled(STRIBECK if "static" in held else PLAIN, DIFFERENCE in held)
+    if d["model"] != has:
         yield f"{place}.model", "it does not fit the parameters"
     windows = d["windows"]
     if windows is not None:

@@ -147,6 +147,8 @@ class RobotEstimate:
             speeds = np.asarray(velocity, dtype=np.float64)
         except (TypeError, ValueError):
             speeds = np.zeros(0)
+        if not np.all(np.isfinite(speeds)):
+            raise InputError("finite speeds are expected", argument="velocity", value=velocity)
         if speeds.ndim not in (1, 2) or speeds.shape[-1] != self.robot.n:
             raise InputError(
                 f"{self.robot.n} numbers are expected, one a joint",

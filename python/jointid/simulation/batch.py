@@ -1,13 +1,13 @@
 """Simulate many closed loops side by side."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from jointid import _core
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.joint.joint import Joint
 from jointid.joint.link import Link
 from jointid.recording.signals import FloatArray

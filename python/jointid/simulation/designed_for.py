@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from typing import Any
 
 from jointid.base.error_text import printable
+from jointid.base.values import dataclass
 from jointid.joint.joint import Joint
 from jointid.joint.link import Link
 from jointid.simulation.arguments import Controller, law_name

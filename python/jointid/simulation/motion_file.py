@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,7 @@ from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
 from jointid.base.schema import Kind, ListOf, Number, Plain, Record, TableOf, Text
 from jointid.base.toml_file import read_toml
+from jointid.base.values import dataclass
 from jointid.joint.angles import in_radians
 from jointid.joint.joint_file import joint_from_document
 from jointid.simulation.designed_for import DesignedFor

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, fields
 from typing import Any
 
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.joint.checks import finite_number, not_negative, set_numbers
 
 

@@ -1,12 +1,12 @@
 """A joint, its parameters' values and its payload, as the core simulates them."""
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 from jointid import _core
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.joint.checks import not_negative, positive_number, set_numbers
 from jointid.joint.joint import Joint
 from jointid.joint.link import Link

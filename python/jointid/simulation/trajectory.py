@@ -3,14 +3,14 @@
 import functools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any, Self, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from jointid import _core
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.recording.recording import Recording
 
 FloatArray = npt.NDArray[np.float64]
@@ -28,7 +28,7 @@ _FARTHEST = 1e6  # rad, m or N·m; beyond, errors of a simulation have no finite
 _MOST_SINES = 5e7  # samples of all sines, to find the peak of a multisine
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Trajectory:
     """A desired motion over time; made by the class methods.
 
@@ -260,9 +260,48 @@ class Trajectory:
         """The core's object."""
         return _MAKE[self.form](**dict(self.arguments))
 
-    def sample(self, time: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return position [rad], velocity [rad/s] and acceleration [rad/s²] at some times [s]."""
-        wanted = self.core.sample(np.asarray(time, dtype=np.float64))
+    @overload
+    def sample(self, time: float) -> tuple[float, float, float]: ...
+
+    @overload
+    def sample(self, time: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]: ...
+
+    def sample(
+        self, time: npt.ArrayLike
+    ) -> tuple[FloatArray, FloatArray, FloatArray] | tuple[float, float, float]:
+        """Return position [rad], velocity [rad/s] and acceleration [rad/s²] at some times [s].
+
+        Parameters
+        ----------
+        time : array_like of shape (n,), or float
+            [s]
+
+        Returns
+        -------
+        tuple of three ndarray of shape (n,), or of three float
+
+        Raises
+        ------
+        InputError
+            Something that is no number or list of numbers.
+
+        Examples
+        --------
+        >>> position, velocity, _ = jid.Trajectory.sine(0.5, 0.25, duration=8.0).sample(1.0)
+        >>> round(position, 6), round(velocity, 6)
+        (0.5, 0.0)
+        """
+        try:
+            times = np.asarray(time, dtype=np.float64)
+        except (TypeError, ValueError):
+            times = np.empty((0, 0))
+        if times.ndim > 1 or not np.isfinite(times).all():
+            raise InputError(
+                "times [s] are expected, a number or several", argument="time", value=time
+            )
+        wanted = self.core.sample(np.atleast_1d(times))
+        if times.ndim == 0:
+            return float(wanted[0, 0]), float(wanted[0, 1]), float(wanted[0, 2])
         return wanted[:, 0], wanted[:, 1], wanted[:, 2]
 
     @classmethod
@@ -291,6 +330,16 @@ class Trajectory:
         trajectory = cls(form, tuple(arguments.items()))
         _ = trajectory.core  # wrong arguments raise here, not at first use
         return trajectory
+
+    def __repr__(self) -> str:
+        from jointid.simulation.trajectory_facts import line_of
+
+        return line_of(self)
+
+    def _repr_html_(self) -> str:
+        from jointid.simulation.trajectory_facts import html_facts
+
+        return str(html_facts(self))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.form, self.arguments)

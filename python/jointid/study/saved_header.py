@@ -6,26 +6,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from jointid.base.errors import InputError
-from jointid.base.schema import LARGEST, ListOf, Number, Plain, Record, TableOf, Text
+from jointid.base.schema import Json, ListOf, Number, Plain, Record, TableOf, Text
 
 FORMAT = "jointid-study"
 SCHEMA = 1
 EXPECTED = "a file that a sweep wrote is expected"
 
 
-@dataclass(frozen=True, slots=True)
-class _Value:
-    """A label or a setting, which is only shown and compared: of any length, and perhaps not finite."""
-
-    def read(self, value: Any, place: str) -> Any:
-        """Return the value."""
-        if isinstance(value, str):
-            return Text(longest=LARGEST).read(value, place)
-        if isinstance(value, list):
-            return ListOf(self).read(value, place)
-        if isinstance(value, dict):
-            return TableOf(self).read(value, place)
-        return value
+# A label or a setting, which is only shown and compared: of any length, and perhaps not finite.
+_VALUE = Json(finite=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +25,7 @@ class _Label:
         """Return the value."""
         if isinstance(value, list | dict):
             raise InputError("a text or a number is expected", value=value, place=place)
-        return _Value().read(value, place)
+        return _VALUE.read(value, place)
 
 
 _HEADER = Record(
@@ -50,7 +39,7 @@ _HEADER = Record(
         "cells": ListOf(TableOf(_Label()), shortest=1),
         "truth": TableOf(Number()),
         "truths": ListOf(TableOf(Number())),
-        "settings": TableOf(_Value()),
+        "settings": TableOf(_VALUE),
     },
     optional={"version": Text()},
     other=Plain(),

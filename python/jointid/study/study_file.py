@@ -12,7 +12,7 @@ from typing import Any, Self
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.base.schema import read_json
+from jointid.base.schema import read_bytes, read_json
 from jointid.study.row import REFUSED, Row
 from jointid.study.saved_header import EXPECTED, read_header
 
@@ -59,7 +59,7 @@ class StudyFile:
                 raise InputError(
                     f"the file belongs to another study: {_difference(known, header)}",
                     argument="output",
-                    value=str(path),
+                    place=str(path),
                     remedy=_ANOTHER,
                 )
             self._file = path.open("r+b")
@@ -118,7 +118,7 @@ def read(path: Path) -> tuple[dict[str, Any], list[Row], int]:
         The file cannot be read, or is not a study.
     """
     try:
-        content = path.read_bytes()
+        content = read_bytes(path)
     except OSError as error:
         raise InputError(f"the study cannot be read: {error.strerror}", place=str(path)) from error
     length = content.rfind(b"\n") + 1

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
+from jointid.base.frames import data_frame
 from jointid.joint.checks import suggestion
 from jointid.study import study_file, tables
 from jointid.study.row import Row
@@ -119,7 +120,7 @@ class Study:
         InputError
             pandas is not installed; the extra `jointid[pandas]` installs it.
         """
-        return tables.data_frame(tables.columns(self))
+        return data_frame(tables.columns(self))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the table to .csv or .parquet, or the study itself to .jsonl; a failed write changes no file.

@@ -12,8 +12,8 @@ import numpy as np
 
 from jointid.base.error_text import printable
 from jointid.base.errors import InputError
+from jointid.base.frames import data_frame
 from jointid.study.row import REFUSED, Row
-from jointid.study.tables import data_frame
 
 if TYPE_CHECKING:
     import pandas as pd

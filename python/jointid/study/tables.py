@@ -6,7 +6,6 @@ import csv
 import io
 import json
 import math
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,8 +13,6 @@ from jointid.base.errors import InputError
 from jointid.base.files import write_whole
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from jointid.study.study_result import Study
 
 
@@ -38,24 +35,6 @@ def columns(study: Study) -> dict[str, list[Any]]:
     if any(row.status == "refused" for row in rows):
         table["message"] = [row.message for row in rows]
     return table
-
-
-def data_frame(table: Mapping[str, list[Any]] | list[dict[str, Any]]) -> pd.DataFrame:
-    """Return a data frame of columns or records.
-
-    Raises
-    ------
-    InputError
-        pandas is not installed.
-    """
-    try:
-        import pandas as pd
-    except ModuleNotFoundError as error:
-        raise InputError(
-            "a data frame needs the package pandas",
-            remedy="install it with: pip install 'jointid[pandas]'",
-        ) from error
-    return pd.DataFrame(table)
 
 
 def save(study: Study, path: Path) -> None:

@@ -11,7 +11,7 @@ from jointid.base.errors import InputError
 from jointid.hardware.bench.bench import Bench, BusOptions, Emulation, joint_with_truth
 from jointid.hardware.bench.drive_types import DEFAULT_TYPE, DriveType, drive_type, drive_type_names
 from jointid.hardware.bench.first_motion_options import FirstMotionOptions
-from jointid.hardware.bench.table import Table, types_of
+from jointid.hardware.bench.table import Table, type_name, types_of
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.options import SessionOptions, check_cycles
 from jointid.hardware.session.realtime import RealTimeOptions
@@ -149,7 +149,9 @@ def _trajectory(table: Table) -> Trajectory:
     for name in _ANGLES:
         if (text := text_in(arguments.entries.get(name))) is not None:
             table.refuse(name, ANGLE_EXPECTED, text)
-    trajectory: Trajectory = arguments.call(make, dict.fromkeys(expected, ""))
+    trajectory: Trajectory = arguments.call(
+        make, {name: type_name(parameter.annotation) for name, parameter in expected.items()}
+    )
     return trajectory
 
 

@@ -22,6 +22,7 @@ from jointid.simulation.trajectory import Trajectory
 
 FloatArray = npt.NDArray[np.float64]
 _LEAST = 8  # samples of a recording
+_MOST = 10**9  # cycles before them
 
 
 def replay(
@@ -91,7 +92,7 @@ def replay(
         drive_options = adapter.recorded_options(metadata) if options is None else options
         period = _period(metadata.get("control_period") if period is None else period)
         before = metadata.get("cycles_before", 0) if cycles_before is None else cycles_before
-        if not isinstance(before, int) or before < 0:
+        if not isinstance(before, int) or not 0 <= before <= _MOST:
             raise InputError("0 or more is expected", argument="cycles_before", value=before)
         recorded = metadata.get("drive")
         identity = dict(recorded) if isinstance(recorded, Mapping) else {}
@@ -114,9 +115,9 @@ def replay(
     sensor = _column(cycles, "reading")
     reference = None if session is None else session.reference
     if trajectory is not None:
-        wanted = trajectory.sample(due)
-        reference = target_at(*wanted, capped(shift, period))
-    return Recording(
+        position, velocity, acceleration = trajectory.sample(due)
+        reference = target_at(position, velocity, acceleration, capped(shift, period))
+    fields = dict[str, Any](
         time=due + shift,
         position=_column(cycles, "position"),
         torque=held_torque(torque[kept], torque[kept + 1], acted, period),
@@ -128,6 +129,10 @@ def replay(
         name=file.stem,
         metadata={**metadata, "replayed": file.name},
     )
+    try:
+        return Recording(**fields)
+    except InputError as error:  # e.g. of a period that no session has
+        raise error.at(str(file)) from None
 
 
 def _session(file: Path, recording: str | os.PathLike[str] | Recording | None) -> Recording | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import MISSING, fields
 from typing import Any, NoReturn, TypeVar
@@ -146,6 +147,9 @@ class Table:
         raise InputError(reason, argument=name, value=value, place=self.place)
 
     def _check(self, name: str, value: object, type_: str) -> None:
+        for each in value if isinstance(value, list) else [value]:
+            if isinstance(each, int) and abs(each) > sys.float_info.max:
+                self.refuse(name, "the number is too large")
         expected = _KINDS.get(type_.removesuffix(" | None"))
         if expected is None or (value is None and type_.endswith(" | None")):
             return
@@ -156,8 +160,9 @@ class Table:
 
 def types_of(kind: Any) -> dict[str, str]:
     """Return the fields of a dataclass and their types as text."""
-    # A type is a text already where annotations are postponed.
-    return {
-        item.name: item.type.__name__ if isinstance(item.type, type) else str(item.type)
-        for item in fields(kind)
-    }
+    return {item.name: type_name(item.type) for item in fields(kind)}
+
+
+def type_name(annotation: Any) -> str:
+    """Return a type as text, which it is already where annotations are postponed."""
+    return annotation.__name__ if isinstance(annotation, type) else str(annotation)

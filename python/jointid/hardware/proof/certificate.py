@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import platform
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
@@ -15,7 +14,8 @@ from typing import Any
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
-from jointid.base.schema import Number, Plain, Record, TableOf, Text, read_text
+from jointid.base.schema import ListOf, Number, Plain, Record, TableOf, Text
+from jointid.base.toml_file import read_toml
 from jointid.hardware.bench.bench import Bench
 from jointid.hardware.bench.drive_types import drive_type
 from jointid.hardware.proof.certified_limits import limits_facts, notes, widened
@@ -25,12 +25,21 @@ SCHEMA = 1
 VALID = timedelta(days=30)
 _CLOCK = timedelta(minutes=5)  # that this machine's clock may have been ahead when it was written
 
+_LIMITS = Record(
+    {},
+    {
+        "position": ListOf(Number(), 2, 2),
+        **dict.fromkeys(("velocity", "torque", "current", "position_offset"), Number()),
+    },
+    other=Plain(),
+)
 _TABLES = ("joint", "wiring", "drive", "found", "limits", "versions")
 _SCHEMA = Record(
     {
         "schema": Number(low=SCHEMA, high=SCHEMA, whole=True),
         "date": Text(longest=100),
         **{name: TableOf(Plain()) for name in _TABLES},
+        "limits": _LIMITS,
     }
 )
 
@@ -126,14 +135,15 @@ class Certificate:
         """
         source = Path(path)
         try:
-            table = _SCHEMA.read(tomllib.loads(read_text(source)), "")
-            date = datetime.fromisoformat(table["date"])
-        except (tomllib.TOMLDecodeError, RecursionError) as error:
-            raise InputError(f"this is no certificate: {error}", place=str(source)) from error
+            table = _SCHEMA.read(read_toml(source), "")
         except InputError as error:
-            raise error.at(str(source)) if error.place != str(source) else error from error
-        except ValueError as error:
-            raise _no_date(table["date"], source) from error
+            raise (
+                error if error.place.startswith(str(source)) else error.at(str(source))
+            ) from None
+        try:
+            date = datetime.fromisoformat(table["date"])
+        except ValueError:
+            raise _no_date(table["date"], source) from None
         if date.tzinfo is None:
             raise _no_date(table["date"], source)
         return cls(date=date, **{name: table[name] for name in _TABLES})

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.base.values import dataclass
 from jointid.identification.causes.candidates import Candidate
 from jointid.identification.causes.events import LocalEvent, local_event
 from jointid.identification.causes.fitted import Fitted

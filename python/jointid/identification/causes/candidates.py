@@ -7,14 +7,15 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.values import dataclass
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.loads import load_friction_of_sensor, load_frictions_of_motion
+from jointid.recording.order_statistics import quantile
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -297,7 +298,7 @@ def _angle(fit: Fitted, order: float) -> Array:
 
 
 def _typical_speed(fit: Fitted) -> float:
-    return max(float(np.quantile(np.abs(run.velocity), 0.9)) for run in fit.problem.recordings)
+    return max(quantile(np.abs(run.velocity), 0.9) for run in fit.problem.recordings)
 
 
 def _present(signal: Array | None) -> Array:

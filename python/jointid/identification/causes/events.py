@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.base.values import dataclass
 from jointid.identification.causes.fitted import Fitted
+from jointid.recording.order_statistics import quantile
 
 Array = NDArray[np.float64]
 
@@ -83,7 +83,7 @@ def local_event(fit: Fitted, base: Array, residual: Array) -> LocalEvent | None:
 
 def _is_slow(fit: Fitted, power: Array) -> bool:
     speed = fit.integral(lambda _, run: np.abs(run.velocity)) / fit.duration
-    slow = speed < np.quantile(speed, _SLOW)
+    slow = speed < quantile(speed, _SLOW)
     return float(power[slow].sum()) > 0.5 * float(power.sum())
 
 

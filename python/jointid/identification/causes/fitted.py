@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.values import dataclass
 from jointid.identification.causes.folds import BLOCKS, first_windows
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import output_torque
+from jointid.recording.order_statistics import distinct
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]
@@ -164,7 +166,7 @@ class Fitted:
         size = np.where(size > 0.0, size, 1.0)
         scaled = self.jacobian / size
         square = np.einsum("ni,nj->ij", scaled, scaled) + 1e-12 * np.eye(len(size))
-        first = np.unique(np.linspace(0, len(beside), BLOCKS + 1).astype(int)[:-1])
+        first = distinct(np.linspace(0, len(beside), BLOCKS + 1).astype(int)[:-1])
         sums = np.add.reduceat(scaled * beside[:, None], first, axis=0)
         errors = np.sqrt(np.sum(np.linalg.solve(square, sums.T) ** 2, axis=1)) / size
         return {self.names[k]: float(e) for k, e in zip(self.free, errors, strict=True)}

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+from jointid.base.values import dataclass
+from jointid.recording.order_statistics import distinct
 
 Array = NDArray[np.float64]
 
@@ -27,7 +29,7 @@ def first_windows(run: NDArray[np.int64], factor: int) -> NDArray[np.int64]:
     """Return the first of every `factor` neighbouring windows of one recording."""
     if factor == 1:
         return np.arange(len(run))
-    edges = np.searchsorted(run, np.arange(run[-1] + 2))  # none of a recording without a window
+    edges = np.searchsorted(run, [*distinct(run), run[-1] + 1])
     return np.concatenate([np.arange(low, high, factor) for low, high in itertools.pairwise(edges)])
 
 

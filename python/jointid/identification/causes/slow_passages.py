@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.base.values import dataclass
 from jointid.identification.causes.fitted import Fitted
+from jointid.recording.order_statistics import quantile
 
 Array = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ class SlowRows:
 def slow_rows(fit: Fitted, base: Array, residual: Array) -> SlowRows | None:
     """Return the slow windows if they hold most of the misfit, in several passages; else None."""
     velocity = fit.integral(lambda _, run: np.abs(run.velocity)) / fit.duration
-    speed = float(np.quantile(velocity, _SLOW))
+    speed = quantile(velocity, _SLOW)
     rows = velocity < speed
     steps = fit.solve(base, residual)
     steps[: len(fit.start)] -= fit.start

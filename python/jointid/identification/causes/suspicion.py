@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from jointid.identification.causes.folds import summed
 from jointid.problem.inner_products import inner
+from jointid.recording.order_statistics import quantile
 
 Array = NDArray[np.float64]
 
@@ -59,7 +60,7 @@ def slow_misfit(residual: Array, duration: Array, velocity: Array) -> float:
     """Mean squared misfit of the slowest windows over that of the others."""
     if len(residual) < 5 * _FEWEST:
         return 1.0
-    slow = np.abs(velocity) < np.quantile(np.abs(velocity), _SLOW)
+    slow = np.abs(velocity) < quantile(np.abs(velocity), _SLOW)
     power = residual**2 / duration
     others = float(power[~slow].mean())
     return float(power[slow].mean()) / others if slow.any() and others > 0.0 else 1.0

@@ -7,12 +7,11 @@ give a parameter (Satterthwaite), which is few where few segments determine it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.values import dataclass
 from jointid.identification.inference.segments import Cuts, Segments
 
 Array = NDArray[np.float64]

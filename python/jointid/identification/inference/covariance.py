@@ -1,11 +1,10 @@
 """Uncertainty of a least-squares estimate: covariance, correlations and the least determined direction."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.values import dataclass
 from jointid.identification.inference.clustered import stretch_of
 from jointid.identification.inference.segments import Segments, even_segments
 from jointid.problem.inner_products import inner

@@ -8,12 +8,13 @@ fixed ones are smaller by it beforehand: so both are a refit over the same windo
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.values import dataclass
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.search.stated_bounds import known_values
 from jointid.joint.joint import Joint

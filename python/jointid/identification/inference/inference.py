@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.values import dataclass
 from jointid.estimate.statistics import ParameterEstimate, ResidualStatistics
 from jointid.estimate.student import limited_half_width, quantile
 from jointid.identification.inference.covariance import Covariance

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.values import dataclass
 from jointid.identification.inference.measuring_again import NoiseEffect, Shifts, noise_effect
 from jointid.identification.inference.velocity_noise import measured_again
 from jointid.joint.own_terms import OwnTerms

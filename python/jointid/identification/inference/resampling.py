@@ -8,10 +8,12 @@ the estimate, inside the bounds of the search: exact for all coefficients, to fi
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+from jointid.base.values import dataclass
+from jointid.recording.order_statistics import distinct
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -69,12 +71,12 @@ def cells_of(
     """
     limits: list[tuple[int, int]] = []
     starts: list[int] = []
-    for number in np.unique(recording):
+    for number in distinct(recording):
         first, last = np.searchsorted(recording, (number, number + 1))
         way = np.cumsum(moved[first:last])
         count = max(1, round(CELLS * float(way[-1]) / length))
         inner = 1 + np.searchsorted(way, way[-1] * np.arange(1, count) / count)
-        cuts = np.unique([0, *(i for i in inner if i < last - first), last - first]) + first
+        cuts = distinct([0, *(i for i in inner if i < last - first), last - first]) + first
         # A recording shorter than a block is one with what follows.
         starts += range(len(limits), len(limits) + max(1, len(cuts) - CELLS))
         limits += [(int(a), int(b)) for a, b in itertools.pairwise(cuts)]

@@ -8,13 +8,14 @@ reversals is nearly so. The rule is fixed in advance, and knows nothing of the r
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.values import dataclass
 from jointid.problem.problem import Problem
+from jointid.recording.order_statistics import distinct
 
 Array = NDArray[np.float64]
 Cuts = NDArray[np.int64]
@@ -88,10 +89,8 @@ def motion_segments(motion: Motion) -> Segments:
     """Return the segments of a motion: between reversals, merged or divided to a usual length."""
     length = motion.segment_length
     cuts = [0]
-    for number in range(int(motion.recording[-1]) + 1):
+    for number in distinct(motion.recording):
         first, last = np.searchsorted(motion.recording, (number, number + 1))
-        if first == last:  # a recording without a window
-            continue
         mine = slice(first, last)
         ends = _cut(motion.start[mine], motion.stop[mine], motion.travel[mine], length)
         cuts += [int(first) + each for each in ends]
@@ -102,7 +101,7 @@ def motion_segments(motion: Motion) -> Segments:
 def even_segments(rows: int) -> Segments:
     """Return segments of equal numbers of windows, where nothing is known of the motion."""
     count = min(rows, 2 * _PARTS)
-    cuts = np.unique(np.linspace(0, rows, count + 1).round().astype(np.int64))
+    cuts = distinct(np.linspace(0, rows, count + 1).round().astype(np.int64))
     return Segments(length=np.nan, cuts=(cuts, _between(cuts)))
 
 
@@ -124,7 +123,7 @@ def _cut(start: Array, stop: Array, travel: Array, length: float) -> Iterator[in
         moved = np.cumsum(stop[first:last] - start[first:last])
         pieces = max(1, int(moved[-1] / length + 0.5))
         inner = first + 1 + np.searchsorted(moved, moved[-1] * np.arange(1, pieces) / pieces)
-        yield from (int(each) for each in np.unique(inner) if each < last)
+        yield from (int(each) for each in distinct(inner) if each < last)
         yield last
 
 
@@ -140,4 +139,4 @@ def _between(cuts: Cuts) -> Cuts:
     if len(cuts) <= 4:
         return cuts
     middle = (cuts[1:] + cuts[:-1]) // 2
-    return np.unique(np.concatenate([cuts[:1], middle[1:-1], cuts[-1:]]))
+    return distinct(np.concatenate([cuts[:1], middle[1:-1], cuts[-1:]]))

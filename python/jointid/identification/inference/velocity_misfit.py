@@ -14,6 +14,7 @@ from jointid.estimate.causes import Cause
 from jointid.identification.inference.velocity_noise import is_noisy, measured_again
 from jointid.problem.inner_products import inner
 from jointid.problem.problem import Problem
+from jointid.recording.order_statistics import median
 
 Array = NDArray[np.float64]
 
@@ -89,7 +90,7 @@ def _added(
             continue
         after.append(_misfits(other, best, free, factors))
     return {
-        factor: float(np.median([each[factor] for each in after])) / before[factor] - 1.0
+        factor: median([each[factor] for each in after]) / before[factor] - 1.0
         if after and before[factor] > 0.0
         else 0.0
         for factor in factors

@@ -8,12 +8,12 @@ that repeats the noise before the reading does proves that the recorded reading 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.values import dataclass
 from jointid.identification.refinements.shift_fit import Shift
 from jointid.identification.refinements.stretches import Piece
 

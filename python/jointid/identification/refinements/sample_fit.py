@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from jointid.identification.refinements.shift_fit import Shift
 from jointid.identification.refinements.stretches import Piece
+from jointid.recording.order_statistics import median
 
 Array = NDArray[np.float64]
 
@@ -75,7 +76,7 @@ def delay_by_samples(
         neighbours, whole = profile[int(place)]
         found = whole + neighbours.least(int(part))
         missed = neighbours.missed(found - whole)
-        noise = 1.4826 * float(np.median(np.abs(missed)))
+        noise = 1.4826 * median(np.abs(missed))
         if not noise > 0.0:
             return None
         weights = np.minimum(1.0, _CLIPPED * noise / np.maximum(np.abs(missed), 1e-300))
@@ -147,7 +148,7 @@ class _Samples:
         self._used = slice(self._most, len(velocity) - self._most)
         self.reading = piece.sensor[self._used]
         # Third differences of white noise; few jumps do not change a median.
-        third = float(np.median(np.abs(np.diff(self._columns[:, 0], 3))))
+        third = median(np.abs(np.diff(self._columns[:, 0], 3)))
         self.noise = (1.4826 * third) ** 2 / 20.0
         self.change = float(np.mean(np.diff(self._columns[:, 0]) ** 2))
 

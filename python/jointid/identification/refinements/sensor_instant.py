@@ -8,12 +8,13 @@ signals, harmonics and friction at low speed.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.values import dataclass
 from jointid.problem.problem import Problem
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording

@@ -7,7 +7,6 @@ summed with the weight's derivatives: noise averages out, and neighbouring windo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -15,6 +14,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.values import dataclass
+from jointid.recording.order_statistics import median
 
 Array = NDArray[np.float64]
 
@@ -176,4 +177,4 @@ def _curvature(half: int, period: float) -> Array:
 
 def _noise(signal: Array) -> float:
     """Standard deviation of white noise on a smooth signal: third differences, few of them large."""
-    return float(1.4826 * np.median(np.abs(np.diff(signal, 3)[::3])) / np.sqrt(20.0))
+    return float(1.4826 * median(np.abs(np.diff(signal, 3)[::3])) / np.sqrt(20.0))

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.values import dataclass
 from jointid.identification.refinements.smooth_windows import Stretch, half_length
 from jointid.problem.own_balance import OwnSignal, own_signals
 from jointid.problem.problem import Problem

@@ -1,7 +1,6 @@
 """The search domain: stated bounds, and bounds from the data where none are stated."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +8,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.identification.search.computed_bounds import ComputedBounds, shape_bounds, shape_range
 from jointid.identification.search.gain_domain import around
 from jointid.identification.search.stated_bounds import known_parameters

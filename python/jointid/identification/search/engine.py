@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.values import dataclass
 from jointid.estimate.statistics import Convergence
 from jointid.identification.search.domain import SearchDomain
 from jointid.problem.inner_products import inner

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 
 # A gain lies within this factor of the least-squares value, which may be far off in a motion that is
 # mostly friction, where no shape is quite right ...

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
+from jointid.base.schema import read_bytes
 from jointid.estimate.statistics import Convergence
 from jointid.identification.search.domain import SearchDomain
 from jointid.identification.search.engine import Engine, Outcome
@@ -164,7 +165,7 @@ def _convergence(result: _core.GaResult) -> Convergence:
 
 def _read_state(path: Path) -> _core.GaState:
     try:
-        return _core.GaState.from_bytes(path.read_bytes())
+        return _core.GaState.from_bytes(read_bytes(path))
     except OSError as error:
         raise InputError(
             f"the checkpoint cannot be read: {error.strerror}", argument="resume", place=str(path)

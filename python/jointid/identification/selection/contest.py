@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.values import dataclass
 from jointid.identification.selection.block_sums import BlockSums, Fitted
 from jointid.identification.selection.columns import ShapedColumns
 from jointid.identification.selection.rivals import Candidate

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 
 from jointid.base.advice import Action
+from jointid.base.values import dataclass
 from jointid.estimate.findings import Finding, Measured, Severity
 from jointid.identification.warnings.evidence import Evidence
 

@@ -5,16 +5,17 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.base.values import dataclass
 from jointid.estimate.findings import Measured
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.evidence import Evidence
 from jointid.problem.terms import WEAK_READING
+from jointid.recording.order_statistics import quantile
 
 Array = NDArray[np.float64]
 
@@ -69,7 +70,7 @@ class Excitation:
     @functools.cached_property
     def speeds(self) -> tuple[float, float]:
         """Slow and fast: 10 % of the windows are slower, 5 % faster."""
-        slow, fast = np.quantile(self._speed, (0.1, 0.95))
+        slow, fast = quantile(self._speed, 0.1), quantile(self._speed, 0.95)
         return float(slow), float(fast)
 
     @functools.cached_property

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
@@ -13,6 +11,7 @@ from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.inspection import Inspected
 from jointid.identification.warnings.undetermined import with_partners
+from jointid.recording.order_statistics import median
 from jointid.recording.velocity_noise import noise_of_velocity
 
 NOISY_VELOCITY = FindingType(
@@ -107,7 +106,7 @@ def _derived_is_quieter(evidence: Evidence, number: int) -> bool:
     run = evidence.recordings[number]
     if run.velocity_derived:
         return False
-    return float(np.median(run.derived.noise)) < _QUIETER * noise_of_velocity(run)
+    return median(run.derived.noise) < _QUIETER * noise_of_velocity(run)
 
 
 CHECK = Check(_find, (NOISY_VELOCITY,))

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.model_advice import add_ripple
 from jointid.identification.warnings.undetermined import wide, with_partners
+from jointid.recording.order_statistics import median
 
 RIPPLE = FindingType(
     code="ripple",
@@ -57,7 +58,7 @@ def _highest_peak(evidence: Evidence, gear: float) -> _Peak | None:
     shares = 2.0 * sums**2 / (windows * max(power, 1e-300))
     highest = int(np.argmax(shares))
     chance = 2.0 / windows
-    if shares[highest] < max(_SHARE, _CHANCE * chance, _OUTSTANDING * float(np.median(shares))):
+    if shares[highest] < max(_SHARE, _CHANCE * chance, _OUTSTANDING * median(shares)):
         return None
     return _Peak(
         multiple=0.5 * (highest + 1),

@@ -12,6 +12,7 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.inspection import Inspected, spike_of
+from jointid.recording.order_statistics import median
 
 SPIKES = FindingType(
     code="spikes",
@@ -70,7 +71,7 @@ def _without_kicks(inspected: Inspected) -> _core.Spike:
         return spike
     change = np.abs(np.diff(recording.velocity, prepend=recording.velocity[0]))
     moving = change[change > 0.0]
-    jumps = np.flatnonzero(change > _JUMP * np.median(moving)) if moving.size else moving
+    jumps = np.flatnonzero(change > _JUMP * median(moving)) if moving.size else moving
     if not np.any(np.abs(jumps - spike.index) <= _BESIDE):
         return spike
     kept = np.ones(len(recording), dtype=bool)

@@ -14,6 +14,7 @@ from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.repeated import REPEATED
 from jointid.recording.copies import fresh_rows
+from jointid.recording.order_statistics import median
 from jointid.recording.recording import Recording
 
 TIME_JITTER = FindingType(
@@ -56,7 +57,7 @@ def _without_copies(recording: Recording) -> tuple[float, float]:
     time, position = fresh_rows(recording.time, recording.position)
     if len(time) < 3:
         return 0.0, recording.sample_period
-    period = float(np.median(np.diff(time)))
+    period = median(np.diff(time))
     return _core.timing_errors(time, position, period)[0], period
 
 

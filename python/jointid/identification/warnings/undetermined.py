@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
 
 from jointid.base.advice import Action
+from jointid.base.values import dataclass
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.wording import percent, two_digits

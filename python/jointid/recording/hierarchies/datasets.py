@@ -1,11 +1,12 @@
 """The datasets of an HDF5 file that hold numbers, each split into vectors."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
+from jointid.base.values import dataclass
+
 _WIDEST = 256  # columns of a matrix: a wider one is not a table of signals
-_INFLATION = 1100  # times: no compressed dataset is larger by more than deflate allows
 _MATLAB_NUMBERS = (
     *("double", "single", "logical"),
     *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)),
@@ -50,14 +51,12 @@ class Vector:
         return self.path.rpartition("/")[0]
 
 
-def vectors_of(file: Any, size: int) -> tuple[list[Vector], list[str]]:
+def vectors_of(file: Any) -> tuple[list[Vector], list[str]]:
     """Return the vectors of an open file, and what is not read.
 
     Parameters
     ----------
     file : h5py.File
-    size : int
-        Bytes of the file.
 
     Raises
     ------
@@ -77,7 +76,7 @@ def vectors_of(file: Any, size: int) -> tuple[list[Vector], list[str]]:
             if kind and kind not in _MATLAB_NUMBERS:
                 if kind not in ("char", "cell", "string"):
                     left_out.append(f"{path} ({kind})")
-            elif not thing.external and thing.nbytes <= _INFLATION * size:
+            elif not thing.external:
                 found.extend(_vectors(path, thing))
         elif "MATLAB_sparse" in thing.attrs or (kind and kind != "struct"):
             left_out.append(f"{path} ({kind or 'object'})")

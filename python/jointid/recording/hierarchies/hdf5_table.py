@@ -13,6 +13,7 @@ from jointid.recording.headers import parsed
 from jointid.recording.hierarchies.datasets import Vector, values_of, vectors_of
 from jointid.recording.hierarchies.groups import chosen_vectors
 from jointid.recording.signals import FloatArray, signal_array
+from jointid.recording.unpacking import Room
 
 
 class Hdf5Table:
@@ -42,13 +43,15 @@ class Hdf5Table:
         import h5py
 
         self._path = path
+        self._room = Room(path)
+        self._taken: set[str] = set()
         self.source = self.header_place = str(path)
         path.open("rb").close()  # h5py would say less of a file that cannot be read
         if not h5py.is_hdf5(path):
             raise InputError("the file is not an HDF5 file, or is truncated", place=str(path))
         try:
             with h5py.File(path, "r", locking=False) as file:
-                vectors, left_out = vectors_of(file, path.stat().st_size)
+                vectors, left_out = vectors_of(file)
         # HDF5 documents no errors for damaged bytes.
         except Exception as error:
             raise self._damage(error) from None
@@ -107,7 +110,12 @@ class Hdf5Table:
 
         try:
             with h5py.File(self._path, "r", locking=False) as file:
+                for dataset in {self._vectors[column].path for column in columns} - self._taken:
+                    self._taken.add(dataset)
+                    self._room.take(file[dataset].nbytes)
                 return [values_of(file, self._vectors[column]) for column in columns]
+        except InputError:
+            raise
         except Exception as error:
             raise self._damage(error) from None
 

@@ -1,11 +1,11 @@
 """All messages of a topic as numbers, in bounded memory."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from jointid.base.values import dataclass
 from jointid.recording.messages.decoding import BinaryDecoder, Block, JsonDecoder
 from jointid.recording.messages.topic import DamageError, Message, Source, Topic
 

@@ -1,11 +1,11 @@
 """Messages as blocks of numbers: those that are built alike are read together."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from jointid.base.values import dataclass
 from jointid.recording.messages.definitions import types_of
 from jointid.recording.messages.joints import Column, Path, columns_of, stamp_of
 from jointid.recording.messages.json_messages import flattened

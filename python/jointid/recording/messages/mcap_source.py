@@ -1,16 +1,21 @@
 """MCAP files: topics from the summary, else from the whole file; messages chunk by chunk."""
 
 import struct
+import zlib
 from collections.abc import Collection, Iterator
 from io import BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO
 
 from jointid.base.error_text import reason_of
+from jointid.base.errors import InputError
 from jointid.recording.messages.definitions import normal_kind
+from jointid.recording.messages.packed import of_lz4, of_zstandard
 from jointid.recording.messages.topic import DamageError, Message, Topic
+from jointid.recording.unpacking import Room
 
 _SCHEMA, _CHANNEL, _MESSAGE = 3, 4, 5  # kinds of record
+_UNPACKING = {"zstd": of_zstandard, "lz4": of_lz4}
 _RECORD = struct.Struct("<BQ")
 _HEADER = struct.Struct("<HIQQ")  # channel, sequence, log time, publish time
 
@@ -33,6 +38,7 @@ class McapSource:
 
         self._path = path
         self._size = path.stat().st_size
+        self._room = Room(path, self._size)
         self.incomplete = ""
         self._channels: dict[int, Any] = {}
         self._schemas: dict[int, Any] = {}
@@ -49,6 +55,7 @@ class McapSource:
             for number, channel in self._channels.items()
             if self._name(channel) == _key(topic)
         }
+        self._room.again()
         with self._path.open("rb") as stream:
             if self._chunks:
                 yield from self._from_chunks(stream, wanted)
@@ -113,7 +120,9 @@ class McapSource:
                 continue
             try:
                 stream.seek(index.chunk_start_offset + _RECORD.size)
-                content = _content(Chunk.read(ReadDataStream(stream)))
+                content = _content(Chunk.read(ReadDataStream(stream)), self._room)
+            except InputError:
+                raise
             except Exception as error:
                 raise _damage(error) from None
             for number, time, data in self._parts(content):
@@ -132,7 +141,9 @@ class McapSource:
             try:
                 record = next(records, None)
                 if isinstance(record, Chunk):
-                    content = _content(record)
+                    content = _content(record, self._room)
+            except InputError:
+                raise
             except Exception as error:
                 if stream.tell() < self._size:
                     raise _damage(error) from None
@@ -190,11 +201,14 @@ def _key(topic: Topic) -> tuple[str, str, str]:
     return topic.name, topic.kind, topic.encoding
 
 
-def _content(chunk: Any) -> bytes:
-    from mcap.stream_reader import get_chunk_data_stream
-
-    stream, length = get_chunk_data_stream(chunk, validate_crc=True)
-    return bytes(stream.read(length))
+def _content(chunk: Any, room: Room) -> bytes:
+    unpack = _UNPACKING.get(chunk.compression)
+    if unpack is None and chunk.compression:
+        raise DamageError(f"the compression {chunk.compression!r} is not read")
+    content = chunk.data if unpack is None else unpack(chunk.data, room)
+    if chunk.uncompressed_crc and zlib.crc32(content) != chunk.uncompressed_crc:
+        raise DamageError("crc validation failed in Chunk")
+    return bytes(content)
 
 
 def _damage(error: Exception) -> DamageError:

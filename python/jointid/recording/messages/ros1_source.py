@@ -1,14 +1,16 @@
 """ROS 1 bags: records in order, so that a bag without its index is read as well."""
 
-import bz2
 import struct
 from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
 
 from jointid.base.error_text import reason_of
+from jointid.base.errors import InputError
 from jointid.recording.messages.definitions import normal_kind
+from jointid.recording.messages.packed import of_lz4
 from jointid.recording.messages.topic import DamageError, Message, Topic
+from jointid.recording.unpacking import Room
 
 _MAGIC = b"#ROSBAG V2.0\n"
 _MESSAGE, _BAG, _CHUNK, _CONNECTION = b"\x02", b"\x03", b"\x05", b"\x07"  # kinds of record
@@ -36,6 +38,7 @@ class Ros1Source:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._size = path.stat().st_size
+        self._room = Room(path, self._size)
         self.incomplete = ""
         self._connections: dict[int, Topic] = {}
         counts: dict[int, int] = {}
@@ -68,6 +71,7 @@ class Ros1Source:
 
     def _all(self) -> Iterator[tuple[int, int, bytes]]:
         """Yield connection, log time and bytes of all messages, as far as the file goes."""
+        self._room.again()
         with self._path.open("rb") as stream:
             if stream.read(len(_MAGIC)) != _MAGIC:
                 raise DamageError("it is not a ROS 1 bag of version 2.0")
@@ -80,7 +84,7 @@ class Ros1Source:
                 if header.get(b"op") == _BAG and header.get(b"index_pos", b"") == bytes(8):
                     self.incomplete = "the file has no index, as after a recorder was killed"
                 if header.get(b"op") == _CHUNK:
-                    yield from self._parts(_content(header, body))
+                    yield from self._parts(_content(header, body, self._room))
                 elif header.get(b"op") == _CONNECTION:
                     self._learn(header, body)
 
@@ -156,18 +160,16 @@ def _fields(header: bytes) -> dict[bytes, bytes]:
     return found
 
 
-def _content(header: dict[bytes, bytes], body: bytes) -> bytes:
+def _content(header: dict[bytes, bytes], body: bytes, room: Room) -> bytes:
     compression = header.get(b"compression", b"none")
     try:
         if compression == b"none":
             return body
         if compression == b"bz2":
-            return bz2.decompress(body)
+            return room.bz2(body)
         if compression == b"lz4":
-            import lz4.frame
-
-            return bytes(lz4.frame.decompress(body))
-    except ModuleNotFoundError:
+            return of_lz4(body, room)
+    except (ModuleNotFoundError, InputError):
         raise
     # Damaged bytes: neither library documents its errors.
     except Exception as error:

@@ -11,7 +11,9 @@ from tempfile import mkdtemp
 from jointid.base.error_text import reason_of
 from jointid.recording.messages.definitions import normal_kind
 from jointid.recording.messages.mcap_source import McapSource
+from jointid.recording.messages.packed import of_zstandard
 from jointid.recording.messages.topic import DamageError, Message, Source, Topic
+from jointid.recording.unpacking import Room
 
 _ENDING = re.compile(r"\.(db3|mcap)(\.zstd)?$", re.IGNORECASE)
 _ZSTANDARD = b"\x28\xb5\x2f\xfd"  # how a compressed message begins; CDR begins with 0
@@ -33,6 +35,7 @@ class SqliteSource:
     def __init__(self, path: Path) -> None:
         path.open("rb").close()  # SQLite would say less of a file that cannot be read
         self._path = path
+        self._room = Room(path)
         self.incomplete = ""
         self._numbers: dict[tuple[str, str, str], list[int]] = {}
         try:
@@ -49,6 +52,7 @@ class SqliteSource:
         query = (
             f"SELECT timestamp, data FROM messages WHERE topic_id IN ({marks}) ORDER BY timestamp"
         )
+        self._room.again()
         connection = self._connected()
         try:
             rows = connection.execute(query, numbers)
@@ -63,7 +67,7 @@ class SqliteSource:
                 if not isinstance(time, int) or not isinstance(message, bytes):
                     raise DamageError("it is damaged (a row holds no message)")
                 if message.startswith(_ZSTANDARD):
-                    message = _decompressed(message)
+                    message = _decompressed(message, self._room)
                 yield time, message
         finally:
             connection.close()
@@ -163,7 +167,10 @@ class FolderSource:
         file = self._folder / path.stem
         try:
             with path.open("rb") as packed, file.open("wb") as unpacked:
-                zstandard.ZstdDecompressor().copy_stream(packed, unpacked)
+                room = Room(path)
+                for part in zstandard.ZstdDecompressor().read_to_iter(packed):
+                    room.take(len(part))
+                    unpacked.write(part)
         except zstandard.ZstdError as error:
             raise DamageError(f"{path.name} is damaged ({reason_of(error)})") from None
         return file
@@ -182,10 +189,10 @@ class FolderSource:
                     yield from source.messages(each)
 
 
-def _decompressed(message: bytes) -> bytes:
+def _decompressed(message: bytes, room: Room) -> bytes:
     import zstandard
 
     try:
-        return zstandard.ZstdDecompressor().decompress(message, max_output_size=1 << 28)
+        return of_zstandard(message, room)
     except zstandard.ZstdError as error:
         raise DamageError(f"a message is damaged ({reason_of(error)})") from None

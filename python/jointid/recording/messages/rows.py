@@ -1,10 +1,9 @@
 """Which row of a table each message belongs to: rows in the order of their stamps, one for each stamp."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
+from jointid.base.values import dataclass
 from jointid.recording.messages.collecting import Collected
 
 _LATE = (

@@ -1,8 +1,9 @@
 """What a file of messages offers: topics, and the messages of each in the order of the file."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Protocol
+
+from jointid.base.values import dataclass
 
 Message = tuple[int, bytes]
 """Log time [ns] and serialised bytes."""

@@ -2,10 +2,10 @@
 
 import csv
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import islice
 
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.recording.headers import understood
 from jointid.recording.readers.csv_dialect import (
     BLANK,

@@ -5,12 +5,14 @@ import zlib
 from pathlib import Path
 
 from jointid import _core
+from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
+from jointid.recording.unpacking import Room
 
 _GZIP = b"\x1f\x8b"
 _BOM = b"\xef\xbb\xbf"
 # Characters on which Latin-1 and Windows-1252 agree.
-_LATIN = re.compile(rb"[\x09-\x0d\x20-\x7e\xa0-\xfe]*")
+_LATIN = rb"[\x09-\x0d\x20-\x7e\xa0-\xfe]*"
 
 
 def text_of(path: Path) -> str:
@@ -40,7 +42,7 @@ def _decoded(path: Path, content: bytes) -> str:
     try:
         text = (content[len(_BOM) :] if content.startswith(_BOM) else content).decode("utf-8")
     except UnicodeDecodeError as error:
-        if _LATIN.fullmatch(content):  # older Windows programs write the degree sign like this
+        if re.fullmatch(_LATIN, content):  # older Windows programs write the degree sign like this
             return content.decode("latin-1")
         line = content.count(b"\n", 0, error.start) + 1
         raise InputError(
@@ -65,13 +67,12 @@ def _unzipped(path: Path, content: bytes) -> bytes:
             place=str(path),
             remedy="name it .csv if it is text",
         )
-    import gzip
-
     try:
-        return gzip.decompress(content)
+        return Room(path, len(content)).gunzip(content)
     except EOFError:
         raise InputError(
             "the compressed file is truncated", place=str(path), remedy="copy or record it again"
         ) from None
-    except (OSError, zlib.error) as error:
-        raise InputError(f"the compressed file is damaged ({error})", place=str(path)) from None
+    except zlib.error as error:
+        reason = "CRC check failed" if "data check" in str(error) else reason_of(error)
+        raise InputError(f"the compressed file is damaged ({reason})", place=str(path)) from None

@@ -20,10 +20,11 @@ from jointid.recording.readers.registry import endings, reader_of
 from jointid.recording.recording import Recording
 from jointid.recording.runs import one_run
 from jointid.recording.table import Table
+from jointid.recording.unpacking import allowing
 from jointid.recording.wide.choosing import OneJoint, also_joints, one_joint
 from jointid.recording.wide.sides import at_joint, checked_ratio
 
-_SURROGATE = re.compile("[\ud800-\udfff]")
+_SURROGATE = "[\ud800-\udfff]"
 
 
 def load(
@@ -43,6 +44,7 @@ def load(
     name: str | None = None,
     topic: str | None = None,
     group: str | None = None,
+    unpacked: int | None = None,
 ) -> Recording:
     """Return the recording that a file holds.
 
@@ -114,6 +116,9 @@ def load(
     group : str, optional
         Of an HDF5 or MATLAB 7.3 file: the group (struct) whose datasets are the recording, as a path.
         Default: the only one with such datasets.
+    unpacked : int, optional
+        Bytes that a compressed file may hold when it is unpacked. Default: 64 MB or 50 times its size, whichever is
+        larger; a small file that holds more is refused.
 
     Returns
     -------
@@ -135,11 +140,13 @@ def load(
     """
     file = require_path("path", path)
     try:
-        table = table_of(file, topic=topic, group=group, kind=kind)
+        table = table_of(file, topic=topic, group=group, kind=kind, unpacked=unpacked)
     except InputError as error:
         if joint is not None or topic is not None or group is not None:
             raise
-        raise also_joints(error, partial(table_of, file, kind=kind), columns) from None
+        raise also_joints(
+            error, partial(table_of, file, kind=kind, unpacked=unpacked), columns
+        ) from None
     one = one_joint(table, joint, columns, extra)
     ratio = one.gear_ratio if gear_ratio is None else checked_ratio(gear_ratio)
     contents = read_contents(
@@ -183,6 +190,7 @@ def load_runs(
     name: str | None = None,
     topic: str | None = None,
     group: str | None = None,
+    unpacked: int | None = None,
 ) -> tuple[Recording, ...]:
     """Return the recordings of a file that holds several runs, one after the other.
 
@@ -193,7 +201,7 @@ def load_runs(
     by : str or int
         Header or 0-based number of the column that numbers the runs: rows with the same value
         are one run.
-    joint, columns, units, scale, extra, gear_ratio, kind, torque_hold, topic, group
+    joint, columns, units, scale, extra, gear_ratio, kind, torque_hold, topic, group, unpacked
         As in `load`.
     name : str, optional
         Beginning of the runs' names. Default: as in `load`.
@@ -213,7 +221,12 @@ def load_runs(
     >>> slow, fast = jid.load_runs("week.csv", by="run")
     """
     file = require_path("path", path)
-    one = one_joint(table_of(file, topic=topic, group=group, kind=kind), joint, columns, extra)
+    one = one_joint(
+        table_of(file, topic=topic, group=group, kind=kind, unpacked=unpacked),
+        joint,
+        columns,
+        extra,
+    )
     ratio = one.gear_ratio if gear_ratio is None else checked_ratio(gear_ratio)
     contents = read_contents(
         one.table,
@@ -245,7 +258,12 @@ def load_runs(
 
 
 def table_of(
-    file: Path, *, topic: str | None = None, group: str | None = None, kind: str | None = None
+    file: Path,
+    *,
+    topic: str | None = None,
+    group: str | None = None,
+    kind: str | None = None,
+    unpacked: int | None = None,
 ) -> Table:
     """Return a file as a table of columns, by the ending of its name."""
     reader = reader_of(file)
@@ -260,7 +278,8 @@ def table_of(
     if kind is not None:
         check_kind(kind)
     try:
-        return reader.open(file, part=part, kind=kind) if reader.part else reader.open(file)
+        with allowing(unpacked):
+            return reader.open(file, part=part, kind=kind) if reader.part else reader.open(file)
     except FileNotFoundError:
         raise InputError("there is no such file", place=str(file)) from None
     except IsADirectoryError:
@@ -290,7 +309,7 @@ def file_name(file: Path, fields: Mapping[str, Any], name: str | None) -> Any:
     """Return a recording's name: as given, as saved, or the file's without its ending."""
     stem = file.resolve().name if file.is_dir() else file.name[: -len(ending_of(file, endings()))]
     # Bytes of a file name that are not UTF-8 reach Python as surrogates, which no file can hold.
-    stem = _SURROGATE.sub("\ufffd", stem)
+    stem = re.sub(_SURROGATE, "\ufffd", stem)
     return fields.get("name", stem) if name is None else name
 
 

@@ -39,6 +39,7 @@ def load_robot(
     name: str | None = None,
     topic: str | None = None,
     group: str | None = None,
+    unpacked: int | None = None,
 ) -> RobotRecording:
     """Return the recording of several joints that a file holds.
 
@@ -64,6 +65,8 @@ def load_robot(
         Default: as saved, else the file's name without its ending.
     topic, group : str, optional
         As in `load`.
+    unpacked : int, optional
+        As in `load`.
 
     Returns
     -------
@@ -82,7 +85,7 @@ def load_robot(
     >>> elbow = robot.joint(3)
     """
     file = require_path("path", path)
-    table = table_of(file, topic=topic, group=group, kind=kind)
+    table = table_of(file, topic=topic, group=group, kind=kind, unpacked=unpacked)
     whole = saved_robot(table)
     if whole is not None and not (
         columns or units or scale or where or kind or torque_hold or extra

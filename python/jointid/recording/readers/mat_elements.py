@@ -8,11 +8,13 @@ import itertools
 import math
 import zlib
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+
+from jointid.base.values import dataclass
+from jointid.recording.unpacking import Room
 
 Array = npt.NDArray[Any]
 
@@ -22,7 +24,6 @@ _STORED |= {12: "i8", 13: "u8"}
 _STRUCT, _OPAQUE = 2, 17
 _NUMERIC = range(6, 16)  # double, single, int8 ... uint64; logical is one of them with a flag
 _COMPLEX = 0x0800
-_LARGEST = 1 << 31  # bytes of a variable: more than MATLAB writes into such a file
 
 
 class DamageError(ValueError):
@@ -47,7 +48,7 @@ class Variable:
     fields: tuple[tuple["Variable", ...], ...] = ()
 
 
-def variables_of(content: bytes, order: str) -> Iterator[Variable]:
+def variables_of(content: bytes, order: str, room: Room) -> Iterator[Variable]:
     """Yield the named variables of a file.
 
     Parameters
@@ -56,6 +57,8 @@ def variables_of(content: bytes, order: str) -> Iterator[Variable]:
         What follows the header of 128 bytes.
     order : str
         ``"<"`` or ``">"``: which end of a number comes first.
+    room : Room
+        For what is compressed.
 
     Raises
     ------
@@ -65,7 +68,7 @@ def variables_of(content: bytes, order: str) -> Iterator[Variable]:
     for kind, element in _elements(memoryview(content), order):
         matrix = element
         if kind == _COMPRESSED:
-            ((kind, matrix),) = _inflated(element, order)
+            ((kind, matrix),) = _inflated(element, order, room)
         if kind != _MATRIX:
             raise DamageError(f"an element of the kind {kind} is in the place of a variable")
         variable = _variable(matrix, order, nested=False)
@@ -94,10 +97,11 @@ def _elements(content: memoryview, order: str) -> Iterator[tuple[int, memoryview
         place += step
 
 
-def _inflated(element: memoryview, order: str) -> list[tuple[int, memoryview]]:
+def _inflated(element: memoryview, order: str, room: Room) -> list[tuple[int, memoryview]]:
     unpacker = zlib.decompressobj()
     try:
-        content = unpacker.decompress(element, _LARGEST)
+        content = unpacker.decompress(element, room.left + 1)
+        room.take(len(content))
     except zlib.error:
         raise DamageError("a compressed variable is damaged") from None
     if not unpacker.eof:

@@ -13,6 +13,7 @@ from jointid.recording.readers.mat_elements import Array, DamageError, Variable,
 from jointid.recording.readers.reader import Reader
 from jointid.recording.signals import FloatArray, signal_array
 from jointid.recording.table import Table
+from jointid.recording.unpacking import Room
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _HEADER = 128  # bytes before the first variable
@@ -88,7 +89,7 @@ def _variables(path: Path) -> list[Variable]:
             remedy="in MATLAB save it with '-v7'",
         )
     try:
-        return list(variables_of(content[_HEADER:], order))
+        return list(variables_of(content[_HEADER:], order, Room(path)))
     except DamageError as error:
         raise InputError(
             f"the .mat file is damaged or truncated ({error})", place=str(path)

@@ -15,6 +15,7 @@ from jointid.base.errors import InputError
 from jointid.recording.readers.reader import Reader
 from jointid.recording.saving import NPZ_MEMBER, saved_attributes
 from jointid.recording.signals import FloatArray, signal_array
+from jointid.recording.unpacking import Room
 
 
 def _damages() -> tuple[type[Exception], ...]:
@@ -47,6 +48,7 @@ class NpzTable:
 
         self.source = str(path)
         self.header_place = self.source
+        self._room = Room(path)
         content = io.BytesIO(path.read_bytes())
         if not zipfile.is_zipfile(content):
             raise InputError(
@@ -61,6 +63,11 @@ class NpzTable:
                 f"the archive is damaged ({reason_of(error)})", place=str(path)
             ) from None
         self._archive: Mapping[str, Any] = archive
+        # Of a member at most as much is unpacked as the archive's index says.
+        self._sizes = {
+            each.filename.removesuffix(".npy"): each.file_size for each in archive.zip.infolist()
+        }
+        self._taken: set[str] = set()
         self.saved: Mapping[str, Any] | None = None
         if NPZ_MEMBER in archive.files:
             text = self._member(NPZ_MEMBER)
@@ -92,6 +99,9 @@ class NpzTable:
         return f"{self.source}, member {name!r}"
 
     def _member(self, name: str) -> npt.NDArray[Any]:
+        if name not in self._taken:  # a column may be asked for more than once
+            self._taken.add(name)
+            self._room.take(self._sizes.get(name, 0))
         try:
             value = self._archive[name]
         except _damages() as error:

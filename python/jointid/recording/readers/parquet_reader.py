@@ -12,6 +12,7 @@ from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
 from jointid.recording.readers.reader import Reader
 from jointid.recording.signals import FloatArray, signal_array
+from jointid.recording.unpacking import Room
 
 
 class ParquetTable:
@@ -35,6 +36,8 @@ class ParquetTable:
     def __init__(self, path: Path) -> None:
         self.source = str(path)
         self.header_place = self.source
+        self._room = Room(path)
+        self._taken: set[int] = set()
         content = path.read_bytes()
         import pyarrow
         from pyarrow import parquet
@@ -103,6 +106,9 @@ class ParquetTable:
 
     def _values(self, column: int) -> Any:
         name = self._file.schema_arrow.names[column]
+        if column not in self._taken:  # a column may be asked for more than once
+            self._taken.add(column)
+            self._room.take(8 * self._file.metadata.num_rows)
         try:
             # One thread: the columns are small, and thread pools cause trouble after a fork.
             return self._file.read(columns=[name], use_threads=False).column(name)

@@ -1,8 +1,8 @@
 """What a file format declares: its endings, how to open a file, and the package that it needs."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
+from jointid.base.values import dataclass
 from jointid.recording.table import Table
 
 

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from io import StringIO
 from types import MappingProxyType
 from typing import Any
@@ -10,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.recording.headers import understood
+from jointid.recording.order_statistics import median
 from jointid.recording.readers.csv_dialect import number_of
 from jointid.recording.signals import FloatArray
 from jointid.recording.stamps import Stamps, looks_exact, stamps_of
@@ -18,12 +19,10 @@ from jointid.recording.units import UNITS
 
 _BLOCK = 80  # lines: no export has more above its rows
 _KEYS = ("Data-Type", "SampleTime[ms]", "SymbolName", "VariableSize", "Starttime of export")
-_TIME = re.compile(
-    r"Time(?: ?[\[(]ms[\])])?"
-)  # newer versions name channels beside it, without keys
+_TIME = r"Time(?: ?[\[(]ms[\])])?"  # newer versions name channels beside it, without keys
 # Where these are not sampled, the others are still a recording.
 _OPTIONAL = ("temperature", "reference")
-_COPY = re.compile(r"(.*\S) \((\d+)\)")
+_COPY = r"(.*\S) \((\d+)\)"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,8 +80,8 @@ class ScopeTable:
             if len(cells) > 1 and all(self._number(cell) is not None for cell in cells[:2]):
                 first = k
                 break
-            if _TIME.fullmatch(cells[0]):
-                cells = ["Name" if _TIME.fullmatch(cell) else cell for cell in cells]
+            if re.fullmatch(_TIME, cells[0]):
+                cells = ["Name" if re.fullmatch(_TIME, cell) else cell for cell in cells]
             if cells[0]:
                 keys[cells[0]] = cells
                 name_line = k if cells[0] == "Name" else name_line
@@ -136,7 +135,7 @@ class ScopeTable:
             time, values = self._samples(self._of[self._channels[column - 1]], column)
             if len(time) != len(base) or not np.array_equal(time, base):
                 if not np.isin(base, time).all():
-                    period = f"{np.median(np.diff(time)):g} ms" if len(time) > 1 else "one sample"
+                    period = f"{median(np.diff(time)):g} ms" if len(time) > 1 else "one sample"
                     self.notes.setdefault("interpolated", {})[self.headers[column]] = period
                 values = np.interp(base, time, values) if len(time) else np.full(len(base), np.nan)
             found.append(values)
@@ -144,9 +143,7 @@ class ScopeTable:
 
     def _common(self, every: Mapping[int, FloatArray]) -> FloatArray:
         """Return the instants of the fastest channels at which all have samples."""
-        fastest = min(
-            every.values(), key=lambda t: float(np.median(np.diff(t))) if len(t) > 1 else np.inf
-        )
+        fastest = min(every.values(), key=lambda t: median(np.diff(t)) if len(t) > 1 else np.inf)
         base = fastest
         for time in every.values():
             if len(time) and len(base):
@@ -164,7 +161,7 @@ class ScopeTable:
         time, _ = self._samples(self._of[self._channels[column - 1]])
         if not len(time) or not len(base):
             return
-        period = float(np.median(np.diff(time))) if len(time) > 1 else 0.0
+        period = median(np.diff(time)) if len(time) > 1 else 0.0
         if time[0] - period > base[0] or time[-1] + period < base[-1]:
             raise InputError(
                 f"its samples are from {time[0] / 1e3:.6g} to {time[-1] / 1e3:.6g} s, the others' from "
@@ -259,7 +256,7 @@ def _header(keys: Mapping[str, list[str]], channel: int) -> str:
         return cells[channel] if channel < len(cells) else ""
 
     name = entry("Name")
-    copied = _COPY.fullmatch(name)  # the second time a channel is drawn; not a unit
+    copied = re.fullmatch(_COPY, name)  # the second time a channel is drawn; not a unit
     if copied:
         name = f"{copied[1]} copy {copied[2]}"
     unit = entry("Unit").strip("()[] ")

@@ -1,10 +1,11 @@
 """One joint of any table: what `load` reads."""
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.recording.extra import named_extra
 from jointid.recording.table import Table
 from jointid.recording.wide.joint_names import joint_named

@@ -1,10 +1,11 @@
 """Which of a joint's columns is which signal, and on which side of the gear each of them is."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
+from jointid.base.values import dataclass
 from jointid.recording.column_problems import TORQUES
 from jointid.recording.headers import parsed, understood
 from jointid.recording.signals import dimensions

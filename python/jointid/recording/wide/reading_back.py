@@ -1,6 +1,8 @@
 """Reading back what `RobotRecording.save` wrote."""
 
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -8,8 +10,9 @@ from jointid.base.errors import InputError
 from jointid.recording.extra import PREFIX as EXTRA
 from jointid.recording.signals import KINDS, header_unit
 from jointid.recording.table import Table
-from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.recording.wide.robot_signals import ROBOT_SIGNALS
+
+if TYPE_CHECKING:
+    from jointid.recording.wide.robot_recording import RobotRecording
 
 
 def saved_robot(table: Table) -> RobotRecording | None:
@@ -24,10 +27,13 @@ def saved_robot(table: Table) -> RobotRecording | None:
     robot = None if saved is None else saved.get("robot")
     if saved is None or robot is None:
         return None
+    from jointid.recording.wide.robot_recording import RobotRecording
+    from jointid.recording.wide.robot_signals import ROBOT_SIGNALS
+
     try:
         names, signals, extra = robot["names"], robot["signals"], robot["extra"]
         fields = {key: robot[key] for key in ("side", "gear_ratio")}
-        if not set(signals) <= set(ROBOT_SIGNALS) or saved.get("kind") not in KINDS:
+        if not {"position"} <= set(signals) <= set(ROBOT_SIGNALS) or saved.get("kind") not in KINDS:
             raise ValueError
         kind = str(saved["kind"])
         wanted: dict[str, list[str]] = {"time": [f"time [{header_unit('time', kind)}]"]}
@@ -43,21 +49,17 @@ def saved_robot(table: Table) -> RobotRecording | None:
         raise InputError(
             "the description of the recording does not fit its columns", place=table.source
         ) from None
-    found = {signal: arrays[signal] for signal in signals}
-    return RobotRecording(
-        time=arrays["time"][:, 0],
-        **found,
-        **fields,
-        names=names,
-        extra={
-            name: arrays[f"{EXTRA}{name}"][:, 0] if name in shared else arrays[f"{EXTRA}{name}"]
-            for name in extra
-        },
-        **{
-            key: saved[key]
-            for key in ("name", "kind", "torque_hold", "velocity_derived", "metadata")
-        },
-    )
+    values = {signal: arrays[signal] for signal in signals}
+    values["time"] = arrays["time"][:, 0]
+    values["extra"] = {
+        name: arrays[f"{EXTRA}{name}"][:, 0] if name in shared else arrays[f"{EXTRA}{name}"]
+        for name in extra
+    }
+    attributes = {key: value for key, value in saved.items() if key not in ("truth", "robot")}
+    try:
+        return RobotRecording(**values, **fields, **attributes, names=names)
+    except InputError as error:
+        raise error.at(table.source) from None
 
 
 def _arrays(table: Table, wanted: dict[str, list[str]]) -> dict[str, Any]:

@@ -1,7 +1,8 @@
 """The words of a header in a log of several joints: what they say of a column."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from jointid.base.values import dataclass
 from jointid.recording.header_words import QUANTITIES
 
 JOINT, MOTOR = "joint", "motor"

@@ -1,0 +1,182 @@
+"""Frozen dataclasses that cost little until they are used.
+
+`dataclasses.dataclass` compiles up to seven functions for each class when its module is imported: .3 ms a class, a
+seventh of what `jointid identify` took. Here the methods are closures over the names of the fields, and `__init__`,
+which has to be quick and to show its arguments, is compiled when it is first asked for. Everything else is the same:
+`dataclasses.fields`, `replace` and `asdict`, comparison, hash, text and pickles.
+"""
+
+import dataclasses
+import operator
+import sys
+from collections.abc import Callable, Sequence
+from reprlib import recursive_repr
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from dataclasses import dataclass as dataclass
+else:
+
+    def dataclass(cls: type | None = None, /, **options: bool) -> Any:
+        """Make a class a dataclass, as `dataclasses.dataclass` does with the same options.
+
+        Parameters
+        ----------
+        cls : type
+        **options
+            ``frozen``, ``slots``, ``kw_only``, ``eq`` and ``repr``.
+        """
+
+        def decorate(cls: type) -> type:
+            # What inherits fields, or can change, is too rare to deserve more code.
+            plain = not options.get("frozen") or any(map(dataclasses.is_dataclass, cls.__bases__))
+            return (dataclasses.dataclass if plain else _frozen)(cls, **options)
+
+        return decorate if cls is None else decorate(cls)
+
+
+def _frozen(cls: type[Any], **options: bool) -> type[Any]:
+    compares, shows = options.get("eq", True), options.get("repr", True)
+    options |= {"init": False, "eq": False, "repr": False, "frozen": False}
+    cls.__doc__ = cls.__doc__ or cls.__name__  # or it is made from the signature, which takes long
+    cls = dataclasses.dataclass(**options)(cls)
+    said = cls.__dataclass_params__
+    said.init, said.eq, said.repr, said.frozen = True, compares, shows, True
+    fields = dataclasses.fields(cls)
+    names = [field.name for field in fields]
+    methods: dict[str, Any] = {"__init__": _Initialiser(cls), **_guards(cls, frozenset(names))}
+    if shows:
+        methods["__repr__"] = _representation([field.name for field in fields if field.repr])
+    if compares:
+        methods |= _comparison(fields)
+    if options.get("slots"):
+        methods |= _pickling(names)
+    for name, method in methods.items():
+        # Python itself puts None as the hash of a class that says how it compares.
+        if vars(cls).get(name) is None:
+            method.__name__, method.__qualname__ = name, f"{cls.__qualname__}.{name}"
+            setattr(cls, name, method)
+    return cls
+
+
+class _Initialiser:
+    """A class's `__init__` until somebody asks for it."""
+
+    def __init__(self, owner: type[Any]) -> None:
+        self._owner = owner
+
+    def __get__(self, value: object, cls: type[Any]) -> Any:
+        initialise = _compiled(self._owner)
+        setattr(self._owner, "__init__", initialise)  # noqa: B010 (of a class, to the type checker)
+        return initialise.__get__(value, cls)
+
+
+class _Absent:
+    """An argument that is not there, where the field has a default of its own for each value."""
+
+    def __repr__(self) -> str:
+        return "<factory>"
+
+
+_ABSENT = _Absent()
+
+
+def _compiled(cls: type[Any]) -> Callable[..., None]:
+    """The `__init__` of a class, as `dataclasses` writes it."""
+    known: dict[str, Any] = {"_set": object.__setattr__, "_absent": _ABSENT}
+    before: list[str] = []
+    behind: list[str] = []
+    body: list[str] = []
+    for field in dataclasses.fields(cls):
+        name, value = field.name, field.name
+        argument = name
+        if field.default is not dataclasses.MISSING:
+            known[f"_default_{name}"] = field.default
+            argument += f"=_default_{name}"
+        elif field.default_factory is not dataclasses.MISSING:
+            known[f"_make_{name}"] = field.default_factory
+            argument += "=_absent"
+            value = f"_make_{name}() if {name} is _absent else {name}"
+        (behind if field.kw_only else before).append(argument)
+        body.append(f"  _set(_self, {name!r}, {value})")
+    if hasattr(cls, "__post_init__"):
+        body.append("  _self.__post_init__()")
+    arguments = ", ".join(["_self", *before, *["*"] * bool(behind), *behind])
+    text = "\n".join(
+        [
+            f"def make({', '.join(known)}):",
+            f" def __init__({arguments}):",
+            *(body or ["  pass"]),
+            " return __init__",
+        ]
+    )
+    space: dict[str, Any] = {}
+    exec(text, vars(sys.modules[cls.__module__]), space)
+    initialise: Callable[..., None] = space["make"](**known)
+    initialise.__qualname__ = f"{cls.__qualname__}.__init__"
+    types = {field.name: field.type for field in dataclasses.fields(cls)}
+    initialise.__annotations__ = {**types, "return": None}
+    return initialise
+
+
+def _guards(cls: type[Any], names: frozenset[str]) -> dict[str, Any]:
+    """What refuses to change a value."""
+
+    def change(self: object, name: str, value: object) -> None:
+        if type(self) is cls or name in names:
+            raise dataclasses.FrozenInstanceError(f"cannot assign to field {name!r}")
+        super(cls, self).__setattr__(name, value)
+
+    def delete(self: object, name: str) -> None:
+        if type(self) is cls or name in names:
+            raise dataclasses.FrozenInstanceError(f"cannot delete field {name!r}")
+        super(cls, self).__delattr__(name)
+
+    return {"__setattr__": change, "__delattr__": delete}
+
+
+def _representation(names: Sequence[str]) -> Callable[[object], str]:
+    @recursive_repr()
+    def show(self: object) -> str:
+        shown = ", ".join([f"{name}={getattr(self, name)!r}" for name in names])
+        return f"{type(self).__qualname__}({shown})"
+
+    return show
+
+
+def _comparison(fields: Sequence[dataclasses.Field[Any]]) -> dict[str, Any]:
+    """Equal where the fields are that are compared, and hashed by those that are hashed."""
+    compared = _all_of([field.name for field in fields if field.compare])
+    hashed = _all_of(
+        [field.name for field in fields if (field.compare if field.hash is None else field.hash)]
+    )
+
+    def equals(self: object, other: object) -> Any:
+        if type(other) is not type(self):
+            return NotImplemented
+        return compared(self) == compared(other)
+
+    def hash_of(self: object) -> int:
+        return hash(hashed(self))
+
+    return {"__eq__": equals, "__hash__": hash_of}
+
+
+def _all_of(names: Sequence[str]) -> Callable[[object], tuple[object, ...]]:
+    """A function that returns the attributes of these names as a tuple."""
+    if len(names) > 1:
+        return operator.attrgetter(*names)
+    return lambda value: tuple([getattr(value, name) for name in names])
+
+
+def _pickling(names: Sequence[str]) -> dict[str, Any]:
+    """The state of a class with slots: the values of its fields in order."""
+
+    def state(self: object) -> list[object]:
+        return [getattr(self, name) for name in names]
+
+    def restore(self: object, values: Sequence[object]) -> None:
+        for name, value in zip(names, values, strict=True):
+            object.__setattr__(self, name, value)
+
+    return {"__getstate__": state, "__setstate__": restore}

@@ -1,0 +1,31 @@
+"""An estimate's parameters as a data frame."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from jointid.base.frames import data_frame
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from jointid.estimate.derived import DerivedValue
+    from jointid.estimate.estimate import Estimate
+    from jointid.estimate.statistics import ParameterEstimate
+
+
+def parameter_frame(estimate: Estimate) -> pd.DataFrame:
+    """Return one row for each parameter and derived quantity: see `Estimate.to_pandas`."""
+    rows = [_row(p) for p in estimate.parameters.values()]
+    rows += [_row(each) for each in estimate.derived.values()]
+    return data_frame(rows, index="name")
+
+
+def _row(p: ParameterEstimate | DerivedValue) -> dict[str, Any]:
+    low, high = p.interval or (None, None)
+    row = {name: getattr(p, name, None) for name in ("name", "value", "stderr")}
+    row |= {"systematic": p.systematic_total, "low": low, "high": high}
+    return row | {
+        name: getattr(p, name, None)
+        for name in ("min", "max", "vary", "at_bound", "unit", "meaning")
+    }

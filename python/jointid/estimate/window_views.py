@@ -1,0 +1,58 @@
+"""What pictures show of windows: where they lie in time, where a line is interrupted, which velocities a curve has."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.joint.units import torque_unit
+from jointid.problem.window_table import WindowTable
+
+if TYPE_CHECKING:
+    from jointid.estimate.estimate import Estimate
+
+Array = NDArray[np.float64]
+
+
+def fitted_signal(estimate: Estimate) -> tuple[str, str]:
+    """Return the quantity that the model is fitted to, and its unit."""
+    if estimate.settings["residual"] != "torque":
+        return "sensor reading", "sensor units"
+    kind = estimate.settings["kind"]
+    return "force" if kind == "prismatic" else "torque", torque_unit(kind)
+
+
+def map_velocities(peak: float, count: int = 400) -> Array:
+    """Return velocities up to the peak, so many in each direction, dense near rest, where friction is nonlinear."""
+    half = peak * np.linspace(0.0, 1.0, count) ** 3
+    half[0] = 1e-9 * peak
+    return np.concatenate([-half[::-1], half])
+
+
+def whole_windows(windows: WindowTable) -> NDArray[np.bool_]:
+    """Return which windows hold enough samples for a mean: more than half of the usual time."""
+    return windows.duration > 0.5 * float(np.median(windows.duration))
+
+
+def window_centres(windows: WindowTable) -> Array:
+    """Return the window centres on one time axis [s], on which recordings follow one another."""
+    centre = 0.5 * (windows.start + windows.stop)
+    begin = 0.0
+    for run in np.unique(windows.recording):
+        same = windows.recording == run
+        first, last = float(windows.start[same].min()), float(windows.stop[same].max())
+        if begin:
+            centre[same] += begin - first
+        begin += last - first if begin else last
+    return np.asarray(centre)
+
+
+def with_gaps(centre: Array, *values: Array) -> tuple[Array, ...]:
+    """Return centres and values with NaN where windows are missing: nothing was measured there."""
+    if len(centre) < 3:
+        return (centre, *values)
+    steps = np.diff(centre)
+    breaks = np.flatnonzero(steps > 2.5 * float(np.median(steps))) + 1
+    return tuple(np.insert(each, breaks, np.nan) for each in (centre, *values))

@@ -1,0 +1,125 @@
+"""Parts of a recording: between two times, in equal pieces, on another clock, or one signal by its name."""
+
+from collections.abc import Sequence
+from typing import Any, Self, overload
+
+import numpy as np
+
+from jointid.base.errors import InputError
+from jointid.recording.changes import Changes
+from jointid.recording.extra import rows_of_extra
+from jointid.recording.signals import SIGNALS, FloatArray, closest
+from jointid.recording.slicing import slice_between, slices_of
+
+
+class Parts(Changes):
+    """What a recording returns of itself."""
+
+    time: FloatArray
+    name: str
+
+    __iter__ = None  # neither samples nor names are meant by `for`
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        """Names of the signals present, time first, always in the same order."""
+        return tuple(name for name in SIGNALS if getattr(self, name) is not None)
+
+    @overload
+    def __getitem__(self, wanted: str) -> FloatArray: ...
+
+    @overload
+    def __getitem__(self, wanted: slice) -> Self: ...
+
+    def __getitem__(self, wanted: str | slice) -> Self | FloatArray:
+        """Return a signal by its name, or the samples between two times [s], both included.
+
+        Examples
+        --------
+        >>> later = recording[2.0:]
+        >>> round(later.time[0], 3)
+        2.0
+        >>> recording["torque"].shape == recording.time.shape
+        True
+        """
+        if isinstance(wanted, slice):
+            if wanted.step is not None:
+                raise InputError(
+                    "times are given from : to; `resample` changes the period",
+                    argument="step",
+                    value=wanted.step,
+                )
+            return self.crop(wanted.start, wanted.stop)
+        if not isinstance(wanted, str):
+            raise InputError(
+                "a signal's name or times [s] are expected",
+                argument="recording[...]",
+                value=wanted,
+                remedy=('recording["torque"]', "recording[1.0:2.0]"),
+            )
+        present = {**{name: getattr(self, name) for name in self.signals}, **self.extra}
+        if wanted not in present:
+            close = closest(wanted, present)
+            raise InputError(
+                "the recording has no such signal; "
+                + (f"did you mean {close!r}?" if close else f"it has {', '.join(present)}"),
+                argument="recording[...]",
+                value=wanted,
+            )
+        return np.asarray(present[wanted])
+
+    def crop(self, start: float | None = None, stop: float | None = None) -> Self:
+        """Return the samples from one time to another.
+
+        Parameters
+        ----------
+        start, stop : float, optional
+            [s], on the recording's clock, both included. Default: the first and last sample.
+
+        Returns
+        -------
+        Recording
+            With the same time stamps and velocities, derived ones too.
+
+        Raises
+        ------
+        InputError
+            Fewer than 8 samples would be left, or a bound is no number.
+        """
+        return self._part(slice_between(self.time, start, stop))
+
+    def split(
+        self, parts: int | None = None, *, at: Sequence[float] | None = None
+    ) -> tuple[Self, ...]:
+        """Return the recording in consecutive parts that share no sample.
+
+        Parameters
+        ----------
+        parts : int, optional
+            How many; their numbers of samples differ by one at most.
+        at : sequence of float, optional
+            Instead of `parts`: the times [s] at which a new part begins, on the recording's
+            clock, increasing; a sample at such a time is the new part's first.
+
+        Returns
+        -------
+        tuple of Recording
+            Named ``"NAME 1/3"``, ..., with the same time stamps and velocities, derived ones too.
+
+        Raises
+        ------
+        InputError
+            Neither or both are given, a time is not inside the recording, or a part would have
+            fewer than 8 samples.
+        """
+        slices = slices_of(self.time, parts, at)
+        return tuple(
+            self._part(part, name=f"{self.name} {number}/{len(slices)}".lstrip())
+            for number, part in enumerate(slices, start=1)
+        )
+
+    def _part(self, kept: slice, **changes: Any) -> Self:
+        fields = self._fields()
+        fields.update({signal: fields[signal][kept] for signal in self.signals}, **changes)
+        fields["extra"] = rows_of_extra(self.extra, kept)
+        return type(self)(**fields)

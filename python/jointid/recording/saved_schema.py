@@ -1,0 +1,29 @@
+"""The description of a saved recording, as it is read back: what it must hold."""
+
+from jointid.base.schema import LARGEST, Flag, Json, ListOf, Number, OrNull, Record, TableOf, Text
+from jointid.recording.signals import KINDS
+
+_TEXT = Text(longest=LARGEST)  # as long as a user may have made a name
+_MOST = 10_000  # joints, signals and extra columns
+_ROBOT = Record(
+    {
+        "names": ListOf(_TEXT, 1, _MOST),
+        "side": Text(known=("joint", "motor")),
+        "gear_ratio": OrNull(ListOf(Number(), 1, _MOST)),
+        "signals": ListOf(Text(), longest=_MOST),
+        "extra": TableOf(Number(low=1, high=2, whole=True), _MOST, LARGEST),
+    },
+)
+SAVED = Record(
+    {"schema": Number(whole=True)},
+    {
+        "name": _TEXT,
+        "kind": Text(known=KINDS),
+        "torque_hold": OrNull(Text(known=("zoh", "linear"))),
+        "velocity_derived": Flag(),
+        "metadata": OrNull(TableOf(Json(), longest=LARGEST, longest_name=LARGEST)),
+        "truth": OrNull(TableOf(Json(), longest=LARGEST, longest_name=LARGEST)),
+        "robot": OrNull(_ROBOT),
+    },
+    other=Json(),
+)

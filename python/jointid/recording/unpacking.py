@@ -1,0 +1,136 @@
+"""How much a compressed file may hold: a limit for each file, so that a small one cannot fill the memory."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from pathlib import Path
+
+from jointid.base.advice import Action
+from jointid.base.errors import InputError
+
+LEAST = 64_000_000  # bytes that any file may hold
+TIMES = 50  # its size: recorded numbers are packed 2 to 20 times, and repeated ones 1000 times
+_CHUNK = 1 << 20  # bytes
+_raised: ContextVar[int] = ContextVar("unpacked", default=0)
+
+
+@contextmanager
+def allowing(unpacked: int | None) -> Iterator[None]:
+    """Raise the limit of the files that are opened inside.
+
+    Parameters
+    ----------
+    unpacked : int or None
+        Bytes. None: the limit stays.
+
+    Raises
+    ------
+    InputError
+        It is no whole number above 0.
+    """
+    if unpacked is None:
+        yield
+        return
+    if isinstance(unpacked, bool) or not isinstance(unpacked, int) or unpacked <= 0:
+        raise InputError("a number of bytes is expected", argument="unpacked", value=unpacked)
+    before = _raised.set(unpacked)
+    try:
+        yield
+    finally:
+        _raised.reset(before)
+
+
+class Room:
+    """What a file may still hold when it is unpacked.
+
+    Parameters
+    ----------
+    path : Path
+    size : int, optional
+        Bytes of the file. Default: as it is on the disk.
+
+    Attributes
+    ----------
+    left : int
+        Bytes.
+    """
+
+    def __init__(self, path: Path, size: int | None = None) -> None:
+        self._path = path
+        self._allowed = max(
+            LEAST, TIMES * (path.stat().st_size if size is None else size), _raised.get()
+        )
+        self.left = self._allowed
+
+    def again(self) -> None:
+        """Begin anew: the file is read once more."""
+        self.left = self._allowed
+
+    def take(self, size: int) -> None:
+        """Count bytes that are unpacked, before they are.
+
+        Raises
+        ------
+        InputError
+            The file holds more than it may.
+        """
+        self.left -= size
+        if self.left < 0:
+            raise InputError(
+                f"unpacked it is larger than {self._allowed / 1e6:.0f} MB, which is the limit for a file of its size",
+                place=str(self._path),
+                remedy=Action(
+                    "call",
+                    {"unpacked": ...},
+                    text="the bytes that it may hold, if it is no damaged or hostile file",
+                    function="load",
+                ),
+            )
+
+    def gunzip(self, content: bytes) -> bytes:
+        """Return what gzip has packed, also in several members.
+
+        Raises
+        ------
+        InputError
+            The file holds more than it may.
+        EOFError
+            It is cut off.
+        zlib.error
+            It is damaged.
+        """
+        parts = []
+        rest = content
+        while rest:
+            member = zlib.decompressobj(16 + zlib.MAX_WBITS)
+            found = member.decompress(rest, self.left + 1)
+            self.take(len(found))
+            if not member.eof:
+                if member.unconsumed_tail:  # as large as it may be, and more to come
+                    self.take(self.left + 1)
+                raise EOFError
+            parts.append(found)
+            rest = member.unused_data.lstrip(b"\0")  # a file may be padded
+        return parts[0] if len(parts) == 1 else b"".join(parts)
+
+    def bz2(self, content: bytes) -> bytes:
+        """Return what bzip2 has packed.
+
+        Raises
+        ------
+        InputError
+            The file holds more than it may.
+        OSError, EOFError
+            It is damaged, or cut off.
+        """
+        import bz2
+
+        unpacker = bz2.BZ2Decompressor()
+        found = unpacker.decompress(content, self.left + 1)
+        self.take(len(found))
+        if not unpacker.eof:
+            raise EOFError("it is cut off")
+        return found

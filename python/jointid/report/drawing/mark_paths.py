@@ -1,0 +1,103 @@
+"""The path of each kind of mark on two scales."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointid.base.html import Html, element
+from jointid.report.drawing.decimation import distinct, outline
+from jointid.report.drawing.marks import Band, Bars, Level, Line, Mark, Points, numbers
+from jointid.report.drawing.paths import area_path, bars_path, line_path, points_path, runs
+from jointid.report.drawing.scale import Places, Scale, drawable
+
+UNIT = 10  # places a unit of the picture; about a pixel
+_DENSE = 4  # samples a column, above which a line is drawn by its outline
+_MANY = 3000  # points, above which those that lie upon each other are drawn once
+
+
+def mark_path(mark: Mark, across: Scale, up: Scale) -> Html | None:
+    """Return a mark as an element, None where there is nothing to see."""
+    kind, path = _kind_and_path(mark, across, up)
+    return element("path", class_=f"{kind} {mark.look}", d=path) if path else None
+
+
+def legend_sample(mark: Mark, across: int, up: int) -> Html:
+    """Return what the legend shows of a mark, around a place."""
+    kind = mark_kind(mark)
+    paths = {
+        "points": f"M{across + 20} {up}h0M{across + 90} {up}h0M{across + 160} {up}h0",
+        "band": f"M{across} {up - 50}h180v100h-180z",
+        "bars": f"M{across} {up - 50}h180v100h-180z",
+    }
+    path = paths.get(kind, f"M{across} {up}h180")
+    return element("path", class_=f"{kind} {mark.look}", d=path)
+
+
+def mark_kind(mark: Mark) -> str:
+    """Return the class that a mark has in the style sheet."""
+    if isinstance(mark, Level) or (isinstance(mark, Line) and mark.dashed):
+        return "dashed"
+    return {Points: "points", Band: "band", Bars: "bars"}.get(type(mark), "line")
+
+
+def _kind_and_path(mark: Mark, across: Scale, up: Scale) -> tuple[str, str]:
+    kind = mark_kind(mark)
+    if isinstance(mark, Level):
+        if not drawable(numbers([mark.up]), up.logarithmic)[0]:
+            return kind, ""
+        return kind, f"M{across.start} {int(up.places(mark.up))}H{across.stop}"
+    if isinstance(mark, Band):
+        return kind, _band(mark, across, up)
+    if isinstance(mark, Bars):
+        edges, values = across.places(mark.edges), numbers(mark.up)
+        shown = drawable(values)
+        tops = up.places(values[shown])
+        return kind, bars_path(edges[:-1][shown], edges[1:][shown], tops, int(up.places(0.0)))
+    assert isinstance(mark, Line | Points)
+    x, y = numbers(mark.across), numbers(mark.up)
+    shown = drawable(x) & drawable(y, up.logarithmic)
+    if isinstance(mark, Line):
+        return kind, _line(x, y, shown, across, up)
+    places, heights = across.places(x[shown]), up.places(y[shown])
+    if len(places) > _MANY:
+        seen = distinct(places, heights, UNIT)
+        places, heights = places[seen], heights[seen]
+    return kind, points_path(places, heights)
+
+
+def _line(
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    shown: NDArray[np.bool_],
+    across: Scale,
+    up: Scale,
+) -> str:
+    paths = []
+    for run in runs(shown):
+        places, values = across.places(x[run]), y[run]
+        if _is_dense(places, across):
+            kept = outline(places // UNIT, values)
+            places, values = places[kept], values[kept]
+        paths.append(line_path(places, up.places(values)))
+    return "".join(paths)
+
+
+def _band(mark: Band, across: Scale, up: Scale) -> str:
+    x, low, high = numbers(mark.across), numbers(mark.low), numbers(mark.high)
+    shown = drawable(x) & drawable(low, up.logarithmic) & drawable(high, up.logarithmic)
+    paths = []
+    for run in runs(shown):
+        places, under, over = across.places(x[run]), low[run], high[run]
+        if _is_dense(places, across):
+            columns = places // UNIT
+            kept = np.union1d(outline(columns, under), outline(columns, over))
+            places, under, over = places[kept], under[kept], over[kept]
+        paths.append(area_path(places, up.places(under), up.places(over)))
+    return "".join(paths)
+
+
+def _is_dense(places: Places, across: Scale) -> bool:
+    """Whether there are more samples than the picture has room for, in the order of the axis."""
+    columns = (across.stop - across.start) // UNIT
+    return len(places) > _DENSE * columns and bool((np.diff(places) >= 0).all())

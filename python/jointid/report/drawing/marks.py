@@ -1,0 +1,166 @@
+"""What a picture is made of: lines, points, bands, bars and levels, on panels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from jointid.base.values import dataclass
+from jointid.report.drawing.palette import LOOKS
+
+Array = NDArray[np.float64]
+
+
+class Mark:
+    """One thing that is drawn.
+
+    Attributes
+    ----------
+    look : str
+        One of the palette's: "measured", "fitted", "second", "third", "fourth", "fifth". Default "fitted".
+    label : str
+        For the legend. Default: none.
+    """
+
+    __slots__ = ()
+    look: str
+    label: str
+
+    def __post_init__(self) -> None:
+        if self.look not in LOOKS:
+            raise ValueError(f"no look '{self.look}' in the palette")
+
+    def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
+        """What the two axes must have room for."""
+        return (), ()
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Line(Mark):
+    """A line through points in order; a value that is not finite interrupts it.
+
+    Attributes
+    ----------
+    across, up : array_like, shape (n,)
+    dashed : bool
+        Default False.
+    """
+
+    across: ArrayLike
+    up: ArrayLike
+    dashed: bool = False
+    look: str = "fitted"
+    label: str = ""
+
+    def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
+        """What the two axes must have room for."""
+        return (numbers(self.across),), (numbers(self.up),)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Points(Mark):
+    """Single points.
+
+    Attributes
+    ----------
+    across, up : array_like, shape (n,)
+    """
+
+    across: ArrayLike
+    up: ArrayLike
+    look: str = "fitted"
+    label: str = ""
+
+    def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
+        """What the two axes must have room for."""
+        return (numbers(self.across),), (numbers(self.up),)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Band(Mark):
+    """The area between two lines; a value that is not finite interrupts it.
+
+    Attributes
+    ----------
+    across, low, high : array_like, shape (n,)
+    """
+
+    across: ArrayLike
+    low: ArrayLike
+    high: ArrayLike
+    look: str = "fitted"
+    label: str = ""
+
+    def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
+        """What the two axes must have room for."""
+        return (numbers(self.across),), (numbers(self.low), numbers(self.high))
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Bars(Mark):
+    """Bars that stand on zero, side by side.
+
+    Attributes
+    ----------
+    edges : array_like, shape (n + 1,)
+        Increasing.
+    up : array_like, shape (n,)
+    """
+
+    edges: ArrayLike
+    up: ArrayLike
+    look: str = "fitted"
+    label: str = ""
+
+    def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
+        """What the two axes must have room for."""
+        return (numbers(self.edges),), (numbers(self.up), np.zeros(1))
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Level(Mark):
+    """A dashed line at one value, all across the panel.
+
+    Attributes
+    ----------
+    up : float
+    """
+
+    up: float
+    look: str = "fitted"
+    label: str = ""
+
+    def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
+        """What the two axes must have room for."""
+        return (), (numbers([self.up]),)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Panel:
+    """Two axes and what is drawn on them, the first mark at the bottom.
+
+    Attributes
+    ----------
+    marks : tuple of Mark
+    across, up : str
+        What the axes show, with the unit in brackets: "velocity [rad/s]".
+    logarithmic : bool
+        Of the upright axis. Default False.
+    height : int
+        Of the axes, in units of the picture, which is 560 wide. Default 220.
+    """
+
+    marks: tuple[Mark, ...]
+    across: str
+    up: str
+    logarithmic: bool = False
+    height: int = 220
+
+
+def numbers(values: ArrayLike) -> Array:
+    """Return values as an array of numbers, masked ones as gaps."""
+    if isinstance(values, np.ma.MaskedArray):
+        return np.ma.filled(values.astype(np.float64), np.nan)
+    return np.asarray(values, dtype=np.float64)

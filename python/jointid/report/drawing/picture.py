@@ -1,0 +1,170 @@
+"""Panels below each other, with their axes and legends, as one SVG."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from jointid.base.html import Html, element
+from jointid.report.drawing.mark_paths import UNIT, legend_sample, mark_kind, mark_path
+from jointid.report.drawing.marks import Mark, Panel, numbers
+from jointid.report.drawing.scale import Scale, drawable, limits
+from jointid.report.drawing.ticks import Ticks, superscript
+
+WIDTH = 560  # units of the picture
+# Tenths of a unit. Rooms for texts are for the large text of a narrow screen, see the palette.
+_LETTER = 105
+_NARROW, _BROAD = frozenset("iljtfrI,.:;'!|()[] -"), frozenset("mwMW%@−")
+_LINE = 210
+_RIGHT = 170
+_SWATCH = 250
+_BETWEEN = 170
+_FOR_A_TICK = 330
+
+
+def drawn(panels: Sequence[Panel], title: str, description: str = "") -> Html:
+    """Draw panels with one axis across, as one picture.
+
+    Parameters
+    ----------
+    panels : sequence of Panel
+        From above; the lowest one's axis across is labelled.
+    title : str
+        For those who do not see the picture, and as the name of the picture.
+    description : str
+        Follows what the axes show. Default: nothing.
+
+    Returns
+    -------
+    Html
+        An ``svg`` element that scales with the page; the page has `palette.STYLE`.
+    """
+    wanted = [[mark.values() for mark in panel.marks] for panel in panels]
+    low, high = limits([each for values in wanted for across, _ in values for each in across])
+    ranges = [
+        limits([each for _, up in values for each in up], panel.logarithmic)
+        for panel, values in zip(panels, wanted, strict=True)
+    ]
+    ticks = [
+        Scale(*up, 0, 1, panel.logarithmic).ticks(panel.height * UNIT // _FOR_A_TICK)
+        for panel, up in zip(panels, ranges, strict=True)
+    ]
+    left = 80 + _LETTER * max(len(text) for each in ticks for text in (*each.texts, "0"))
+    across = Scale(low, high, left, WIDTH * UNIT - _RIGHT)
+    parts: list[Html | str] = []
+    below = 0
+    for number, (panel, up, each) in enumerate(zip(panels, ranges, ticks, strict=True)):
+        legend, below = _legend(panel, below)
+        top = below + _LINE + 90
+        named = _axis_title(panel.up, each.exponent)
+        title_place = element("text", named, x="40", y=str(top - 110))
+        foot = top + panel.height * UNIT
+        upright = Scale(*up, foot, top, panel.logarithmic)
+        last = number == len(panels) - 1
+        parts += [*legend, title_place, *_axes(across, upright, each, panel.across if last else "")]
+        marks = [mark_path(mark, across, upright) for mark in panel.marks]
+        parts += [mark for mark in marks if mark is not None]
+        if not any(marks):
+            middle = str((across.start + across.stop) // 2)
+            parts.append(
+                element("text", "no values", class_="across", x=middle, y=str((top + foot) // 2))
+            )
+        below = foot + (2 * _LINE + 60 if last else 60)
+    said = f"{_summary(panels, ranges, (low, high))} {description}".strip()
+    return element(
+        "svg",
+        element("title", title),
+        element("desc", said),
+        *parts,
+        viewBox=f"0 0 {WIDTH * UNIT} {below}",
+        role="img",
+    )
+
+
+def _axes(across: Scale, up: Scale, ticks: Ticks, title: str) -> list[Html | str]:
+    """Grid, axes, numbers at the ticks and the title of the axis across; without one, no numbers."""
+    below = _ticks_across(across)
+    rows = up.places(ticks.values).tolist()
+    columns = across.places(below.values).tolist()
+    grid = "".join(f"M{across.start} {y}H{across.stop}" for y in rows)
+    grid += "".join(f"M{x} {up.stop}V{up.start}" for x in columns)
+    parts: list[Html | str] = [
+        element("path", class_="grid", d=grid),
+        element("path", class_="axes", d=f"M{across.start} {up.stop}V{up.start}H{across.stop}"),
+    ]
+    parts += [
+        element("text", text, class_="up", x=str(across.start - 60), y=str(y + 45))
+        for text, y in zip(ticks.texts, rows, strict=True)
+    ]
+    if title:
+        foot = up.start + _LINE
+        parts += [
+            element("text", text, class_="across", x=str(x), y=str(foot))
+            for text, x in zip(below.texts, columns, strict=True)
+        ]
+        middle = str((across.start + across.stop) // 2)
+        named = _axis_title(title, below.exponent)
+        parts.append(element("text", named, class_="across", x=middle, y=str(foot + _LINE)))
+    return parts
+
+
+def _ticks_across(across: Scale) -> Ticks:
+    """As many ticks as their numbers have room for."""
+    for most in range(7, 2, -1):
+        ticks = across.ticks(most)
+        if len(ticks.texts) * _LETTER * (max(map(len, ticks.texts), default=0) + 1) <= (
+            across.stop - across.start
+        ):
+            return ticks
+    return across.ticks(2)
+
+
+def _axis_title(title: str, exponent: int) -> str:
+    if not exponent:
+        return title
+    power = f"10{superscript(exponent)}"
+    return title.replace("[", f"[{power} ", 1) if "[" in title else f"{title} [{power}]"
+
+
+def _legend(panel: Panel, top: int) -> tuple[list[Html | str], int]:
+    """The labelled marks in rows as wide as the picture, and the place below them."""
+    parts: list[Html | str] = []
+    x, y = 40, top + _LINE
+    labelled = [mark for mark in panel.marks if mark.label]
+    if len(labelled) == 0:
+        return [], top
+    for mark in labelled:
+        width = _SWATCH + _width(mark.label) + _BETWEEN
+        if x > 40 and x + width - _BETWEEN > WIDTH * UNIT:
+            x, y = 40, y + _LINE
+        parts += [
+            legend_sample(mark, x, y - 45),
+            element("text", mark.label, x=str(x + _SWATCH), y=str(y)),
+        ]
+        x += width
+    return parts, y + 60
+
+
+def _width(text: str) -> int:
+    """About how wide a text is in a broad font."""
+    narrow, broad = sum(map(_NARROW.__contains__, text)), sum(map(_BROAD.__contains__, text))
+    return _LETTER * len(text) + (_LETTER * (broad - narrow)) // 2
+
+
+def _summary(
+    panels: Sequence[Panel],
+    ranges: Sequence[tuple[float, float]],
+    across: tuple[float, float],
+) -> str:
+    """In words: what the axes show and over which range, and what is drawn."""
+    said = [f"Across: {panels[-1].across}, from {across[0]:.3g} to {across[1]:.3g}."]
+    for panel, up in zip(panels, ranges, strict=True):
+        drawn = "; ".join(_counted(mark) for mark in panel.marks if mark.label)
+        said.append(
+            f"Up: {panel.up}, from {up[0]:.3g} to {up[1]:.3g}{': ' if drawn else ''}{drawn}."
+        )
+    return " ".join(said)
+
+
+def _counted(mark: Mark) -> str:
+    shown = sum(int(drawable(numbers(each)).sum()) for each in list(mark.values()[1])[:1])
+    return f"{mark.label} ({mark_kind(mark)}, {shown} values)"

@@ -1,0 +1,43 @@
+"""What a trajectory shows of itself: a line at the prompt, a table and a curve's extent in a notebook."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jointid.base.html import Html, element, table
+
+if TYPE_CHECKING:
+    from jointid.simulation.trajectory import Trajectory
+
+_LOOKS = 2001  # instants at which extremes are looked for
+
+
+def line_of(trajectory: Trajectory) -> str:
+    """Return one line about a trajectory; see `repr`."""
+    (low, high), speed, _ = _extremes(trajectory)
+    return (
+        f"<Trajectory: {trajectory.form}, {trajectory.duration:.6g} s, position {low:.4g} to {high:.4g}, "
+        f"speed up to {speed:.4g}>"
+    )
+
+
+def html_facts(trajectory: Trajectory) -> Html:
+    """Return the trajectory's facts as a table; units are those of a revolute joint."""
+    (low, high), speed, acceleration = _extremes(trajectory)
+    rows: list[list[Html | str]] = [
+        ["form", trajectory.form],
+        ["duration", f"{trajectory.duration:.6g} s"],
+        ["position", f"{low:.4g} … {high:.4g} rad"],
+        ["largest speed", f"{speed:.4g} rad/s"],
+        ["largest acceleration", f"{acceleration:.4g} rad/s²"],
+    ]
+    return element("div", element("b", "jointid trajectory"), table(rows))
+
+
+def _extremes(trajectory: Trajectory) -> tuple[tuple[float, float], float, float]:
+    time = np.linspace(0.0, trajectory.duration, _LOOKS)
+    position, velocity, acceleration = trajectory.sample(time)
+    span = (float(position.min()), float(position.max()))
+    return span, float(np.abs(velocity).max()), float(np.abs(acceleration).max())
