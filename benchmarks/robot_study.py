@@ -110,7 +110,8 @@ positions and of its error, of the best joint.""",
     "heavier": """Scales of the links, and what a call says that takes the URDF's inertias for true.""",
     "facts": """One arm; the call gets something wrong, and has to say what.""",
     "wrong": """The call is not informed of it; the largest over the arms, and how often each warning came.""",
-    "delays": """Every torque as it was so much before; the call does not know it. Errors are the largest over the arms.""",
+    "delays": """Every torque as it was so much before; the call does not know it. Errors are the largest over the
+arms.""",
     "causes": """One fact is wrong, and the call does not know it. Counted are the runs in which the cause is named,
 and those in which something else is named as a cause, too or instead. Explained: of the squared
 residual, in stretches of motion from which the cause's size was not taken. Free inertias follow what
