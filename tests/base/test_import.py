@@ -162,6 +162,15 @@ def test_a_report_brings_only_numpy(recording: Path, tmp_path: Path) -> None:
     assert not modules & {"numpy.random", "numpy.fft", "numpy.testing", "numpy.polynomial"}
 
 
+def test_a_session_with_its_report_brings_no_plotting(tmp_path: Path) -> None:
+    bench = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
+    runs = tmp_path / "runs"
+    session = command("run", str(bench), "--emulate", "--cycles", "0", "--output", str(runs))
+    modules = loaded(session)
+    assert not roots(modules) & {"matplotlib", "scipy", "pandas"}
+    assert (runs / "report.html").read_text(encoding="utf-8").count("<svg ") == 1
+
+
 # The folders of the package that a command loads, and no other.
 READING = {
     *("base", "cli", "joint", "recording", "recording.readers", "recording.wide"),
@@ -211,15 +220,6 @@ def test_a_command_brings_what_it_needs(command: str, recording: Path) -> None:
     assert folders - {"jointid"} - {f"jointid.{room}" for room in rooms} == set()
     library = {name.partition(".")[0] for name in modules} & sys.stdlib_module_names
     assert {name for name in library if not name.startswith("_")} - LIBRARY - more == set()
-
-
-def test_a_session_with_its_report_brings_no_plotting(tmp_path: Path) -> None:
-    bench = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
-    runs = tmp_path / "runs"
-    session = command("run", str(bench), "--emulate", "--cycles", "0", "--output", str(runs))
-    modules = loaded(session)
-    assert not roots(modules) & {"matplotlib", "scipy", "pandas"}
-    assert (runs / "report.html").read_text(encoding="utf-8").count("<svg ") == 1
 
 
 def test_the_first_identify_brings_only_numpy(recording: Path) -> None:

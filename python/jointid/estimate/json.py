@@ -38,6 +38,7 @@ def write_estimate(estimate: Estimate) -> str:
         if item.name != "follow_up":  # it holds the recordings, which have files of their own
             document[item.name] = plain(getattr(estimate, item.name))
     document["derived"] = plain(estimate.derived)
+    document["verdict"] = estimate.verdict.document()
     for entry, found in zip(document["findings"], estimate.findings, strict=True):
         entry["message"] = found.message  # for readers that are not ours
     return json_text(document)
