@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.base.json_text import json_text
+from jointid.base.json_layout import json_text
 from jointid.base.schema import Number, read_json
 from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
