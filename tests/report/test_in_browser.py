@@ -24,7 +24,8 @@ SMALLEST = 9.0  # pixels of a text's line on a screen: about 8 px of type
 PROBE = """<script>addEventListener("load", () => {
 const seen = [...document.querySelectorAll("svg text")].map(each => each.getBoundingClientRect());
 const curves = [...document.querySelectorAll("svg .line, svg .points, svg .dashed, svg .band")];
-parent.postMessage({width: innerWidth, room: document.documentElement.clientWidth, wide: document.documentElement.scrollWidth,
+const root = document.documentElement;
+parent.postMessage({width: innerWidth, room: root.clientWidth, wide: root.scrollWidth,
  outside: seen.filter(box => box.left < 0 || box.right > innerWidth).length,
  smallest: Math.min(...seen.map(box => box.height)), ground: getComputedStyle(document.body).backgroundColor,
  curves: [...new Set(curves.map(each => getComputedStyle(each).stroke))],
