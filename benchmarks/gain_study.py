@@ -16,11 +16,12 @@ from pathlib import Path
 import numpy as np
 
 import jointid as jid
+from jointid.problem.terms import Residual
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 from plants import Bench, Law, Log, Plant, simulate, thesis
 
-RESIDUALS = (None, "sensor", "torque")
+RESIDUALS: tuple[Residual | None, ...] = (None, "sensor", "torque")
 NOISE = Log(sensor_noise=0.5)
 HELD = Law(inertia=2.5, stiffness=80.0, feedback=1.5)
 
@@ -97,7 +98,11 @@ def main(runs: int, word: str = "") -> None:
             gains, held, others = [], 0, []
             for recording in recordings:
                 found = jid.identify(
-                    recording, joint, residual=residual, model=case.model, search="separable"
+                    recording,
+                    joint,
+                    residual=residual,
+                    model=None if case.model is None else jid.Model.parse(case.model),
+                    search="separable",
                 ).parameters
                 gain = found["sensor_gain"]
                 gains.append(100.0 * (gain.value / 2.4 - 1.0))

@@ -99,7 +99,7 @@ def main(runs: int) -> None:
         base = "stribeck" if joint.sensor else "stribeck:gravity=free"
         models = [base, f"{base}:load_friction"]
         for run in recordings[i * runs : (i + 1) * runs]:
-            rich = jid.identify(run, joint, model=models[1], search="separable")
+            rich = jid.identify(run, joint, model=jid.Model.parse(models[1]), search="separable")
             if refusal(rich) is not None:
                 refused += 1
                 continue
@@ -120,7 +120,9 @@ def of_size(size: float, runs: int, rng: np.random.Generator) -> None:
         for run in recordings[i * runs : (i + 1) * runs]:
             compared = jid.compare_models(run, joint, models=[base, f"{base}:load_friction"])
             wins += "load" in compared.winner
-            rich = jid.identify(run, joint, model=f"{base}:load_friction", search="separable")
+            rich = jid.identify(
+                run, joint, model=jid.Model.parse(f"{base}:load_friction"), search="separable"
+            )
             values.append(rich.parameters["load_friction"].value)
         worst = 100.0 * np.abs(np.array(values) / size - 1.0).max()
         print(

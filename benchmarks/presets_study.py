@@ -10,6 +10,7 @@ import numpy as np
 
 import jointid as jid
 from jointid.cli.demo import data_folder
+from jointid.identification.search.search import Method
 
 TRUTH = {
     "coulomb": 25.0,
@@ -21,7 +22,7 @@ TRUTH = {
 }
 
 
-def rows() -> dict[str, tuple[str, jid.GaOptions]]:
+def rows() -> dict[str, tuple[Method, jid.GaOptions]]:
     """Method and options by name."""
     text, code = jid.GaOptions.thesis(), jid.GaOptions.thesis_code()
     plain = jid.GaOptions(population=200, generations=1500, polish=False)

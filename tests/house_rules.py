@@ -116,7 +116,7 @@ FOLDERS: dict[str, Folder] = {
             *("base", "recording", "recording/wide", "joint", "problem", "estimate", "joints"),
             *("identification/inference", "identification/search"),
         },
-        packages={"numpy", "scipy", "pinocchio"},
+        packages={"numpy", "pinocchio"},
     ),
     "plot": Folder(
         may_use={*_DATA, "simulation", "estimate", "study"},
@@ -125,7 +125,7 @@ FOLDERS: dict[str, Folder] = {
     "report": Folder(
         may_use={
             *("base", "joint", "estimate", "joints", "robot", "identification/warnings"),
-            "report/drawing",
+            *("report/drawing", "recording", "commissioning"),
         },
         packages={"numpy"},
     ),

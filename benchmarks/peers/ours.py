@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import jointid as jid
 from jointid import _core
+from jointid.identification.search.search import Method
 from peers.contest import WINDOWS, Contest, Objective
 from peers.peer import Peer, Solve
 from peers.starts import near_optimum
@@ -12,7 +13,7 @@ POLISH = "jointid polish, start within 20 %"
 POPULATION, GENERATIONS = 200, 1500  # of the thesis presets
 
 
-def whole_identify(method: str, windows: int | None) -> Solve:
+def whole_identify(method: Method, windows: int | None) -> Solve:
     """The call a user makes: checks, penalty, search, polish, standard errors, warnings."""
 
     def solve(objective: Objective, seed: int) -> None:
@@ -103,10 +104,18 @@ def peers() -> list[Peer]:
         "jointid search, `thesis_code()` 200 × 1500": search(code),
         "jointid search, separable": separable,
     }
+
+    def given(name: str) -> str:
+        if "identify" in name:
+            return "recording"
+        if "thesis" in name:
+            return "values"
+        return "columns" if "separable" in name else "values; the polish: columns"
+
     return [
         *(
-            Peer(name=name, form="compressed", solve=solve, whole=True)
+            Peer(name=name, form="compressed", solve=solve, given=given(name), whole=True)
             for name, solve in rows.items()
         ),
-        Peer(name=POLISH, form="compiled", solve=polish, whole=True),
+        Peer(name=POLISH, form="compiled", solve=polish, given="residuals, Jacobian", whole=True),
     ]

@@ -157,6 +157,7 @@ void bind_search(py::module_& m);
 void bind_online(py::module_& m);
 void bind_diagnose(py::module_& m);
 void bind_signals(py::module_& m);
+void bind_shifts(py::module_& m);
 void bind_regression(py::module_& m);
 void bind_simulate(py::module_& m);
 void bind_text(py::module_& m);

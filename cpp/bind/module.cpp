@@ -11,6 +11,7 @@ PYBIND11_MODULE(_core, m, pybind11::mod_gil_not_used()) {
   jointid::bind::bind_search(m);
   jointid::bind::bind_online(m);
   jointid::bind::bind_signals(m);
+  jointid::bind::bind_shifts(m);
   jointid::bind::bind_diagnose(m);
   jointid::bind::bind_regression(m);
   jointid::bind::bind_simulate(m);

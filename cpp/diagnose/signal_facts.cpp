@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
+#include "base/clones.hpp"
 #include "base/quantile.hpp"
 
 namespace jointid::diagnose {
@@ -16,7 +18,9 @@ constexpr double kMoving = 0.1;   // of the peak speed
 constexpr double kStill = 0.005;  // of the peak speed
 constexpr double kNear = 0.01;    // of the range
 constexpr double kFrozen = 0.1;   // [s]
-constexpr Eigen::Index kBlock = 65536;
+constexpr std::size_t kBlock = 65536;
+constexpr std::size_t kFew = 32;   // samples looked at together
+constexpr std::size_t kLanes = 8;  // of extremes
 
 void look(const base::Cancel* cancel) {
   if (cancel != nullptr) cancel->check();
@@ -41,26 +45,93 @@ bool is_fine(const Signal& signal, double smallest, std::int64_t changes, std::i
   return median / smallest >= kFine;
 }
 
+JOINTID_CLONES void extremes_of(const double* x, std::size_t count, double* lowest,
+                                double* highest) {
+  std::array<double, kLanes> low;
+  std::array<double, kLanes> high;
+  low.fill(x[0]);
+  high.fill(x[0]);
+  std::size_t k = 0;
+  for (; k + kLanes <= count; k += kLanes) {
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      low[l] = x[k + l] < low[l] ? x[k + l] : low[l];
+      high[l] = x[k + l] > high[l] ? x[k + l] : high[l];
+    }
+  }
+  for (; k < count; ++k) {
+    low[0] = x[k] < low[0] ? x[k] : low[0];
+    high[0] = x[k] > high[0] ? x[k] : high[0];
+  }
+  *lowest = *std::min_element(low.begin(), low.end());
+  *highest = *std::max_element(high.begin(), high.end());
+}
+
+/// Steps that are not zero, and the smallest of them.
+JOINTID_CLONES void count_changes(const double* x, std::size_t steps, std::int64_t* changes,
+                                  double* smallest) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  std::array<std::int64_t, kLanes> count{};
+  std::array<double, kLanes> least;
+  least.fill(kNone);
+  std::size_t k = 0;
+  for (; k + kLanes <= steps; k += kLanes) {
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const double step = std::fabs(x[k + l + 1] - x[k + l]);
+      count[l] += step > 0.0 ? 1 : 0;
+      const double one = step > 0.0 ? step : kNone;
+      least[l] = one < least[l] ? one : least[l];
+    }
+  }
+  for (; k < steps; ++k) {
+    const double step = std::fabs(x[k + 1] - x[k]);
+    count[0] += step > 0.0 ? 1 : 0;
+    least[0] = step > 0.0 && step < least[0] ? step : least[0];
+  }
+  *changes = std::accumulate(count.begin(), count.end(), std::int64_t{0});
+  *smallest = *std::min_element(least.begin(), least.end());
+}
+
+struct Rules {
+  double lowest;
+  double highest;
+  double close;
+  double smallest;
+  double fair;  ///< speed
+};
+
+struct Seen {
+  std::int64_t large;   ///< steps
+  std::int64_t moving;  ///< intervals
+  std::int64_t odd;     ///< samples near a limit, or equal to the next one
+};
+
+/// Counts over `count` samples, the one behind them included in the steps.
+JOINTID_CLONES Seen look_at(const double* x, const double* v, std::size_t count,
+                            const Rules& rules) {
+  std::int64_t large = 0;
+  std::int64_t moving = 0;
+  std::int64_t odd = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double step = std::fabs(x[i + 1] - x[i]);
+    const double here = std::fabs(v[i]);
+    const double next = std::fabs(v[i + 1]);
+    const double slower = next < here ? next : here;
+    const double near =
+        x[i] - rules.lowest < rules.highest - x[i] ? x[i] - rules.lowest : rules.highest - x[i];
+    large += (step > 0.0) & (step / rules.smallest >= kFine) ? 1 : 0;
+    moving += slower > rules.fair ? 1 : 0;
+    odd += (step == 0.0) | (near <= rules.close) ? 1 : 0;
+  }
+  return {large, moving, odd};
+}
+
 }  // namespace
 
 Extremes extremes(const Signal& signal) {
-  std::array<double, 4> low;
-  std::array<double, 4> high;
-  low.fill(signal[0]);
-  high.fill(signal[0]);
-  Eigen::Index k = 0;
-  for (; k + 4 <= signal.size(); k += 4) {
-    for (std::size_t j = 0; j < 4; ++j) {
-      const double value = signal[k + static_cast<Eigen::Index>(j)];
-      low[j] = value < low[j] ? value : low[j];
-      high[j] = value > high[j] ? value : high[j];
-    }
-  }
-  for (; k < signal.size(); ++k) {
-    low[0] = std::min(low[0], signal[k]);
-    high[0] = std::max(high[0], signal[k]);
-  }
-  return {*std::min_element(low.begin(), low.end()), *std::max_element(high.begin(), high.end())};
+  Extremes found;
+  extremes_of(signal.data(), static_cast<std::size_t>(signal.size()), &found.lowest,
+              &found.highest);
+  return found;
 }
 
 SignalFacts inspect_signal(const Signal& signal, const Signal& velocity, double peak_speed,
@@ -69,16 +140,13 @@ SignalFacts inspect_signal(const Signal& signal, const Signal& velocity, double 
   facts.range = extremes(signal);
   look(cancel);
   const Eigen::Index n = signal.size();
-  double smallest = std::numeric_limits<double>::infinity();
-  for (Eigen::Index k = 1; k < n; ++k) {
-    const double step = std::fabs(signal[k] - signal[k - 1]);
-    facts.changes += step > 0.0 ? 1 : 0;
-    smallest = step > 0.0 && step < smallest ? step : smallest;
-  }
-  facts.smallest = smallest;
+  const double* x = signal.data();
+  const double* v = velocity.data();
+  const auto steps = static_cast<std::size_t>(n - 1);
+  count_changes(x, steps, &facts.changes, &facts.smallest);
   const auto [lowest, highest] = facts.range;
-  const double close = kNear * (highest - lowest);
-  const double fair = kMoving * peak_speed;
+  const Rules rules{lowest, highest, kNear * (highest - lowest), facts.smallest,
+                    kMoving * peak_speed};
   const double slow = kStill * peak_speed;
   std::int64_t large = 0;
   std::int64_t run = 0;
@@ -86,37 +154,49 @@ SignalFacts inspect_signal(const Signal& signal, const Signal& velocity, double 
     if (static_cast<double>(run) * period > kFrozen && run > 10) facts.frozen += run;
     run = 0;
   };
-  // Few samples are near a limit or repeat the one before: what concerns those is asked of them.
-  for (Eigen::Index begin = 0; begin < n; begin += kBlock) {
-    look(cancel);
-    const Eigen::Index end = std::min(n, begin + kBlock);
-    for (Eigen::Index k = begin; k < end; ++k) {
-      const double value = signal[k];
-      if (value - lowest <= close) {
-        ++facts.lower.near;
-        facts.lower.there += value == lowest ? 1 : 0;
-        facts.lower.moving += value == lowest && std::fabs(velocity[k]) > slow ? 1 : 0;
-      }
-      if (highest - value <= close) {
-        ++facts.upper.near;
-        facts.upper.there += value == highest ? 1 : 0;
-        facts.upper.moving += value == highest && std::fabs(velocity[k]) > slow ? 1 : 0;
-      }
-      if (k + 1 == n) break;
-      const double step = std::fabs(signal[k + 1] - value);
-      large += step > 0.0 && step / smallest >= kFine ? 1 : 0;
-      const bool moving = std::min(std::fabs(velocity[k]), std::fabs(velocity[k + 1])) > fair;
-      facts.moving += moving ? 1 : 0;
-      if (step == 0.0 && moving && value > lowest && value < highest) {
-        ++facts.stale;
-        ++run;
-      } else if (run > 0) {
-        finish_run();
-      }
+  // Few samples are near a limit or repeat the one before: only blocks with such are looked at
+  // sample by sample.
+  const auto limits = [&](Eigen::Index k) {
+    const double value = x[k];
+    if (value - lowest <= rules.close) {
+      ++facts.lower.near;
+      facts.lower.there += value == lowest ? 1 : 0;
+      facts.lower.moving += value == lowest && std::fabs(v[k]) > slow ? 1 : 0;
+    }
+    if (highest - value <= rules.close) {
+      ++facts.upper.near;
+      facts.upper.there += value == highest ? 1 : 0;
+      facts.upper.moving += value == highest && std::fabs(v[k]) > slow ? 1 : 0;
+    }
+  };
+  const auto repeats = [&](Eigen::Index k) {
+    const bool moving = std::min(std::fabs(v[k]), std::fabs(v[k + 1])) > rules.fair;
+    if (x[k + 1] == x[k] && moving && x[k] > lowest && x[k] < highest) {
+      ++facts.stale;
+      ++run;
+    } else if (run > 0) {
+      finish_run();
+    }
+  };
+  for (std::size_t begin = 0; begin < steps; begin += kFew) {
+    if (begin % kBlock == 0) look(cancel);
+    const std::size_t count = std::min(kFew, steps - begin);
+    const Seen seen = look_at(x + begin, v + begin, count, rules);
+    large += seen.large;
+    facts.moving += seen.moving;
+    if (seen.odd == 0) {
+      if (run > 0) finish_run();
+      continue;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto k = static_cast<Eigen::Index>(begin + i);
+      limits(k);
+      repeats(k);
     }
   }
+  limits(n - 1);
   finish_run();
-  facts.fine = is_fine(signal, smallest, facts.changes, large, cancel);
+  facts.fine = is_fine(signal, facts.smallest, facts.changes, large, cancel);
   return facts;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/clones.hpp"
 #include "base/quantile.hpp"
 
 namespace jointid::diagnose {
@@ -21,6 +22,7 @@ constexpr Eigen::Index kReach = 6;  // samples: a derived velocity tells a rever
 constexpr double kJump = 4.0;       // times the rate that 1 % of the intervals exceed
 constexpr double kClearly = 1e-12;  // rounding never decides
 constexpr Eigen::Index kBlock = 65536;
+constexpr std::size_t kLanes = 8;
 
 /// Largest value(k), k < count, in four lanes.
 template <class Value>
@@ -39,6 +41,43 @@ double largest(Eigen::Index count, const base::Cancel* cancel, Value value) {
     for (; k < end; ++k) high[0] = std::max(high[0], value(k));
   }
   return *std::max_element(high.begin(), high.end());
+}
+
+/// Samples `width` apart from their neighbours on both sides, on the same side of both: the largest
+/// distance from the nearer one.
+JOINTID_CLONES double largest_height(const double* x, std::size_t width, std::size_t places) {
+  std::array<double, kLanes> high{};
+  std::size_t k = 0;
+  const auto height = [x, width](std::size_t i) {
+    const double there = x[i + width] - x[i];
+    const double back = x[i + width] - x[i + 2 * width];
+    const double one = std::fabs(there);
+    const double other = std::fabs(back);
+    const double low = other < one ? other : one;
+    return there * back > 0.0 ? low : 0.0;
+  };
+  for (; k + kLanes <= places; k += kLanes) {
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const double one = height(k + l);
+      high[l] = one > high[l] ? one : high[l];
+    }
+  }
+  for (; k < places; ++k) high[0] = std::max(high[0], height(k));
+  return *std::max_element(high.begin(), high.end());
+}
+
+/// Changes over `width` samples that are not zero, and those of at least `enough`.
+JOINTID_CLONES void count_changes(const double* x, std::size_t width, std::size_t changes,
+                                  double enough, std::int64_t* positive, std::int64_t* beyond) {
+  std::int64_t some = 0;
+  std::int64_t many = 0;
+  for (std::size_t k = 0; k < changes; ++k) {
+    const double size = std::fabs(x[k + width] - x[k]);
+    some += size > 0.0 ? 1 : 0;
+    many += size >= enough ? 1 : 0;
+  }
+  *positive = some;
+  *beyond = many;
 }
 
 template <class Value>
@@ -92,16 +131,16 @@ Spike largest_spike(const Signal& signal, SpikeRule rule, const Signal& velocity
       const double low = std::min(std::fabs(there), std::fabs(back));
       return there * back > 0.0 ? low : 0.0;
     };
-    const double highest = largest(places, cancel, height);
+    if (cancel != nullptr) cancel->check();
+    const double highest = largest_height(signal.data(), static_cast<std::size_t>(width),
+                                          static_cast<std::size_t>(places));
     if (highest == 0.0) continue;
     // More than half of the changes beyond this: so is the median, and the limit beyond `highest`.
     const double enough = highest / times * (1.0 + kClearly);
     std::int64_t positive = 0;
     std::int64_t beyond = 0;
-    for (Eigen::Index k = 0; k < changes; ++k) {
-      positive += size(k) > 0.0 ? 1 : 0;
-      beyond += size(k) >= enough ? 1 : 0;
-    }
+    count_changes(signal.data(), static_cast<std::size_t>(width), static_cast<std::size_t>(changes),
+                  enough, &positive, &beyond);
     if (2 * beyond > positive + 1) continue;
     if (rule != SpikeRule::position) {
       if (range < 0.0) range = spread(signal, cancel);

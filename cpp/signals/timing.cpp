@@ -1,10 +1,12 @@
 #include "signals/timing.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "base/clones.hpp"
 #include "base/quantile.hpp"
 
 namespace jointid::signals {
@@ -15,7 +17,8 @@ constexpr Eigen::Index kReach = 4;       // samples either side over which the s
 constexpr Eigen::Index kStretch = 4096;  // samples
 constexpr Eigen::Index kMost = 1 << 18;  // samples looked at
 constexpr std::size_t kFewest = 40;
-constexpr double kFast = 0.3;  // of the peak speed
+constexpr std::size_t kLanes = 8;  // samples side by side
+constexpr double kFast = 0.3;      // of the peak speed
 constexpr double kSlow = 0.1;
 constexpr double kNormal = 1.4826;  // standard deviation of a normal variable over its
                                     // median deviation
@@ -35,6 +38,44 @@ std::vector<Stretch> stretches(Eigen::Index intervals) {
     result.push_back({begin, begin + kStretch});
   }
   return result;
+}
+
+JOINTID_CLONES double smallest_step(const double* x, std::size_t steps) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  std::array<double, kLanes> least;
+  least.fill(kNone);
+  std::size_t k = 0;
+  for (; k + kLanes <= steps; k += kLanes) {
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const double step = std::fabs(x[k + l + 1] - x[k + l]);
+      const double one = step > 0.0 ? step : kNone;
+      least[l] = one < least[l] ? one : least[l];
+    }
+  }
+  for (; k < steps; ++k) {
+    const double step = std::fabs(x[k + 1] - x[k]);
+    least[0] = step > 0.0 && step < least[0] ? step : least[0];
+  }
+  return *std::min_element(least.begin(), least.end());
+}
+
+/// Of the speeds over 2 kReach intervals.
+JOINTID_CLONES double largest_speed(const double* time, const double* position, std::size_t count) {
+  constexpr auto kWide = static_cast<std::size_t>(2 * kReach);
+  std::array<double, kLanes> most{};
+  std::size_t k = 0;
+  for (; k + kLanes <= count; k += kLanes) {
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const double travel = position[k + l + kWide] - position[k + l];
+      const double speed = std::fabs(travel / (time[k + l + kWide] - time[k + l]));
+      most[l] = speed > most[l] ? speed : most[l];
+    }
+  }
+  for (; k < count; ++k) {
+    const double travel = position[k + kWide] - position[k];
+    most[0] = std::max(most[0], std::fabs(travel / (time[k + kWide] - time[k])));
+  }
+  return *std::max_element(most.begin(), most.end());
 }
 
 double median(const std::vector<double>& values) {
@@ -67,15 +108,13 @@ TimingErrors timing_errors(const Signal& time, const Signal& position, double pe
   const auto parts = stretches(intervals);
   double smallest = std::numeric_limits<double>::infinity();
   double peak = 0.0;
-  for (Eigen::Index k = 0; k < intervals; ++k) {
-    const double step = std::fabs(position[k + 1] - position[k]);
-    smallest = step > 0.0 && step < smallest ? step : smallest;
-  }
+  smallest = smallest_step(position.data(), static_cast<std::size_t>(intervals));
   for (const auto& part : parts) {
     // Third differences need one interval more on either side.
-    for (Eigen::Index k = part.begin + kReach + 1; k + kReach < part.end; ++k) {
-      peak = std::max(peak, std::fabs(speed(k)));
-    }
+    const Eigen::Index first = part.begin + 1;
+    if (part.end - first <= 2 * kReach) continue;
+    peak = std::max(peak, largest_speed(time.data() + first, position.data() + first,
+                                        static_cast<std::size_t>(part.end - first - 2 * kReach)));
   }
   std::vector<double> of_time;
   std::vector<double> fast;

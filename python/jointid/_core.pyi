@@ -22,6 +22,7 @@ __all__: list[str] = [
     "DrawnJoint",
     "Excitation",
     "FirstStage",
+    "FittedShift",
     "GaOptions",
     "GaResult",
     "GaState",
@@ -57,6 +58,7 @@ __all__: list[str] = [
     "SignalFacts",
     "SimulatedJoint",
     "SlidingPenalty",
+    "SmoothStretch",
     "Spike",
     "SpikeRule",
     "SteppedJoint",
@@ -66,9 +68,12 @@ __all__: list[str] = [
     "TrialResult",
     "WindowOptions",
     "chi_square_quantile",
+    "circle",
     "covering_half_width",
     "find_control_character",
+    "fit_shift",
     "friction_basis",
+    "friction_means",
     "inspect",
     "is_parameter",
     "local_velocity",
@@ -79,6 +84,7 @@ __all__: list[str] = [
     "model_names",
     "model_terms",
     "models",
+    "noise_products",
     "non_negative_least_squares",
     "number_table",
     "parameter_names",
@@ -86,9 +92,13 @@ __all__: list[str] = [
     "position_noise",
     "refine_separable",
     "robust_variance",
+    "roughness",
+    "segment_sums",
     "shape",
     "shapes",
+    "shift_coefficients",
     "simulate_runs",
+    "smoothed",
     "student_quantile",
     "term",
     "terms",
@@ -96,6 +106,7 @@ __all__: list[str] = [
     "triangle",
     "usable_intervals",
     "window_duration",
+    "window_means",
 ]
 
 class Control(enum.Enum):
@@ -1193,6 +1204,34 @@ class LocalVelocity:
         """
     @property
     def velocity(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+
+class SmoothStretch:
+    """
+    A signal and the smooth windows over it.
+    """
+    def __init__(
+        self,
+        *,
+        time: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        middles: typing.Annotated[numpy.typing.ArrayLike, numpy.int64],
+        kept: typing.Annotated[numpy.typing.ArrayLike, numpy.bool],
+        stride: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+
+class FittedShift:
+    """
+    A shift, with its standard error [s].
+    """
+    @property
+    def conservative(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
+    @property
+    def friction(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
+    @property
+    def unexplained(self) -> float: ...
+    @property
+    def whole(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
 
 class SpikeRule(enum.Enum):
     """
@@ -3295,6 +3334,16 @@ def chi_square_quantile(
     Beyond which this probability of chi-square lies.
     """
 
+def circle(
+    angle: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> tuple[
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"],
+]:
+    """
+    Cosine and sine.
+    """
+
 def covering_half_width(
     probability: typing.SupportsFloat | typing.SupportsIndex,
     offset: typing.SupportsFloat | typing.SupportsIndex,
@@ -3308,6 +3357,20 @@ def find_control_character(content: bytes) -> int:
     The place of the first byte that no text contains in any encoding; -1 without one.
     """
 
+def fit_shift(
+    stretches: collections.abc.Sequence[SmoothStretch],
+    columns: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    *,
+    conservative: typing.SupportsInt | typing.SupportsIndex,
+    held: bool,
+    reach: typing.SupportsFloat | typing.SupportsIndex,
+    robust: bool,
+    least: typing.SupportsFloat | typing.SupportsIndex,
+) -> FittedShift | None:
+    """
+    The shift that a balance asks for, or None.
+    """
+
 def friction_basis(
     key: str,
     velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -3316,6 +3379,20 @@ def friction_basis(
 ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
     """
     The friction term's basis at each velocity [rad/s or m/s] while the drive transmits a load [N·m or N]: what its coefficient multiplies.
+    """
+
+def friction_means(
+    velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    smooth: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    cosine: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    sine: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    *,
+    longest: typing.SupportsFloat | typing.SupportsIndex,
+    weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    middles: typing.Annotated[numpy.typing.ArrayLike, numpy.int64],
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    """
+    Window means of friction as any smooth function of the speed.
     """
 
 def inspect(
@@ -3416,6 +3493,18 @@ def models() -> list[Model]:
     All friction models.
     """
 
+def noise_products(
+    reading: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    torque: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    *,
+    blocks: typing.SupportsInt | typing.SupportsIndex,
+    longest: typing.SupportsInt | typing.SupportsIndex,
+    clipped: typing.SupportsFloat | typing.SupportsIndex,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+    """
+    Products of two signals' third differences, block by block.
+    """
+
 def non_negative_least_squares(
     matrix: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
     target: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -3482,6 +3571,24 @@ def robust_variance(
     Prewhitened Newey-West variance of weighted sums of the scores.
     """
 
+def roughness(signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> float:
+    """
+    Standard deviation of a signal's third differences.
+    """
+
+def segment_sums(
+    jacobian: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    residual: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    whitening: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    cuts: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+) -> tuple[
+    list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+]:
+    """
+    Products of whitened rows over segments: with each other, and with the residual.
+    """
+
 def shape(name: str) -> Shape:
     """
     The shape parameter of that name.
@@ -3490,6 +3597,16 @@ def shape(name: str) -> Shape:
 def shapes() -> list[Shape]:
     """
     All shape parameters.
+    """
+
+def shift_coefficients(
+    stretches: collections.abc.Sequence[SmoothStretch],
+    columns: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    *,
+    held: bool,
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    """
+    Least squares of the signals, not shifted, on the columns.
     """
 
 def simulate_runs(
@@ -3502,6 +3619,14 @@ def simulate_runs(
 ) -> list[Outcome]:
     """
     One Outcome a setup; InputError when a loop is not stable.
+    """
+
+def smoothed(
+    signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    """
+    Weighted sums around each sample.
     """
 
 def student_quantile(
@@ -3554,6 +3679,15 @@ def window_duration(
 ) -> float:
     """
     The duration of a window that the velocity's noise asks for [s].
+    """
+
+def window_means(
+    signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    weight: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    middles: typing.Annotated[numpy.typing.ArrayLike, numpy.int64],
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+    """
+    Weighted sums of a signal over windows.
     """
 
 __version__: str

@@ -115,14 +115,14 @@ def test_a_joint_is_identified_from_a_log(
     messages = [joint_state("/joint_states", state) for state in states]
     path = mcap(tmp_path / "run.mcap", [*messages[:9], messages[8], *messages[9:]])
     model = "coulomb_viscous"
-    found = jid.identify(jid.load(path), model=model)
+    found = jid.identify(jid.load(path), model=jid.Model.parse(model))
     alike = jid.Recording(
         time=run.time - run.time[0],
         position=run.position,
         velocity=run.velocity,
         torque=run.torque,
     )
-    same = jid.identify(alike, model=model)
+    same = jid.identify(alike, model=jid.Model.parse(model))
     for name, parameter in same.parameters.items():
         assert found.parameters[name].value == pytest.approx(parameter.value, rel=1e-6)
     (finding,) = [each for each in found.findings if each.code == "message_log"]

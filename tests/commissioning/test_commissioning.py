@@ -100,7 +100,7 @@ def test_the_command_writes_runs_and_saves_the_bench(
     assert "docs/hardware.md first" in saved.read_text(encoding="utf-8")
     recording = jid.load(runs / "cycle_1.csv")
     assert recording.duration == pytest.approx(12.0, abs=0.01)
-    for name in ("initial.log", "cycle_1.json", "tracking_error.png", "report.html", "ring.txt"):
+    for name in ("initial.log", "cycle_1.json", "report.html", "ring.txt"):
         assert (runs / name).stat().st_size > 0
     assert main([*words, "--quiet"]) == 2
     assert "overwrites nothing" in capsys.readouterr().err
@@ -185,7 +185,7 @@ def test_no_cycles_only_record(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert "late or lost" in said
     assert "estimates and" not in said
     assert {each.name for each in runs.iterdir()} == {
-        *("initial.csv", "initial.log", "ring.json", "ring.txt", "tracking_error.png"),
+        *("initial.csv", "initial.log", "ring.json", "ring.txt", "report.html"),
     }
     assert json.loads((runs / "ring.json").read_text())["estimates"] == []
     recording = jid.load(runs / "initial.csv")

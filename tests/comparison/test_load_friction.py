@@ -63,7 +63,7 @@ def test_a_small_load_friction_is_told_from_a_drift(
 ) -> None:
     """The drift is taken away before the values are fitted; it would look like a load friction of 0.05."""
     model = "stribeck:gravity=free:load_friction"
-    estimate = jid.identify(small[number], joint, model=model, search="separable")
+    estimate = jid.identify(small[number], joint, model=jid.Model.parse(model), search="separable")
     assert estimate.parameters["load_friction"].value == pytest.approx(
         true, abs=0.015 if true else 1e-3
     )
@@ -82,7 +82,9 @@ def test_a_small_load_friction_is_told_from_a_drift(
 def test_true_load_friction_is_found(
     runs: list[jid.Recording], number: int, joint: jid.Joint, base: str, link_known: bool
 ) -> None:
-    estimate = jid.identify(runs[number], joint, model=f"{base}:load_friction", search="separable")
+    estimate = jid.identify(
+        runs[number], joint, model=jid.Model.parse(f"{base}:load_friction"), search="separable"
+    )
     assert estimate.parameters["load_friction"].value == pytest.approx(0.2, rel=0.05)
     assert estimate.settings["terms"].count("load_friction_link") == 1
     again = jid.identify(runs[number], estimate.joint, search="separable")
@@ -133,7 +135,7 @@ def test_a_load_that_scales_all_values_is_refused(runs: list[jid.Recording], sen
 
     def found(joint: jid.Joint | None, load: str) -> set[str]:
         model = f"stribeck:load_friction={load}"
-        estimate = jid.identify(run, joint, model=model, search="separable")
+        estimate = jid.identify(run, joint, model=jid.Model.parse(model), search="separable")
         return {each.code for each in estimate.findings if each.severity == "blocking"}
 
     assert "load_scale" in found(None, "drive")
@@ -148,4 +150,6 @@ def test_a_load_that_scales_all_values_is_refused(runs: list[jid.Recording], sen
 
 def test_instruments_and_load_friction_exclude_each_other(runs: list[jid.Recording]) -> None:
     with pytest.raises(jid.InputError, match="instruments"):
-        jid.identify(runs[0], SENSED, model="stribeck:load_friction", residual="instruments")
+        jid.identify(
+            runs[0], SENSED, model=jid.Model.parse("stribeck:load_friction"), residual="instruments"
+        )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -148,7 +149,7 @@ def test_static_friction_that_was_not_seen_is_looked_for() -> None:
 
 def test_an_offset_that_nothing_divides_is_held(shared_data: Path) -> None:
     poor = jid.load(shared_data / "simulated" / "poorly_excited.csv.gz")
-    given = given_by(jid.identify(poor, THESIS, model="stribeck:asymmetric"))
+    given = given_by(jid.identify(poor, THESIS, model=jid.Model.parse("stribeck:asymmetric")))
     assert "sensor_offset" not in given.names
     errors = given.known.stderr()
     assert errors["coulomb_positive"] < 0.5
@@ -170,7 +171,7 @@ def test_a_recordings_own_parameter_is_not_the_next_ones() -> None:
 
 
 @pytest.mark.parametrize("residual", ["torque", "sensor"])
-def test_the_sensors_noise_is_that_of_the_residuals(residual: str) -> None:
+def test_the_sensors_noise_is_that_of_the_residuals(residual: Any) -> None:
     estimate = jid.identify(run(jid.Trajectory.thesis(1.0)), THESIS, residual=residual)
     sensors = sensors_of(estimate)
     assert sensors is not None

@@ -90,7 +90,9 @@ def test_the_interval_has_the_factor_of_its_parameter(estimate: jid.Estimate) ->
 def test_each_direction_has_its_own() -> None:
     run = jid.load(data_folder() / "kr300_joint1.csv.gz")
     joint = jid.Joint(torque_offset=False)
-    estimate = jid.identify(run, joint, model="stribeck:asymmetric", search="separable")
+    estimate = jid.identify(
+        run, joint, model=jid.Model.parse("stribeck:asymmetric"), search="separable"
+    )
     found, value = estimate.derived, values(estimate)
     breakaway = ["breakaway_positive", "breakaway_negative"]
     assert list(found) == [*breakaway, "coulomb_sum", "stribeck_velocity"]

@@ -94,7 +94,9 @@ def test_what_is_itself_uncertain_is_said_in_its_errors(held: jid.Recording) -> 
 
 
 def test_a_sum_that_is_known_says_where_its_width_is_from(held: jid.Recording) -> None:
-    found = jid.identify(held, model="coulomb_viscous:asymmetric", search="separable")
+    found = jid.identify(
+        held, model=jid.Model.parse("coulomb_viscous:asymmetric"), search="separable"
+    )
     both = found.derived["coulomb_sum"]
     lags = [found.parameters[f"coulomb_{side}"].systematic["lag"] for side in SIDES]
     assert both.largest_part == "lag"

@@ -185,7 +185,7 @@ def test_without_a_degree_of_freedom_there_is_no_information() -> None:
 def test_no_information_along_what_no_motion_divides(shared_data: Path) -> None:
     """An offset and the difference of the two directions' Coulomb frictions."""
     run = jid.load(shared_data / "simulated" / "poorly_excited.csv.gz")
-    estimate = jid.identify(run, model="stribeck:asymmetric")
+    estimate = jid.identify(run, model=jid.Model.parse("stribeck:asymmetric"))
     change = {"sensor_offset": -1.0, "coulomb_positive": 1.0, "coulomb_negative": -1.0}
     along = np.array([change.get(name, 0.0) for name in estimate.free])
     assert estimate.information is not None

@@ -77,7 +77,9 @@ def test_a_term_that_the_motion_does_not_excite() -> None:
     assert error.remedy == (Action("call", {"parameters": {name: ...}}, text="which fixes it"),)
     assert str(error).endswith(f"identify with parameters={{'{name}': ...}} (which fixes it)")
     fixed = {f"{term}_negative": 0.0 for term in ("coulomb", "viscous")}
-    jid.identify(forwards, model=":asymmetric", parameters=fixed, search="separable")
+    jid.identify(
+        forwards, model=jid.Model.parse(":asymmetric"), parameters=fixed, search="separable"
+    )
 
 
 def test_signals_without_information() -> None:

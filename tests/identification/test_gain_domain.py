@@ -6,6 +6,7 @@ import pytest
 from closed_loop import TRUTH, thesis_joint
 
 import jointid as jid
+from jointid.problem.terms import Residual
 
 JOINT = thesis_joint()
 TRUE = JOINT.with_parameters(TRUTH)
@@ -47,7 +48,7 @@ def test_the_gain_has_the_right_sign_and_size(
 
 
 @pytest.mark.parametrize("residual", ["sensor", "torque"])
-def test_both_residuals_find_a_gain_of_either_sign(residual: str) -> None:
+def test_both_residuals_find_a_gain_of_either_sign(residual: Residual) -> None:
     for polarity in (1.0, -1.0):
         recording = moved(20.0, "pd", 0.5, 0, polarity)
         found = jid.identify(recording, UNBOUNDED, residual=residual).parameters["sensor_gain"]

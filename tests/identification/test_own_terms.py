@@ -288,7 +288,7 @@ def test_a_coefficient_of_each_recording() -> None:
     runs = [run(3.0 * V6, q6=Q6), run(4.0 * V6, seed=3, q6=Q6)]
     estimate = jid.identify(
         runs,
-        model="coulomb_viscous:per_recording=viscous_of_q6_rate",
+        model=jid.Model.parse("coulomb_viscous:per_recording=viscous_of_q6_rate"),
         terms={"q6": "viscous@rate"},
         search=SEPARABLE,
     )
@@ -315,7 +315,9 @@ def test_load_friction_grows_with_a_known_torque_too() -> None:
         time=TIME, position=Q, velocity=V, torque=torque, extra={"tau": MODEL}
     )
     model = "coulomb_viscous:load_friction=drive"
-    estimate = jid.identify(recording, model=model, terms={"tau": "known"}, search=SEPARABLE)
+    estimate = jid.identify(
+        recording, model=jid.Model.parse(model), terms={"tau": "known"}, search=SEPARABLE
+    )
     assert estimate.parameters["load_friction"].value == pytest.approx(0.2, rel=0.03)
     assert estimate.parameters["viscous"].value == pytest.approx(6.0, rel=0.05)
 

@@ -76,8 +76,14 @@ def test_what_a_good_log_determines_comes_back(home: jid.Estimate) -> None:
 )
 def test_what_a_log_does_not_determine_is_named(log: dict[str, Any], lost: set[str]) -> None:
     name = "stribeck:gravity=none"
-    assert jid.identify(recording(sensor="sensor" in log), model=name).selftest().passed
-    test = jid.identify(recording(**log), model=name, search="separable").selftest()
+    assert (
+        jid.identify(recording(sensor="sensor" in log), model=jid.Model.parse(name))
+        .selftest()
+        .passed
+    )
+    test = jid.identify(
+        recording(**log), model=jid.Model.parse(name), search="separable"
+    ).selftest()
     assert lost <= set(test.lost)
     assert not test.passed
     assert all(name in test.verdict for name in lost)
@@ -99,7 +105,9 @@ def test_the_same_bits_for_a_seed_and_any_number_of_threads(home: jid.Estimate) 
 )
 def test_the_injected_torque_is_that_of_the_model(model: str, hold: str) -> None:
     """Without noise the injected truth is a minimum without any misfit, whatever the truth is."""
-    estimate = jid.identify(recording(torque_hold=hold), model=model, search="separable")
+    estimate = jid.identify(
+        recording(torque_hold=hold), model=jid.Model.parse(model), search="separable"
+    )
     source: Any = estimate.follow_up
     theta = np.array([estimate.parameters[name].value for name in source.domain.names])
     quiet = replace(
@@ -121,7 +129,9 @@ def test_the_injected_torque_is_that_of_the_model(model: str, hold: str) -> None
 def test_several_recordings_with_their_own_offsets() -> None:
     halves = recording().split(2)
     estimate = jid.identify(
-        halves, model="stribeck:gravity=none:per_recording=torque_offset", search="separable"
+        halves,
+        model=jid.Model.parse("stribeck:gravity=none:per_recording=torque_offset"),
+        search="separable",
     )
     test = estimate.selftest(trials=2)
     assert {"torque_offset[0]", "torque_offset[1]"} <= set(test.parameters)

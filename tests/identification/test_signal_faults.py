@@ -52,12 +52,14 @@ def test_a_fine_encoder_has_no_such_finding(well: jid.Recording) -> None:
 def test_leaving_a_noisy_velocity_out_helps(shared_data: Path) -> None:
     # A pendulum of 0.676 kg at 0.45 m: 2.98 N·m, 0.137 kg·m².
     path = shared_data / "ak80" / "ak80_swing_up.csv"
-    before = jid.identify(jid.load(path), model="coulomb_viscous:gravity=free", search="separable")
+    before = jid.identify(
+        jid.load(path), model=jid.Model.parse("coulomb_viscous:gravity=free"), search="separable"
+    )
     finding = next(each for each in before.findings if each.code == "noisy_velocity")
     (call,) = [action for action in finding.advice if action.kind == "call"]
     after = jid.identify(
         jid.load(path, **dict(call.arguments)),
-        model="coulomb_viscous:gravity=free",
+        model=jid.Model.parse("coulomb_viscous:gravity=free"),
         search="separable",
     )
     assert before.parameters["gravity_sin"].value < 2.0

@@ -3,6 +3,7 @@
 import math
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -39,7 +40,7 @@ def simulated(folder: Path, name: str) -> jid.Recording:
 
 
 @pytest.mark.parametrize("residual", ["sensor", "torque"])
-def test_a_good_recording_raises_no_finding(well_excited: jid.Recording, residual: str) -> None:
+def test_a_good_recording_raises_no_finding(well_excited: jid.Recording, residual: Any) -> None:
     joint = jid.thesis_joint()
     estimate = jid.identify(well_excited, joint, residual=residual, search="separable")
     assert estimate.findings == ()
@@ -304,7 +305,10 @@ def test_many_undetermined_parameters_make_a_short_sentence() -> None:
     run = jid.load(data_folder() / "well_excited.csv.gz").crop(stop=3.0)
     orders = ",".join(map(str, range(2, 14)))
     estimate = jid.identify(
-        run, jid.thesis_joint(), model=f"stribeck:ripple={orders}", search="separable"
+        run,
+        jid.thesis_joint(),
+        model=jid.Model.parse(f"stribeck:ripple={orders}"),
+        search="separable",
     )
     found = warned(estimate, "undetermined")
     assert len(found.parameters) > 8

@@ -30,7 +30,7 @@ def test_very_wide_bounds_hold_nothing() -> None:
 
 
 @pytest.mark.parametrize("method", ["ga", "separable"])
-def test_reversed_torque_is_reported_and_no_crash(method: str) -> None:
+def test_reversed_torque_is_reported_and_no_crash(method: Any) -> None:
     joint = jid.Joint(torque_offset=False)
     estimate = jid.identify(moving(0.1, sign=-1.0), joint, search=method)
     assert {p.at_bound for p in estimate.parameters.values()} == {"min"}

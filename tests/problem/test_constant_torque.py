@@ -1,5 +1,7 @@
 """An offset beside asymmetric Coulomb friction: what is known is tight, what is not says so."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -21,9 +23,9 @@ def recording(torque: np.ndarray, seed: int = 0) -> jid.Recording:
 
 @pytest.mark.parametrize("search", ["ga", "separable"])
 @pytest.mark.parametrize("offset", [-50.0, 0.0, 30.0])
-def test_the_intervals_say_what_no_motion_tells(offset: float, search: str) -> None:
+def test_the_intervals_say_what_no_motion_tells(offset: float, search: Any) -> None:
     run = recording(DRIVE + offset)
-    estimate = jid.identify(run, model="coulomb_viscous:asymmetric", search=search)
+    estimate = jid.identify(run, model=jid.Model.parse("coulomb_viscous:asymmetric"), search=search)
     value = {name: p.value for name, p in estimate.parameters.items()}
     assert value["viscous_positive"] == pytest.approx(4.0, rel=0.01)
     assert value["viscous_negative"] == pytest.approx(6.0, rel=0.01)
@@ -48,7 +50,9 @@ def test_the_intervals_say_what_no_motion_tells(offset: float, search: str) -> N
     assert not any(set(found.parameters) & set(THREE) for found in estimate.warnings)
     assert np.isinf(estimate.friction([1.0]).upper[0])
     known = jid.identify(
-        run, model="coulomb_viscous:asymmetric", parameters={"torque_offset": offset}
+        run,
+        model=jid.Model.parse("coulomb_viscous:asymmetric"),
+        parameters={"torque_offset": offset},
     )
     assert known.parameters["coulomb_positive"].value == pytest.approx(12.0, rel=0.01)
     assert known.parameters["coulomb_negative"].value == pytest.approx(8.0, rel=0.01)
@@ -57,7 +61,7 @@ def test_the_intervals_say_what_no_motion_tells(offset: float, search: str) -> N
 def test_gravity_tells() -> None:
     gravity = -50.0 * np.cos(POSITION) + 3.0 * np.sin(POSITION)
     estimate = jid.identify(
-        recording(DRIVE + gravity), model="coulomb_viscous:asymmetric:gravity=free"
+        recording(DRIVE + gravity), model=jid.Model.parse("coulomb_viscous:asymmetric:gravity=free")
     )
     assert "torque_offset" not in estimate.parameters
     assert "torque_offset" in estimate.report()

@@ -156,7 +156,7 @@ def test_realistic_sensing(shared_data: Path) -> None:
 
 
 @pytest.mark.parametrize("method", ["ga", "separable"])
-def test_general_exponent_finds_the_gaussian(well_excited: jid.Recording, method: str) -> None:
+def test_general_exponent_finds_the_gaussian(well_excited: jid.Recording, method: Any) -> None:
     estimate = jid.identify(
         well_excited,
         jid.thesis_joint(),

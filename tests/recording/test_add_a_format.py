@@ -81,21 +81,19 @@ def test_one_file_and_one_line_add_a_format(tmp_path: Path) -> None:
 def test_every_reader_is_in_the_list() -> None:
     files = {path.stem for path in (PACKAGE / REGISTRY.parent).glob("*_reader.py")}
     assert files == set(registry.MODULES)
-    assert len(registry.READERS) == len(registry.MODULES)
+    assert len(tuple(registry.readers())) == len(registry.MODULES)
 
 
 def test_no_two_readers_claim_an_ending() -> None:
-    assert len(set(registry.endings())) == len(registry.endings())
+    """The first reader that reads an ending is taken, and those behind it are not imported."""
+    endings = registry.endings()
+    assert len(set(endings)) == len(endings)
+    both = [(one, other) for one in registry.readers() for other in registry.readers()]
+    for one, other in both:
+        assert one.endings == other.endings or not [
+            each for each in one.endings if each.endswith(other.endings)
+        ]
     assert all(re.fullmatch(r"(\.[a-z0-9]+)+", ending) for ending in registry.endings())
-
-
-def test_the_longest_ending_decides(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(path: Path) -> CsvTable:
-        raise AssertionError(path)
-
-    other = Reader(endings=(".gz",), open=refuse)
-    monkeypatch.setattr(registry, "READERS", (other, *registry.READERS))
-    assert len(load(written(tmp_path / "run.csv.gz", GOOD))) == 10
 
 
 def test_an_ending_without_a_reader_is_refused(
@@ -103,8 +101,8 @@ def test_an_ending_without_a_reader_is_refused(
 ) -> None:
     """It is not read as text, although it holds text."""
     path = written(tmp_path / "run.parquet", GOOD)
-    left = tuple(each for each in registry.READERS if ".parquet" not in each.endings)
-    monkeypatch.setattr(registry, "READERS", left)
+    left = tuple(each for each in registry.MODULES if each != "parquet_reader")
+    monkeypatch.setattr(registry, "MODULES", left)
     assert refusal(path) == (
         f"{path}: a file name that ends in .csv, .csv.gz, .txt, .tsv, .log, .dat, .npz, .mat, .mcap, "
         ".bag, .db3, .h5 or .hdf5 is expected"
@@ -118,7 +116,7 @@ def test_a_missing_package_is_named_with_its_extra(
         raise ModuleNotFoundError(name="asammdf.blocks")
 
     reader = Reader(endings=(".mf4",), open=without, package="asammdf", extra="mdf")
-    monkeypatch.setattr(registry, "READERS", (reader,))
+    monkeypatch.setattr(registry, "readers", lambda: iter([reader]))
     path = written(tmp_path / "run.mf4", lines("t,q"))
     assert refusal(path) == (
         f"{path}: reading .mf4 files needs asammdf, which is not installed; "
@@ -134,6 +132,6 @@ def test_another_failed_import_is_a_bug_not_bad_input(
 
     for package in ("", "asammdf"):
         reader = Reader(endings=(".mf4",), open=broken, package=package)
-        monkeypatch.setattr(registry, "READERS", (reader,))
+        monkeypatch.setattr(registry, "readers", lambda reader=reader: iter([reader]))
         with pytest.raises(ModuleNotFoundError):
             load(written(tmp_path / "run.mf4", lines("t,q")))

@@ -1,6 +1,7 @@
 """What users get wrong about a robot: one sentence each, which names the place."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -91,3 +92,90 @@ def test_a_log_of_fewer_joints_says_which_it_has(path: Path) -> None:
     )
     with pytest.raises(jid.InputError, match=r"the robot has .*elbow, the recording shoulder"):
         jid.identify_robot(one, jid.Robot.from_urdf(path))
+
+
+def renamed(run: jid.RobotRecording, names: list[str]) -> jid.RobotRecording:
+    return jid.RobotRecording(time=run.time, position=run.position, torque=run.torque, names=names)
+
+
+def test_some_names_that_match_do_not_become_an_order(path: Path) -> None:
+    run = renamed(recording(path, duration=2.0), ["elbow", "arm_2"])
+    with pytest.raises(jid.InputError, match=r"has elbow, but not shoulder; .* it has arm_2"):
+        jid.identify_robot(run, jid.Robot.from_urdf(path))
+
+
+def test_an_order_that_was_assumed_is_told(path: Path) -> None:
+    run = renamed(recording(path), ["a", "b"])
+    found = jid.identify_robot(run, jid.Robot.from_urdf(path))
+    (told,) = [each for each in found.findings if each.code == "joints_in_order"]
+    assert "shoulder is a, elbow is b" in told.cause
+
+
+def test_a_joint_is_named_once(path: Path) -> None:
+    with pytest.raises(jid.InputError, match=r"joints is .elbow.: each joint is named once"):
+        jid.Robot.from_urdf(path, joints=["elbow", "elbow"])
+
+
+def test_a_locked_joint_that_moves_is_told(path: Path) -> None:
+    robot = jid.Robot.from_urdf(path, joints=["shoulder"])
+    found = jid.identify_robot(recording(path), robot)
+    assert "elbow moves" in next(each for each in found.warnings).cause
+
+
+def test_degrees_are_noticed(path: Path) -> None:
+    run = recording(path, duration=4.0)
+    degrees = jid.RobotRecording(
+        time=run.time, position=np.degrees(run.position), torque=run.torque, names=run.names
+    )
+    found = jid.identify_robot(degrees, jid.Robot.from_urdf(path))
+    told = [each for each in found.warnings if each.code == "implausible_unit"]
+    assert [each.cause.split("'")[0] for each in told] == ["shoulder", "elbow"]
+    assert "by the URDF at most by 6" in told[0].cause
+
+
+@pytest.mark.parametrize("factor", [180.0 / np.pi, np.pi / 180.0])
+def test_velocity_and_position_of_different_units_are_noticed(path: Path, factor: float) -> None:
+    run = recording(path, duration=4.0)
+    velocity = factor * np.gradient(run.position, run.time, axis=0)
+    mixed = jid.RobotRecording(
+        time=run.time, position=run.position, velocity=velocity, torque=run.torque, names=run.names
+    )
+    found = jid.identify_robot(mixed, jid.Robot.from_urdf(path))
+    told = [each.cause for each in found.warnings if each.code == "implausible_unit"]
+    assert len(told) == 2
+    assert ("velocity is probably" in told[0]) == (factor > 1.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (
+            {"windows": 100_000},
+            r"windows is 100000: a duration of 0\.004 to 1\.999 seconds .* at most 499",
+        ),
+        ({"windows": 100.0}, r"windows is 100\.0: a duration of"),
+        ({"windows": True}, r"windows is True: a duration of"),
+        ({"model": {"nix": "stribeck"}}, r"model is .nix.: the robot has no such joint; it has sh"),
+        ({"shift": {"torqe": 0.001}}, r"shift is .torqe.: there is no such signal"),
+        ({"mask_standstill": 3}, r"mask_standstill is 3: true or false"),
+    ],
+)
+def test_an_option_that_cannot_be_used(path: Path, options: dict[str, Any], reason: str) -> None:
+    with pytest.raises(jid.InputError, match=reason):
+        jid.identify_robot(recording(path, duration=2.0), jid.Robot.from_urdf(path), **options)
+
+
+def test_friction_has_finite_speeds_and_no_gravity_is_told(path: Path) -> None:
+    found = jid.identify_robot(
+        recording(path, duration=4.0), jid.Robot.from_urdf(path, gravity=[0, 0, 0])
+    )
+    assert any(each.code == "no_gravity" for each in found.findings)
+    with pytest.raises(jid.InputError, match="finite speeds"):
+        found.friction([np.nan, 1.0])
+
+
+def test_an_offset_in_radians_and_degrees_is_refused(path: Path, tmp_path: Path) -> None:
+    file = tmp_path / "facts.toml"
+    file.write_text("zero_offsets = [0, 0]\nzero_offsets_deg = [0, 0]", encoding="utf-8")
+    with pytest.raises(jid.InputError, match=r"^facts\.toml: zero_offsets_deg .*in radians"):
+        jid.Robot.from_urdf(path, facts=file)

@@ -96,6 +96,15 @@ def test_no_acceleration_is_needed(plain: Run, inertia: str) -> None:
     assert_near(found, plain.arm, 0.03)
 
 
+@pytest.mark.parametrize("inertia", ["urdf", "free"])
+def test_short_standstills_in_noise_do_no_harm(with_stribeck: Run, inertia: str) -> None:
+    """Joints stick at their reversals, and noise hides it: static friction was lost, and a delay was invented."""
+    recording = recorded(with_stribeck, Sensors(position_noise=1e-5, velocity_delay=None), SEED)
+    found = jid.identify_robot(recording, robot(), inertia=inertia)
+    assert_near(found, with_stribeck.arm, 0.005)
+    assert found.warnings == ()
+
+
 def test_a_heavier_link_is_found() -> None:
     heavy = ran(random_arm(SEED, stribeck=False).with_link_scaled(4, 1.2))
     recording = recorded(heavy, Sensors(), SEED)

@@ -102,7 +102,7 @@ def test_a_row_is_what_identify_gives_with_its_seed(
 
 @pytest.mark.parametrize("method", ["random", "separable"])
 def test_other_methods_are_those_of_identify(
-    recording: jid.Recording, joint: jid.Joint, method: str
+    recording: jid.Recording, joint: jid.Joint, method: Any
 ) -> None:
     options = jid.GaOptions(population=20, generations=10)
     found = jid.sweep(

@@ -29,6 +29,11 @@ def ending_of(path: Path, endings: Sequence[str]) -> str:
     for ending in sorted(endings, key=len, reverse=True):
         if path.name.lower().endswith(ending):
             return ending
-    raise InputError(
+    raise no_ending(path, endings)
+
+
+def no_ending(path: Path, endings: Sequence[str]) -> InputError:
+    """Return the error of a file name that has none of some endings."""
+    return InputError(
         f"a file name that ends in {alternatives(endings)} is expected", place=str(path)
     )

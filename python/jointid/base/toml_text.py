@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-_BARE = re.compile(r"[A-Za-z0-9_-]+")
+_BARE = r"[A-Za-z0-9_-]+"
 
 
 def toml_of(tables: Mapping[str, Any], comments: Mapping[str, str] | None = None) -> str:
@@ -54,7 +54,7 @@ def _lines(table: Mapping[str, Any], path: str, comments: Mapping[str, str]) -> 
 
 
 def _key(name: str) -> str:
-    return name if _BARE.fullmatch(name) else _text(name)
+    return name if re.fullmatch(_BARE, name) else _text(name)
 
 
 def _value(value: Any) -> str:

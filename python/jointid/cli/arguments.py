@@ -11,11 +11,11 @@ from jointid.base.argument_checks import number_in
 from jointid.base.errors import InputError
 
 if TYPE_CHECKING:
+    from jointid.cli.parser import CommandParser
     from jointid.joint.model import Model
     from jointid.recording.recording import Recording
 
 _MOST_WINDOWS = 1_000_000_000
-TEXT = argparse.RawDescriptionHelpFormatter
 
 
 def file_kinds() -> str:
@@ -26,16 +26,13 @@ def file_kinds() -> str:
 
 
 def several_recordings(
-    command: argparse.ArgumentParser, *, nargs: str = "+", use: str = "read in the same way"
+    command: CommandParser, *, nargs: str = "+", use: str = "read in the same way"
 ) -> None:
     """Add the recordings and how they are read."""
-    command.add_argument(
-        "recordings",
-        type=Path,
-        nargs=nargs,
-        metavar="recording",
-        help=f"recording: {file_kinds()}; several are {use}",
+    recordings = command.add_argument(
+        "recordings", type=Path, nargs=nargs, metavar="recording", help="recording"
     )
+    command.help_later(recordings, lambda: f"recording: {file_kinds()}; several are {use}")
     reading_arguments(command)
 
 

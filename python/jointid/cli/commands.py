@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -14,7 +13,6 @@ from jointid.base.errors import InputError
 from jointid.cli.arguments import fixed_values, joints_wanted, load_all, refinements, with_terms
 from jointid.cli.exit_codes import BAD_INPUT
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
-from jointid.cli.robot import saved_robot
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
@@ -128,6 +126,8 @@ def _with_checks(
     done = {name: check.document() for name, check in checks.items() if check is not None}
     if not done:
         return estimate.to_json()
+    import json
+
     document = json.loads(estimate.to_json()) | done
     return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
 
@@ -181,6 +181,9 @@ def compare(arguments: argparse.Namespace) -> int:
 
 def report(arguments: argparse.Namespace) -> None:
     """Write the HTML report of a saved estimate."""
+    import json
+
+    from jointid.cli.robot import saved_robot
     from jointid.joints.reading import load_estimate
     from jointid.report.html import save_report
 
@@ -208,6 +211,8 @@ def report(arguments: argparse.Namespace) -> None:
 
 def info(arguments: argparse.Namespace) -> None:
     """Show what a recording holds."""
+    import json
+
     (recording,) = load_all([arguments.recording], arguments)
     contents = _contents(recording, Wording.of(arguments))
     if names := _unrecognised(arguments):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 
 from jointid._core import model_names
@@ -17,10 +16,11 @@ from jointid.cli.arguments import (
     whole_seed,
     windows,
 )
+from jointid.cli.parser import CommandParser
 from jointid.identification.search.search import METHODS
 
 
-def add_demo(demo: argparse.ArgumentParser) -> None:
+def add_demo(demo: CommandParser) -> None:
     """Add the command's grammar."""
     demo.epilog = "example:\n  jointid demo --output demo"
     demo.add_argument(
@@ -30,7 +30,7 @@ def add_demo(demo: argparse.ArgumentParser) -> None:
     demo.add_argument("--quiet", action="store_true", help="no progress bar")
 
 
-def add_identify(identify: argparse.ArgumentParser) -> None:
+def add_identify(identify: CommandParser) -> None:
     """Add the command's grammar."""
     identify.epilog = (
         "examples:\n  jointid identify run.csv\n"
@@ -84,7 +84,7 @@ def add_identify(identify: argparse.ArgumentParser) -> None:
     _output_arguments(identify)
 
 
-def _robot_arguments(command: argparse.ArgumentParser) -> None:
+def _robot_arguments(command: CommandParser) -> None:
     command.add_argument(
         "--robot",
         type=Path,
@@ -99,7 +99,7 @@ def _robot_arguments(command: argparse.ArgumentParser) -> None:
     )
 
 
-def add_compare(compare: argparse.ArgumentParser) -> None:
+def add_compare(compare: CommandParser) -> None:
     """Add the command's grammar."""
     compare.epilog = (
         "examples:\n  jointid compare run.csv\n"
@@ -130,7 +130,7 @@ def add_compare(compare: argparse.ArgumentParser) -> None:
     _output_arguments(compare)
 
 
-def add_report(report: argparse.ArgumentParser) -> None:
+def add_report(report: CommandParser) -> None:
     """Add the command's grammar."""
     report.epilog = (
         "example:\n  jointid identify run.csv --save estimate.json\n"
@@ -151,15 +151,16 @@ def add_report(report: argparse.ArgumentParser) -> None:
     report.add_argument("--json", action="store_true", help="print JSON")
 
 
-def add_info(info: argparse.ArgumentParser) -> None:
+def add_info(info: CommandParser) -> None:
     """Add the command's grammar."""
     info.epilog = "example:\n  jointid info run.csv"
-    info.add_argument("recording", type=Path, help=f"recording: {file_kinds()}")
+    recording = info.add_argument("recording", type=Path, help="recording")
+    info.help_later(recording, lambda: f"recording: {file_kinds()}")
     reading_arguments(info)
     info.add_argument("--json", action="store_true", help="print JSON")
 
 
-def _identification_arguments(command: argparse.ArgumentParser, *, method: str) -> None:
+def _identification_arguments(command: CommandParser, *, method: str) -> None:
     others = " or ".join(name for name in METHODS if name != method)
     command.add_argument("--joint", type=Path, help="joint file (.toml)")
     command.add_argument("--method", default=method, help=f"{method} (default), {others}")
@@ -193,7 +194,7 @@ def _identification_arguments(command: argparse.ArgumentParser, *, method: str) 
     )
 
 
-def _output_arguments(command: argparse.ArgumentParser) -> None:
+def _output_arguments(command: CommandParser) -> None:
     command.add_argument("--report", type=Path, help="write the HTML report to this file")
     command.add_argument(
         "--save", type=Path, help="write the estimate to a joint file (.toml) or .json"

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import os
 
 from jointid.cli.command_table import HELP, options_of
 from jointid.cli.exit_codes import BAD_INPUT
 
 TYPE_CHECKING = False  # as in typing, which `jointid --help` does without
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Any, NoReturn
 
 # What argparse says in the terms of a programmer.
@@ -17,6 +19,15 @@ _PLAIN = {
     "expected one argument": "a value is expected",
     "expected at least one argument": "a value is expected",
 }
+
+
+def _formatter(prog: str) -> argparse.HelpFormatter:
+    """As wide as the terminal; argparse, which makes one for each option, asks shutil, and that imports lzma."""
+    try:
+        columns = int(os.environ.get("COLUMNS", 0)) or os.get_terminal_size(1).columns
+    except (OSError, ValueError):  # no terminal; no number
+        columns = 0
+    return argparse.RawDescriptionHelpFormatter(prog, width=(columns or 80) - 2)
 
 
 class CommandParser(argparse.ArgumentParser):
@@ -31,15 +42,26 @@ class CommandParser(argparse.ArgumentParser):
     """
 
     def __init__(self, command: str = "", **options: Any) -> None:
-        plain = {"formatter_class": argparse.RawDescriptionHelpFormatter, "exit_on_error": False}
+        plain = {"formatter_class": _formatter, "exit_on_error": False}
         super().__init__(**options | plain)
         self._command = command
+        self._later: list[tuple[argparse.Action, Callable[[], str]]] = []
 
     def complete(self) -> None:
         """Add the options of the command, once."""
         command, self._command = self._command, ""
         if command:
             options_of(command)(self)
+
+    def help_later(self, option: argparse.Action, text: Callable[[], str]) -> None:
+        """Say how the help of an option is found once somebody asks for it."""
+        self._later.append((option, text))
+
+    def format_help(self) -> str:
+        """Return the help of the command."""
+        for option, text in self._later:
+            option.help = text()
+        return super().format_help()
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Read arguments, and say what is wrong with them in one line."""

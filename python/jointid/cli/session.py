@@ -70,10 +70,7 @@ def add_run(run: argparse.ArgumentParser) -> None:
     run.add_argument(
         "--output",
         type=Path,
-        help=(
-            "folder for recordings, frame logs, estimates, tracking_error.png, report.html, ring.json "
-            "and ring.txt"
-        ),
+        help=("folder for recordings, frame logs, estimates, report.html, ring.json and ring.txt"),
     )
     run.add_argument("--save", type=Path, help="write the last estimate to a joint file (.toml)")
     run.add_argument("--plot", action="store_true", help="show the motion in a window")
@@ -236,7 +233,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(result.report())
         if arguments.output is not None:
             written = "recordings, frame logs" + (", estimates" if result.estimates else "")
-            print(f"\n{written} and tracking_error.png: {arguments.output}")
+            print(f"\n{written} and report.html: {arguments.output}")
         print(motor_and_recording(motor_off(result), output))
     if result.blocked is not None:
         unsaved = "" if arguments.save is None else f"; {arguments.save} was not written"
@@ -356,23 +353,10 @@ def _yes(question: str) -> bool:
 
 
 def _write(result: Commissioning, folder: Path) -> None:
-    """A picture of the tracking errors, and the last estimate's page."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    from matplotlib import pyplot
-
+    """The session's page, and its outcome as text and numbers."""
     from jointid.base.files import write_whole
-    from jointid.plot.appearance import style
-    from jointid.plot.motion import tracking_error
-    from jointid.report.html import save_report
+    from jointid.report.session_page import save_session_report
 
-    with style():
-        figure, axes = pyplot.subplots(figsize=(8.0, 4.5))
-        tracking_error(result.recordings(), axes)
-        figure.savefig(folder / "tracking_error.png", dpi=150, bbox_inches="tight")
-        pyplot.close(figure)
-    if result.estimates:
-        save_report(result.estimates[-1], folder / "report.html", action=ADVICE.of_action)
+    save_session_report(result, folder / "report.html", action=ADVICE.of_action)
     write_whole(folder / "ring.txt", (result.report() + "\n").encode())
     write_whole(folder / "ring.json", json.dumps(result.to_dict(), indent=1).encode())

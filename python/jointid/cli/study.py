@@ -26,6 +26,7 @@ from jointid.cli.arguments import (
     with_terms,
 )
 from jointid.cli.outputs import check_folder
+from jointid.cli.parser import CommandParser
 from jointid.cli.scenario import scenario_arguments, scenario_of
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from jointid.study.study_result import Study
 
 
-def add_sweep(sweep: argparse.ArgumentParser) -> None:
+def add_sweep(sweep: CommandParser) -> None:
     """Add the command's grammar."""
     sweep.epilog = (
         "examples:\n"

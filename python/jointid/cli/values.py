@@ -8,11 +8,10 @@ from collections.abc import Mapping
 from typing import Any
 
 _LONGEST = 60
-_OTHER_KIND = re.compile(
-    r"\s*(?:true|false|none|[-+]?(?:inf|nan|(?:\d[\d_]*\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*",
-    re.IGNORECASE,
+_OTHER_KIND = (
+    r"(?i)\s*(?:true|false|none|[-+]?(?:inf|nan|(?:\d[\d_]*\.?\d*|\.\d+)(?:e[-+]?\d+)?))\s*"
 )
-_SPECIAL = re.compile(r"[\s'\"\\$`&|;<>()*?\[\]{}!#~]")
+_SPECIAL = r"[\s'\"\\$`&|;<>()*?\[\]{}!#~]"
 
 
 def in_sentence(value: object) -> str:
@@ -33,7 +32,7 @@ def as_typed(value: object) -> str:
 
 def _distinct(value: object) -> str:
     """A value's text, with quotes where it would be taken for a value of another kind."""
-    if isinstance(value, str) and _OTHER_KIND.fullmatch(value):
+    if isinstance(value, str) and re.fullmatch(_OTHER_KIND, value):
         return f'"{value}"'
     return _text(value, " " if isinstance(value, list | tuple) else ", ")
 
@@ -41,7 +40,7 @@ def _distinct(value: object) -> str:
 def behind_option(value: object) -> str:
     """A value as the shell and the command line read it."""
     text = _text(value, ",")
-    if text and not _SPECIAL.search(text):
+    if text and not re.search(_SPECIAL, text):
         return text
     quoted = text.replace("'", "'\"'\"'")
     return f"'{quoted}'"

@@ -17,7 +17,7 @@ from jointid.cli.values import as_typed, behind_option, in_sentence
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
 
-_OWN_FILE = re.compile(r"\.(?:toml|json|jsonl)\b")
+_OWN_FILE = r"\.(?:toml|json|jsonl)\b"
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +103,7 @@ class Wording:
         known = value is not NOT_GIVEN
         if not name:
             return in_sentence(value) if known else ""
-        if not _OWN_FILE.search(place):
+        if not re.search(_OWN_FILE, place):
             if name in self.grid:
                 return option_with_value("--grid", name, value) if known else f"--grid {name}"
             if subject := self._in_model(name):

@@ -13,7 +13,7 @@ def text_report(result: Commissioning) -> str:
     """Tables of tracking errors and parameters."""
     lines = _runs(result)
     if result.estimates:
-        lines += ["", *_parameters(result)]
+        lines += ["", *_table(parameter_rows(result))]
     if result.without_ripple is not None and result.truth:
         lines += ["", _ripple(result)]
     if result.motion_warning:
@@ -29,39 +29,53 @@ def text_report(result: Commissioning) -> str:
     return "\n".join(lines)
 
 
-def _runs(result: Commissioning) -> list[str]:
-    revolute = result.runs[0].recording.kind == "revolute"
-    unit, factor = ("mrad", 1e3) if revolute else ("mm", 1e3)
+def run_rows(result: Commissioning) -> list[list[str]]:
+    """Tracking error of each run; the first row is the head."""
+    unit = "mrad" if result.runs[0].recording.kind == "revolute" else "mm"
     rows = [["run", f"rms error [{unit}]", f"largest [{unit}]", "than the first"]]
     last = () if result.true_run is None else (result.true_run,)
     first = result.runs[0].tracking_error
     rows += [
         [
             run.name,
-            f"{factor * run.tracking_error:.4f}",
-            f"{factor * run.peak_error:.4f}",
+            f"{1e3 * run.tracking_error:.4f}",
+            f"{1e3 * run.peak_error:.4f}",
             "" if run is result.runs[0] else _compared(first / run.tracking_error),
         ]
         for run in (*result.runs, *last)
     ]
-    lines = [*_table(rows), "", "Errors without each run's first sixth, by the encoder."]
+    return rows
+
+
+def summary(result: Commissioning) -> list[str]:
+    """What came of it, in sentences; none when the joint was only recorded."""
     if result.blocked is not None:
-        lines += ["", f"{result.blocked.code} is blocking: {result.blocked.cause}."]
         return [
-            *lines,
+            f"{result.blocked.code} is blocking: {result.blocked.cause}.",
             "The joint was not moved with this estimate, and its values cannot be used.",
         ]
     if len(result.runs) == 1:
-        return lines
-    summary = f"The tracking error fell by a factor of {result.improvement:.1f}"
+        return []
+    sentence = f"The tracking error fell by a factor of {result.improvement:.1f}"
     if result.true_run is not None:
         ratio = result.runs[-1].tracking_error / result.true_run.tracking_error
-        summary += f"; it ended at {ratio:.3f} times that with the true parameters"
-    return [*lines, summary + "."]
+        sentence += f"; it ended at {ratio:.3f} times that with the true parameters"
+    return [sentence + "."]
 
 
-def _timing(result: Commissioning) -> list[str]:
-    """How late samples and loop were in each run."""
+def _runs(result: Commissioning) -> list[str]:
+    lines = [
+        *_table(run_rows(result)),
+        "",
+        "Errors without each run's first sixth, by the encoder.",
+    ]
+    said = summary(result)
+    blank = [""] if result.blocked is not None else []
+    return [*lines, *blank, *said]
+
+
+def timing_rows(result: Commissioning) -> list[list[str]]:
+    """How late samples and loop were in each run; the first row is the head, alone where nothing is known."""
     head = ["timing", "cycles", "late or lost", "skipped", "most in a row"]
     rows = [[*head, "woke late [ms]", "time left [ms]"]]
     for name, recording in result.recordings().items():
@@ -72,10 +86,15 @@ def _timing(result: Commissioning) -> list[str]:
         woke = f"{1e3 * timing['woke_late_median']:.2f} to {1e3 * timing['woke_late_most']:.2f}"
         left = f"{1e3 * timing['slack_median']:.2f} to {1e3 * timing['slack_least']:.2f}"
         rows.append([*row, woke, left])
-    if len(rows) == 1:
-        return []
-    legend = "Late or lost samples are left out of the estimates; times are median to worst."
-    return ["", *_table(rows), "", legend]
+    return rows
+
+
+TIMING = "Late or lost samples are left out of the estimates; times are median to worst."
+
+
+def _timing(result: Commissioning) -> list[str]:
+    rows = timing_rows(result)
+    return ["", *_table(rows), "", TIMING] if len(rows) > 1 else []
 
 
 def _compared(ratio: float) -> str:
@@ -85,7 +104,8 @@ def _compared(ratio: float) -> str:
     return f"{ratio:.1f} times smaller"
 
 
-def _parameters(result: Commissioning) -> list[str]:
+def parameter_rows(result: Commissioning) -> list[list[str]]:
+    """What each cycle identified, beside what was assumed; the first row is the head."""
     last = result.estimates[-1]
     head = ["parameter", "assumed at first"]
     head += [f"cycle {number}" for number in range(1, len(result.estimates) + 1)]
@@ -107,7 +127,7 @@ def _parameters(result: Commissioning) -> list[str]:
         if result.truth:
             row += _beside_truth(found[-1].value, result.truth.get(name))
         rows.append(row)
-    return _table(rows)
+    return rows
 
 
 def _beside_truth(value: float, truth: float | None) -> list[str]:

@@ -16,15 +16,17 @@ from jointid.comparison.result import ComparedModel, Comparison
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.settings import model_of
 from jointid.identification.identification import identify
-from jointid.identification.search.search import Search
+from jointid.identification.search.search import Method, Search
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model
+from jointid.joint.model import Model, ModelName
 from jointid.joint.parameters import Parameter
 from jointid.problem.recordings import listed
+from jointid.problem.terms import Residual
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
+from jointid.recording.signals import TorqueHold
 
-_MODELS = ("coulomb_viscous", "stribeck")
+_MODELS: tuple[ModelName, ...] = ("coulomb_viscous", "stribeck")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,10 +81,10 @@ def compare_models(
     models: Model | str | Sequence[Any] | None = None,
     folds: int = 5,
     parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
-    search: Search | str | None = None,
-    residual: str | None = None,
+    search: Search | Method | None = None,
+    residual: Residual | None = None,
     windows: Windows = None,
-    torque_hold: str | None = None,
+    torque_hold: TorqueHold | None = None,
     mask_standstill: bool = True,
     shift: Mapping[str, float] | None = None,
     min_speed: float = 0.0,

@@ -1,6 +1,5 @@
 """Estimates as JSON: complete enough to redraw every picture and to repeat the run."""
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
+from jointid.base.json_layout import json_text
 from jointid.base.schema import Number, read_json
 from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
@@ -38,9 +38,10 @@ def write_estimate(estimate: Estimate) -> str:
         if item.name != "follow_up":  # it holds the recordings, which have files of their own
             document[item.name] = plain(getattr(estimate, item.name))
     document["derived"] = plain(estimate.derived)
+    document["verdict"] = estimate.verdict.document()
     for entry, found in zip(document["findings"], estimate.findings, strict=True):
         entry["message"] = found.message  # for readers that are not ours
-    return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
+    return json_text(document)
 
 
 def read_estimate(text: str) -> Estimate:
@@ -213,7 +214,10 @@ def plain(value: Any) -> Any:
     if isinstance(value, Joint):
         return joint_document(value)
     if isinstance(value, np.ndarray):
-        return plain(value.tolist())
+        listed = value.tolist()
+        if value.dtype.kind in "iu" or (value.dtype.kind == "f" and np.isfinite(value).all()):
+            return listed  # thousands of numbers, each of which JSON knows
+        return plain(listed)
     if isinstance(value, bool | int | str) or value is None:
         return value
     if value is ...:

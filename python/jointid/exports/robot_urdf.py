@@ -23,7 +23,8 @@ def robot_in_urdf(
     place : str
         Its name, for errors.
     approximate : bool
-        Whether what URDF has not may be lost: static friction above Coulomb friction, and friction of coupled motors.
+        Whether what URDF has not may be lost: static friction above Coulomb friction, friction that differs between
+        the directions, and friction of coupled motors.
     inertia : bool
         Whether the links get their identified inertia, too.
 
@@ -61,11 +62,15 @@ def _with_dynamics(content: bytes, place: str, joint: RobotJoint) -> bytes:
 
 
 def _lost(joint: RobotJoint) -> list[str]:
-    names = {"static": "static friction", "motor_coulomb": "friction of a coupled motor"}
+    names = {
+        "static": "static friction",
+        "viscous_difference": "friction that differs between the directions",
+        "motor_coulomb": "friction of a coupled motor",
+    }
     return [
         text
         for name, text in names.items()
-        if name in joint.parameters and joint.parameters[name].value > 0.0
+        if name in joint.parameters and joint.parameters[name].value != 0.0
     ]
 
 

@@ -15,7 +15,6 @@ from jointid.estimate.causes import Cause, Causes
 from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence
-from jointid.identification.causes.causes import cause_of, find_causes
 from jointid.identification.causes.suspicion import correlated, suspicious, testable
 from jointid.identification.inference.covariance import parameter_covariance
 from jointid.identification.inference.inference import (
@@ -24,12 +23,10 @@ from jointid.identification.inference.inference import (
     parameters_of,
     statistics_of,
 )
-from jointid.identification.inference.lag import of_lags
 from jointid.identification.inference.own_noise import own_systematic
 from jointid.identification.inference.segments import Motion, motion_segments
 from jointid.identification.inference.systematic import admissible_shifts, systematic_errors
 from jointid.identification.inference.undivided import divided, with_undivided
-from jointid.identification.inference.velocity_misfit import beyond_velocity_noise
 from jointid.identification.inference.velocity_noise import velocity_systematic
 from jointid.identification.refinements.refinements import Refinements
 from jointid.identification.search.domain import SearchDomain
@@ -111,6 +108,8 @@ def infer(
     )
     lags = {each.signal: _unknown(each) for each in refinements.delays.values()}
     if any(lags.values()):
+        from jointid.identification.inference.lag import of_lags
+
         parts["lag"] = np.zeros(len(best))
         parts["lag"][kept] = of_lags(problem, penalty, best, free_jacobian, lags)
     effect = velocity_systematic(
@@ -148,6 +147,8 @@ def infer(
     noise = not structured and testable(run) and not penalty.cumulative
     # A misfit of a gain whose sign is a guess is not the model's.
     if structured and not domain.guessed_sign and not (penalty.cumulative or not free):
+        from jointid.identification.causes.causes import find_causes
+
         causes = find_causes(
             problem,
             penalty,
@@ -156,6 +157,8 @@ def infer(
             delays=refinements.delays,
         )
         if effect is not None:
+            from jointid.identification.inference.velocity_misfit import beyond_velocity_noise
+
             real = beyond_velocity_noise(problem, penalty, best, free, causes.found)
             causes = replace(causes, found=real)
         explained = statistics.r_squared >= 0.0 or (
@@ -191,7 +194,7 @@ def infer(
             inspections=inspections,
             at_best=at_best,
             causes=causes,
-            cause_of=partial(cause_of, problem, penalty, parameters, torque_level),
+            cause_of=partial(_cause_of, problem, penalty, parameters, torque_level),
             white=noise,
             velocity_effect=effect,
             own_noise=own_noise,
@@ -225,6 +228,13 @@ def infer(
         delays=refinements.delays,
         slow_motion=refinements.slow_motion,
     )
+
+
+def _cause_of(*arguments: Any, **more: Any) -> Cause | None:
+    """The cause that a check asks for; what looks for causes is imported when one is in doubt."""
+    from jointid.identification.causes.causes import cause_of
+
+    return cause_of(*arguments, **more)
 
 
 def _explains(causes: Causes, r_squared: float) -> bool:

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.estimate.causes import Cause
 from jointid.estimate.estimate import Estimate
-from jointid.identification.causes.causes import attributed
 from jointid.problem.problem import Problem
 from jointid.recording.recording import Recording
 
@@ -46,6 +45,8 @@ def without_drift(
     """
     if "drift" not in {finding.code for finding in estimate.findings}:
         return None
+    from jointid.identification.causes.causes import attributed
+
     first = attributed(problem, penalty, estimate, {}).found[:1]
     cause = first[0] if first else None
     if cause is None or cause.name != "drift" or cause.share < _SHARE or cause.alike:

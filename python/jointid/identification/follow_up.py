@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from jointid.base.values import dataclass
-from jointid.identification.causes.causes import attributed
 from jointid.identification.gain import penalty_as_fitted
 
 if TYPE_CHECKING:
@@ -66,6 +65,8 @@ class EstimateSource:
 
     def causes(self, estimate: Estimate, signals: Mapping[str, ArrayLike]) -> Causes:
         """Attribute the misfit of what was fitted, behind the causes that were taken away before."""
+        from jointid.identification.causes.causes import attributed
+
         penalty = penalty_as_fitted(self.problem, self.windows, self.domain)
         found = attributed(self.problem, penalty, estimate, signals)
         return replace(found, found=(*self.known, *found.found))

@@ -11,27 +11,28 @@ from jointid.estimate.estimate import Estimate
 from jointid.identification.chosen_model import unfit_in
 from jointid.identification.prepared import prepare
 from jointid.identification.search.run import run_search
-from jointid.identification.search.search import Search
+from jointid.identification.search.search import Method, Search
 from jointid.identification.warnings.load_scale import LOAD_SCALE
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model
+from jointid.joint.model import Model, ModelName
 from jointid.joint.parameters import Parameter
 from jointid.problem.recordings import listed
-from jointid.problem.terms import loads
+from jointid.problem.terms import Residual, loads
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
+from jointid.recording.signals import TorqueHold
 
 
 def identify(
     recordings: Recording | Sequence[Recording],
     joint: Joint | None = None,
     *,
-    model: Model | str | Mapping[str, Any] | None = None,
+    model: Model | ModelName | Mapping[str, Any] | None = None,
     parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
-    search: Search | str | None = None,
-    residual: str | None = None,
+    search: Search | Method | None = None,
+    residual: Residual | None = None,
     windows: Windows = None,
-    torque_hold: str | None = None,
+    torque_hold: TorqueHold | None = None,
     mask_standstill: bool = True,
     shift: Mapping[str, float] | None = None,
     min_speed: float | None = None,

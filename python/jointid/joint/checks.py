@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import numbers
 from collections.abc import Callable, Collection, Mapping
@@ -19,10 +20,9 @@ _MISSPELT, _SIMILAR = 0.75, 0.6  # likeness of two texts, as difflib counts it
 
 def check_parameter_name(name: object) -> None:
     """Refuse a name that no parameter has, with a suggestion."""
-    known = _core.parameter_names()
     if not isinstance(name, str) or not _core.is_parameter(name):
         raise InputError(
-            f"there is no such parameter; {suggestion(name, known)}",
+            f"there is no such parameter; {suggestion(name, _core.parameter_names())}",
             argument=str(name),
             place="parameters",
         )
@@ -43,6 +43,8 @@ def suggestion(name: object, known: Collection[str]) -> str:
 
 def is_number(value: object) -> bool:
     """Return whether this is a real number; True and False are not."""
+    if type(value) is float:  # an abstract base class takes longer to ask
+        return True
     return isinstance(value, numbers.Real) and not isinstance(value, bool)
 
 
@@ -107,7 +109,16 @@ def set_numbers(
     instance: Any, owner: str, names: Collection[str], convert: Callable[[str, str, object], float]
 ) -> None:
     """Convert fields of a frozen instance to checked floats; None stays where it is the default."""
-    for field in fields(instance):
-        value = getattr(instance, field.name)
-        if field.name in names and not (value is None and field.default is None):
-            object.__setattr__(instance, field.name, convert(owner, field.name, value))
+    kind: type = type(instance)
+    for name, optional in _optional(kind).items():
+        if name not in names:
+            continue
+        value = getattr(instance, name)
+        if value is not None or not optional:
+            object.__setattr__(instance, name, convert(owner, name, value))
+
+
+@functools.cache
+def _optional(kind: type) -> dict[str, bool]:
+    """Whether each field of a dataclass is None by default."""
+    return {field.name: field.default is None for field in fields(kind)}

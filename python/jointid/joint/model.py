@@ -17,6 +17,8 @@ from jointid.joint.own_terms import NO_TERMS, OwnTerms
 
 Gravity = Literal["none", "known", "free"]
 Load = Literal["drive", "link"]
+ModelName = Literal["coulomb_viscous", "stribeck", "stribeck_general", "auto"]
+"""Names of models, for type checkers; text with options is `Model.parse`'s."""
 
 AUTO = "auto"
 """Name of a model that `identify` chooses from the recordings; as good as no name."""
@@ -78,7 +80,7 @@ class Model:
     True
     """
 
-    name: str | None = None
+    name: ModelName | None = None
     _: KW_ONLY
     gravity: Gravity | None = None
     asymmetric: bool | None = None
@@ -168,10 +170,11 @@ class Model:
             if key in options:
                 raise InputError("it is given twice", argument=key, value=text)
             options[key] = _read(key, value) if separator else True
-        return cls(name or None, **options)
+        options["name"] = name or None
+        return cls(**options)
 
     def __str__(self) -> str:
-        parts = [self.name or ""]
+        parts: list[str] = [self.name or ""]
         for name, value in self.stated().items():
             if name != "name":
                 parts.append(name if value is True else f"{name}={_written(value)}")

@@ -45,8 +45,8 @@ POSITION = "position"
 """Names the joint's own position as the signal of a term."""
 
 _RATE = "@rate"
-_KIND = re.compile(rf"([a-z_]+)(?:\(([^()]*)\))?({_RATE})?")
-_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,59}")
+_KIND = rf"([a-z_]+)(?:\(([^()]*)\))?({_RATE})?"
+_NAME = r"[A-Za-z_][A-Za-z0-9_]{0,59}"
 _FIXED = ("known_of_", "known_inertia_of_")
 
 
@@ -193,7 +193,7 @@ def is_fixed(name: str) -> bool:
 
 
 def _of_signal(signal: object, kinds: object) -> list[OwnTerm]:
-    if not isinstance(signal, str) or not _NAME.fullmatch(signal):
+    if not isinstance(signal, str) or not re.fullmatch(_NAME, signal):
         raise InputError(
             "the name of an extra signal is expected, of letters, digits and underscores",
             argument="terms",
@@ -216,7 +216,7 @@ def _of_signal(signal: object, kinds: object) -> list[OwnTerm]:
 
 def _own_term(signal: str, text: str) -> OwnTerm:
     place = f"terms.{signal}"
-    found = _KIND.fullmatch(text)
+    found = re.fullmatch(_KIND, text)
     if not found or found[1] not in KINDS:
         name = found[1] if found else text
         rates = [kind + _RATE for kind in KINDS]

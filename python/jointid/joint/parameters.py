@@ -1,5 +1,6 @@
 """Parameters of a joint: value, bounds, free or fixed; tables of parameters, and merging of tables."""
 
+import functools
 from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
@@ -124,15 +125,29 @@ def merge(
     table = dict(base)
     for name, entry in changes.items():
         check_parameter_name(name)
+        if type(entry) is Parameter and entry.name == name and name not in table:
+            table[name] = entry  # frozen, and checked when it was made
+            continue
         known = {} if name not in table else _fields(table[name])
         table[name] = Parameter(**{"name": name, **known, **_stated(name, entry)})
     # Harmonics follow the others, in the order of the tables.
-    order = {name: place for place, name in enumerate(_core.parameter_names())}
+    order = _order()
     return {name: table[name] for name in sorted(table, key=lambda n: order.get(n, len(order)))}
 
 
+@functools.cache
+def _order() -> dict[str, int]:
+    return {name: place for place, name in enumerate(_core.parameter_names())}
+
+
 def _fields(parameter: Parameter) -> dict[str, Any]:
-    return {field.name: getattr(parameter, field.name) for field in fields(parameter)}
+    return {
+        "name": parameter.name,
+        "value": parameter.value,
+        "min": parameter.min,
+        "max": parameter.max,
+        "vary": parameter.vary,
+    }
 
 
 def _stated(name: str, entry: object) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.joint.checks import check_mapping, finite_number, suggestion
 
-_PERCENT = re.compile(r"\s*(?:±|\+-|\+/-)?\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*")
+_PERCENT = r"\s*(?:±|\+-|\+/-)?\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*"
 _EXPECTED = 'a share such as "5 %", or a number in the unit of the fact, is expected'
 
 
@@ -100,7 +100,7 @@ class Tolerances:
 
 def share_of(text: str) -> float:
     """Return the share that a text such as "5 %" states."""
-    found = _PERCENT.fullmatch(text)
+    found = re.fullmatch(_PERCENT, text)
     assert found is not None  # checked before
     return float(found[1]) / 100.0
 
@@ -109,7 +109,7 @@ def _checked(name: str, value: object) -> str | float:
     """Return a tolerance in its usual form, or refuse it."""
     place = "tolerances"
     if isinstance(value, str):
-        if _PERCENT.fullmatch(value) is None or share_of(value) >= 1.0:
+        if re.fullmatch(_PERCENT, value) is None or share_of(value) >= 1.0:
             raise InputError(_EXPECTED, argument=name, value=value, place=place)
         return f"{100.0 * share_of(value):.15g} %"
     try:

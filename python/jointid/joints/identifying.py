@@ -10,15 +10,17 @@ from typing import Any
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
 from jointid.identification.identification import identify
-from jointid.identification.search.search import Search
+from jointid.identification.search.search import Method, Search
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model
+from jointid.joint.model import Model, ModelName
 from jointid.joint.parameters import Parameter
 from jointid.joints.citing import cited
 from jointid.joints.coupling import shares_of_others
 from jointid.joints.result import FAILED, IDENTIFIED, JointEstimates, JointResult
+from jointid.problem.terms import Residual
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
+from jointid.recording.signals import TorqueHold
 from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.robot_recording import RobotRecording
 
@@ -28,12 +30,12 @@ def identify_joints(
     joints: Iterable[str | int] | str | None = None,
     *,
     joint: Joint | Mapping[str, Joint] | None = None,
-    model: Model | str | Mapping[str, Any] | None = None,
+    model: Model | ModelName | Mapping[str, Any] | None = None,
     parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
-    search: Search | str | None = None,
-    residual: str | None = None,
+    search: Search | Method | None = None,
+    residual: Residual | None = None,
     windows: Windows = None,
-    torque_hold: str | None = None,
+    torque_hold: TorqueHold | None = None,
     mask_standstill: bool = True,
     shift: Mapping[str, float] | None = None,
     min_speed: float | None = None,

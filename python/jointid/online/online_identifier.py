@@ -14,13 +14,14 @@ from numpy.typing import ArrayLike, NDArray
 from jointid.base.errors import InputError
 from jointid.joint.checks import suggestion
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model
+from jointid.joint.model import Model, ModelName
 from jointid.joint.parameters import Parameter
 from jointid.online.online_estimate import OnlineEstimate
 from jointid.online.samples import checked
 from jointid.online.settings import Settings
 from jointid.online.worker import Worker
-from jointid.problem.terms import Request
+from jointid.problem.terms import Request, Residual
+from jointid.recording.signals import TorqueHold
 
 Array = NDArray[np.float64]
 
@@ -80,11 +81,11 @@ class OnlineIdentifier:
         *,
         window: float = 30.0,
         update: float = 0.5,
-        model: Model | str | Mapping[str, Any] | None = None,
-        residual: str | None = None,
+        model: Model | ModelName | Mapping[str, Any] | None = None,
+        residual: Residual | None = None,
         parameters: Mapping[str, float | Mapping[str, object] | Parameter] | None = None,
         windows: float | None = None,
-        torque_hold: str | None = None,
+        torque_hold: TorqueHold | None = None,
         mask_standstill: bool = True,
         callback: Callable[[OnlineEstimate], object] | None = None,
     ) -> None:

@@ -109,8 +109,10 @@ def _check_magnitudes(run: Recording, place: str) -> None:
     for name in run.signals:
         values = getattr(run, name)
         largest = max(float(values.max()), -float(values.min()))
+        if name == "time" or largest == 0.0 or _SMALLEST <= largest <= _LARGEST:
+            continue
         beyond = np.flatnonzero(np.abs(values) > _LARGEST)
-        if name != "time" and 0 < len(beyond) <= _FEW * len(values):
+        if 0 < len(beyond) <= _FEW * len(values):
             index = int(beyond[0])
             rest = float(np.abs(np.delete(values, beyond)).max())
             raise InputError(
@@ -121,14 +123,13 @@ def _check_magnitudes(run: Recording, place: str) -> None:
                 place=place,
                 remedy="cut such samples out, and check the logger",
             )
-        if name != "time" and largest != 0.0 and not _SMALLEST <= largest <= _LARGEST:
-            raise InputError(
-                "no measured signal has this as its largest magnitude",
-                argument=name,
-                value=largest,
-                place=place,
-                remedy="check unit and scale",
-            )
+        raise InputError(
+            "no measured signal has this as its largest magnitude",
+            argument=name,
+            value=largest,
+            place=place,
+            remedy="check unit and scale",
+        )
 
 
 def _conversions(recording: Recording, signal: str) -> tuple[Action, ...]:

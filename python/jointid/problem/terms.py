@@ -3,6 +3,7 @@
 import functools
 from collections.abc import Sequence
 from dataclasses import field
+from typing import Literal, get_args
 
 from jointid import _core
 from jointid.base.advice import Action
@@ -20,7 +21,8 @@ _SENSOR = ("sensor_gain", "sensor_offset")
 
 # What the residual compares: the torque with the part of the reading that the motion explains, the reading
 # with what the torque leaves for it (the thesis), the torque with the reading.
-RESIDUALS = ("instruments", "sensor", "torque")
+Residual = Literal["instruments", "sensor", "torque"]
+RESIDUALS: tuple[str, ...] = get_args(Residual)
 
 
 WEAK_READING = "the motion explains too little of the reading"

@@ -25,8 +25,8 @@ PREFIX = "extra_"
 UNITS_KEY = "extra_units"
 """Key of a recording's metadata: name of an extra signal → text of its unit."""
 
-_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,59}")
-_INERTIA = re.compile(r"[\s_(\[](kg|kgc|gc)[_·*]?m\^?[2²][)\]]?$")  # headers: SIGNAL_kgm2
+_NAME = r"[A-Za-z_][A-Za-z0-9_]{0,59}"
+_INERTIA = r"[\s_(\[](kg|kgc|gc)[_·*]?m\^?[2²][)\]]?$"  # headers: SIGNAL_kgm2
 _INERTIA_FACTORS = {"kg": 1.0, "kgc": 1e-4, "gc": 1e-7}
 
 
@@ -60,7 +60,7 @@ _NONE: Mapping[str, FloatArray] = MappingProxyType({})
 
 def check_extra_name(name: object, argument: str) -> None:
     """Raise `InputError` for what cannot be the name of an extra signal."""
-    if not isinstance(name, str) or not _NAME.fullmatch(name):
+    if not isinstance(name, str) or not re.fullmatch(_NAME, name):
         raise InputError(
             "a name of letters, digits and underscores is expected, like q6_rate",
             argument=argument,
@@ -129,7 +129,7 @@ def extra_columns(
     if table.saved is not None:
         for index, header in enumerate(table.headers):
             name = header.removeprefix(PREFIX)
-            if name != header and _NAME.fullmatch(name):
+            if name != header and re.fullmatch(_NAME, name):
                 found[name] = ExtraColumn(
                     index=index, shown=unit_of_extra(table.saved.get("metadata"), name)
                 )
@@ -160,7 +160,7 @@ def unit_of_extra(metadata: object, name: str) -> str:
 
 
 def _unit(header: str) -> Unit | None:
-    inertia = _INERTIA.search(header.strip())
+    inertia = re.search(_INERTIA, header.strip())
     if inertia:
         return Unit(name="kgm2", dimension="inertia", factor=_INERTIA_FACTORS[inertia[1]])
     return parsed(header)[1]
@@ -179,7 +179,7 @@ def named_extra(wanted: object) -> dict[str, str | int]:
             value=wanted,
         )
     for header in wanted:
-        if isinstance(header, str) and not _NAME.fullmatch(header):
+        if isinstance(header, str) and not re.fullmatch(_NAME, header):
             raise InputError(
                 "this header cannot be a name, which has letters, digits and underscores",
                 argument="extra",
@@ -191,7 +191,7 @@ def named_extra(wanted: object) -> dict[str, str | int]:
 
 def _suggested(header: str) -> str:
     name = re.sub(r"[^A-Za-z0-9]+", "_", header).strip("_")[:40]
-    return name if _NAME.fullmatch(name) else f"signal_{name}".rstrip("_")
+    return name if re.fullmatch(_NAME, name) else f"signal_{name}".rstrip("_")
 
 
 def rows_of_extra(

@@ -27,7 +27,7 @@ ALIASES: dict[str, str] = {
 }
 
 
-_INDEX = re.compile(r"(?<=[\w\]])\[(\d+)\]")
+_INDEX = r"(?<=[\w\]])\[(\d+)\]"
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ def _divided(header: str) -> tuple[str, Unit | None, str]:
     """Return name, unit and what is in the unit's place but no unit."""
     if re.search(r"\((\d+,:|:,\d+)\)$", header):  # a part of a matrix: no unit in the brackets
         return header, None, ""
-    header = _INDEX.sub(r"_\1", header)  # position[0] is a number, not a unit
+    header = re.sub(_INDEX, r"_\1", header)  # position[0] is a number, not a unit
     bracketed = re.fullmatch(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*", header)
     if bracketed and bracketed[2].strip():
         unit = find_unit(bracketed[2])

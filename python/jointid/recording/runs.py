@@ -11,7 +11,7 @@ from jointid.base.errors import InputError
 from jointid.recording.contents import Contents, Rows
 from jointid.recording.signals import SHORTEST
 
-_RUN = re.compile(r"run|trial|test|experiment|episode|file|log", re.IGNORECASE)
+_RUN = r"(?i)run|trial|test|experiment|episode|file|log"
 _MOST = 8  # columns that are examined: each costs time in a long file
 
 
@@ -35,7 +35,7 @@ def one_run(contents: Contents) -> tuple[Action, ...]:
         for column, header in enumerate(headers)
         if column not in signals and headers.count(header) == 1
     ]
-    others.sort(key=lambda other: not _RUN.search(other[1]))  # likely ones first
+    others.sort(key=lambda other: not re.search(_RUN, other[1]))  # likely ones first
     for column, header in others[:_MOST]:
         try:
             runs = contents.rows_of(column)

@@ -1,7 +1,6 @@
 """Writing a recording: .csv, .csv.gz and .npz, which `load` reads back bit for bit."""
 
 import io
-import json
 import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -38,6 +37,8 @@ def attributes_text(recording: "Recording") -> str:
     attributes = {name: getattr(recording, name) for name in _ATTRIBUTES}
     for name in ("metadata", "truth"):  # JSON knows dict, not read-only views
         attributes[name] = None if attributes[name] is None else dict(attributes[name])
+    import json
+
     return json.dumps({"schema": SCHEMA, **attributes})
 
 

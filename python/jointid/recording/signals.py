@@ -1,6 +1,5 @@
 """The signals of a recording: their names, dimensions and units, and checks of their values."""
 
-import difflib
 from collections.abc import Callable, Collection, Mapping
 from typing import Literal, TypeGuard, get_args
 
@@ -97,6 +96,8 @@ def check_signal_name(name: object, argument: str) -> None:
 
 def closest(name: object, known: Collection[str], cutoff: float = 0.6) -> str | None:
     """Return the known name closest to a misspelt one, or None below a likeness of `cutoff`."""
+    import difflib
+
     by_folded = {each.casefold(): each for each in known}
     close = difflib.get_close_matches(str(name).casefold(), by_folded, n=1, cutoff=cutoff)
     return by_folded[close[0]] if close else None

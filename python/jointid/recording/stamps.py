@@ -14,21 +14,17 @@ from jointid.recording.signals import FloatArray
 from jointid.recording.stamp_units import unit_of_stamps
 from jointid.recording.units import UNITS, Unit
 
-_ISO = re.compile(
-    r"(\d{4}-\d\d-\d\d)[T ](\d\d:\d\d:\d\d)(?:[.,](\d+))?\s*(Z|UTC|[+-]\d\d(?::?\d\d)?)?",
-    re.IGNORECASE,
-)
+_ISO = r"(?i)(\d{4}-\d\d-\d\d)[T ](\d\d:\d\d:\d\d)(?:[.,](\d+))?\s*(Z|UTC|[+-]\d\d(?::?\d\d)?)?"
 _CLOCK = r"(\d{1,2}:\d\d:\d\d)(?:[.,](\d+))?"
-_DAY_FIRST = re.compile(rf"(\d{{1,2}})([./])(\d{{1,2}})\2(\d{{4}}),?[T ]+{_CLOCK}")
-_CLOCK_ALONE = re.compile(_CLOCK)
-_NUMBER = re.compile(r"(-?\d+)(?:[.,](\d+))?")
+_DAY_FIRST = rf"(\d{{1,2}})([./])(\d{{1,2}})\2(\d{{4}}),?[T ]+{_CLOCK}"
+_NUMBER = r"(-?\d+)(?:[.,](\d+))?"
 _EPOCH = datetime(1970, 1, 1)
 _LARGE = 10**12  # smaller integers are exact as floats of seconds
 _LONGEST = 25  # digits: more are no stamps
-_WHOLE = re.compile(r"(.*?)_?(tv_)?(?:secs?|seconds)")
+_WHOLE = r"(.*?)_?(tv_)?(?:secs?|seconds)"
 _PARTS = (
-    (re.compile(r"(.*?)_?(tv_)?(?:n(?:ano)?secs?|nanoseconds)"), 1e9),
-    (re.compile(r"(.*?)_?(tv_)?(?:u(?:s|sec)s?|microseconds)"), 1e6),
+    (r"(.*?)_?(tv_)?(?:n(?:ano)?secs?|nanoseconds)", 1e9),
+    (r"(.*?)_?(tv_)?(?:u(?:s|sec)s?|microseconds)", 1e6),
 )
 _SECOND = 10**9
 _DAY = 86400 * _SECOND
@@ -55,9 +51,9 @@ class Stamps:
 
 def looks_exact(cell: str) -> bool:
     """Whether a cell is a stamp that a float would round, or no number at all but a date with a time."""
-    number = _NUMBER.fullmatch(cell.strip())
+    number = re.fullmatch(_NUMBER, cell.strip())
     if number is None:
-        return any(each.fullmatch(cell.strip()) for each in (_ISO, _DAY_FIRST, _CLOCK_ALONE))
+        return any(re.fullmatch(each, cell.strip()) for each in (_ISO, _DAY_FIRST, _CLOCK))
     whole, fraction = len(number[1].lstrip("-")), len(number[2] or "")
     return 13 <= whole <= _LONGEST or (whole in (9, 10) and fraction > 0)
 
@@ -89,7 +85,7 @@ def stamps_of(cells: Sequence[str], unit: Unit | None, place: str = "") -> Stamp
     """
     if not cells:
         return None
-    if looks_exact(cells[0]) and _NUMBER.fullmatch(cells[0].strip()) is None:
+    if looks_exact(cells[0]) and re.fullmatch(_NUMBER, cells[0].strip()) is None:
         nanoseconds = _of_any_dates(cells)
         if nanoseconds is None:
             return None
@@ -165,12 +161,12 @@ def fraction_of(headers: Sequence[str], whole: int) -> tuple[int, float] | None:
     >>> fraction_of(("header.stamp.secs", "header.stamp.nsecs"), 0)
     (1, 1000000000.0)
     """
-    name = _WHOLE.fullmatch(plain(headers[whole]))
+    name = re.fullmatch(_WHOLE, plain(headers[whole]))
     if name is None:
         return None
     for index, header in enumerate(headers):
         for pattern, parts in _PARTS:
-            other = pattern.fullmatch(plain(header))
+            other = re.fullmatch(pattern, plain(header))
             if index != whole and other and other.groups() == name.groups():
                 return index, parts
     return None
@@ -192,11 +188,11 @@ def with_fraction(whole: FloatArray, fraction: FloatArray, parts: float) -> Floa
 
 
 def _of_any_dates(cells: Sequence[str]) -> list[int] | None:
-    if _ISO.fullmatch(cells[0].strip()):
+    if re.fullmatch(_ISO, cells[0].strip()):
         return _of_dates(cells)
-    if _CLOCK_ALONE.fullmatch(cells[0].strip()):
+    if re.fullmatch(_CLOCK, cells[0].strip()):
         return _of_clocks(cells)
-    found = [_DAY_FIRST.fullmatch(cell.strip()) for cell in cells]
+    found = [re.fullmatch(_DAY_FIRST, cell.strip()) for cell in cells]
     matches = [each for each in found if each]
     if len(matches) < len(cells):
         return None
@@ -223,7 +219,7 @@ def _of_any_dates(cells: Sequence[str]) -> list[int] | None:
 
 
 def _of_clocks(cells: Sequence[str]) -> list[int] | None:
-    matches = [_CLOCK_ALONE.fullmatch(cell.strip()) for cell in cells]
+    matches = [re.fullmatch(_CLOCK, cell.strip()) for cell in cells]
     found = _of_dates([f"1970-01-01 {each[1]:0>8}.{each[2] or 0}" for each in matches if each])
     if found is None or len(found) < len(cells):
         return None
@@ -241,7 +237,7 @@ def _of_dates(cells: Sequence[str]) -> list[int] | None:
     zones: dict[str, int] = {"": 0}
     found = []
     for cell in cells:
-        stamp = _ISO.fullmatch(cell.strip())
+        stamp = re.fullmatch(_ISO, cell.strip())
         if stamp is None:
             return None
         day, clock, fraction, zone = stamp[1], stamp[2], stamp[3] or "0", stamp[4] or ""
@@ -269,7 +265,7 @@ def _zone(text: str) -> int:
 
 def _of_numbers(cells: Sequence[str]) -> tuple[list[int], int] | None:
     """Return numbers as integers, and how many of these make one of the file's unit."""
-    matches = [_NUMBER.fullmatch(cell.strip()) for cell in cells]
+    matches = [re.fullmatch(_NUMBER, cell.strip()) for cell in cells]
     if not all(matches):
         return None
     pairs = [(each[1], each[2] or "") for each in matches if each]

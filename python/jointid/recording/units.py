@@ -11,8 +11,8 @@ from jointid.base.values import dataclass
 
 _BLANKS = str.maketrans("", "", "·⋅*. \u00a0")
 _SPELLINGS = {"°": "deg", "º": "deg", "µ": "u", "μ": "u", "/": "_", "_per_": "_"}
-_PER_TIME = re.compile(r"(?<=[a-z°º])_?(s|min)(?:\^?-1|⁻¹)$", re.IGNORECASE)
-_HYPHEN = re.compile(r"(?<=[^\W\d_])-(?=[^\W\d_])")  # between letters: N-m, oz-in
+_PER_TIME = r"(?i)(?<=[a-z°º])_?(s|min)(?:\^?-1|⁻¹)$"
+_HYPHEN = r"(?<=[^\W\d_])-(?=[^\W\d_])"  # between letters: N-m, oz-in
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -160,7 +160,7 @@ def is_mega(text: str) -> bool:
 
 def _plain(text: str) -> str:
     """Return a unit's name without blanks and dots, `/` as `_`."""
-    name = _HYPHEN.sub("", _PER_TIME.sub(r"_\1", text.strip().translate(_BLANKS)))
+    name = re.sub(_HYPHEN, "", re.sub(_PER_TIME, r"_\1", text.strip().translate(_BLANKS)))
     for spelling, plain in _SPELLINGS.items():
         name = name.replace(spelling, plain)
     return name

@@ -65,18 +65,19 @@ def duration_of(windows: float | None, motions: Sequence[Motion], total: float) 
 
     Of a long recording, `total` seconds, windows may be longer than that: there are enough of them.
     """
-    if isinstance(windows, int) and not isinstance(windows, bool) and windows > 0:
-        windows = total / windows
     if windows is not None:
-        number = isinstance(windows, int | float) and not isinstance(windows, bool)
+        number = isinstance(windows, int | float) and not isinstance(windows, bool) and windows > 0
         shortest = min(4.0 * float(np.median(np.diff(motion.time))) for motion in motions)
-        if not number or not shortest <= windows <= 1e3:
+        most = max(1, int(total / shortest))
+        duration = total / windows if number and isinstance(windows, int) else windows
+        if not number or not shortest <= duration <= total:
             raise InputError(
-                f"a duration in seconds of {shortest:.3g} or more is expected",
+                f"a duration of {shortest:.3g} to {total:.4g} seconds is expected, or how many windows, a whole number "
+                f"of at most {most}",
                 argument="windows",
                 value=windows,
             )
-        return float(windows)
+        return float(duration)
     # The noisiest joint does not decide for the others: longer windows blur their reversals.
     wished = max(float(np.median(motion.wished)) for motion in motions)
     return min(max(wished, total / _ENOUGH), _LONGEST)

@@ -14,11 +14,12 @@ from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.asked import duration_of
 from jointid.robot.balance import Balance, balance_of
 from jointid.robot.choice import certainty, with_static
+from jointid.robot.columns import DIFFERENCE
 from jointid.robot.conclusion import concluded
 from jointid.robot.decays import Decays, solved_with_decays
 from jointid.robot.fit import Fit
 from jointid.robot.inertia import basis_of, inertia_columns
-from jointid.robot.models import AUTO, PLAIN
+from jointid.robot.models import AUTO, PLAIN, asymmetric, name_of
 from jointid.robot.motion import Motion, part_of
 from jointid.robot.products import Products
 from jointid.robot.resampling import RobotDraws
@@ -92,11 +93,6 @@ class Attempt:
     duration: float
     zeros: Zeros | None
     runs: tuple[int, ...]
-
-    def solved_as(self, mode: str, models: Sequence[str]) -> RobotEstimate:
-        """Return the estimate with inertias of another mode."""
-        found, _ = _solved(self.robot, self.balance, mode, self.duration, models, self.runs)
-        return found
 
 
 def attempted(
@@ -176,11 +172,13 @@ def fitted(robot: Robot, balance: Balance, mode: str, models: Sequence[str]) -> 
     models : sequence of str
         One a joint.
     """
+    differs, models = asymmetric(models), [name_of(each) for each in models]
     columns = inertia_columns(robot, mode)
     kept = [
         place
         for place, (joint, name) in enumerate(balance.labels)
-        if name != "rotor_inertia" or joint not in columns.dropped
+        if (name != "rotor_inertia" or joint not in columns.dropped)
+        and (name != DIFFERENCE or differs[joint])
     ]
     wanted = balance.rows.torque - columns.known(balance)
     inertial = columns.columns(balance)

@@ -20,6 +20,7 @@ MEANINGS = {
     "static": "static friction above Coulomb friction",
     "stribeck": "decay of the static friction with the squared speed",
     "viscous": "viscous friction: torque at the joint per speed of the joint, the other joints at rest",
+    "viscous_difference": "half of what viscous friction is more in the positive than in the negative direction",
     "motor_coulomb": "Coulomb friction of the motor, on its own speed",
     "motor_viscous": "viscous friction of the motor, on its own speed",
     "torque_offset": "constant torque",
@@ -27,12 +28,15 @@ MEANINGS = {
     "inertia_scale": "factor on all inertial parameters of the link that the joint moves",
 }
 """Parameters of a joint, in the order of tables."""
+DIFFERENCE = "viscous_difference"
+"""Of joints whose friction differs between the directions; Coulomb friction's half difference is in the offset."""
 _TORQUE, _DAMPING = ("N·m", "N"), ("N·m·s/rad", "N·s/m")
 UNITS = {
     "coulomb": _TORQUE,
     "static": _TORQUE,
     "stribeck": ("s²/rad²", "s²/m²"),
     "viscous": _DAMPING,
+    "viscous_difference": _DAMPING,
     "motor_coulomb": _TORQUE,
     "motor_viscous": _DAMPING,
     "torque_offset": _TORQUE,
@@ -119,9 +123,11 @@ def linear_columns(robot: Robot, motion: Motion, summing: Summing) -> list[Colum
 def _of_joint(joint: int, motion: Motion, summing: Summing) -> list[Column]:
     direction = summing(joint, direction_integrals(motion.velocity[joint], summing.step))
     travel = summing(joint, np.diff(motion.position[joint]))
+    distance = summing(joint, np.abs(np.diff(motion.position[joint])))
     return [
         Column(joint=joint, name="coulomb", values={joint: direction}, least=0.0),
         Column(joint=joint, name="viscous", values={joint: travel}, least=0.0),
+        Column(joint=joint, name=DIFFERENCE, values={joint: distance}),
         Column(joint=joint, name="torque_offset", values={joint: summing(joint, summing.step)}),
     ]
 

@@ -13,11 +13,11 @@ from jointid.identification.inference.covariance import Covariance
 from jointid.problem.window_table import WindowTable
 from jointid.robot.balance import Balance
 from jointid.robot.bodies import possible
-from jointid.robot.columns import MEANINGS, UNITS
+from jointid.robot.columns import DIFFERENCE, MEANINGS, UNITS
 from jointid.robot.findings import findings_of
 from jointid.robot.fit import Fit
 from jointid.robot.inertia import SCALED
-from jointid.robot.models import PLAIN, STRIBECK
+from jointid.robot.models import PLAIN, STRIBECK, modelled
 from jointid.robot.result import RobotEstimate, RobotJoint
 from jointid.robot.robot import Robot
 
@@ -54,7 +54,9 @@ def concluded(
     joints = {
         name: RobotJoint(
             name=name,
-            model=STRIBECK if "static" in of_joints[k] else PLAIN,
+            model=modelled(
+                STRIBECK if "static" in of_joints[k] else PLAIN, DIFFERENCE in of_joints[k]
+            ),
             parameters={key: of_joints[k][key] for key in MEANINGS if key in of_joints[k]},
             residuals=_residuals(k, balance, fit, duration),
             windows=_table(k, balance, fit, runs),
@@ -138,7 +140,7 @@ def _table(joint: int, balance: Balance, fit: Fit, runs: Sequence[int]) -> Windo
     friction = [
         place
         for place, label in enumerate(fit.labels)
-        if label in ((joint, "coulomb"), (joint, "viscous"), (joint, "static"))
+        if label[0] == joint and label[1] in ("coulomb", "viscous", "static", DIFFERENCE)
     ]
     own = fit.jacobian[np.ix_(mine, friction)] @ fit.values[friction]
     residual = fit.residual[mine]

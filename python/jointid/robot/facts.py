@@ -44,7 +44,10 @@ def read_facts(path: Path) -> dict[str, Any]:
     if "zero_offsets_deg" in found:
         if "zero_offsets" in found:
             raise InputError(
-                "it is given twice", argument="zero_offsets", value=path.name, place=path.name
+                "zero_offsets says the same in radians; one of the two is expected",
+                argument="zero_offsets_deg",
+                value=found["zero_offsets_deg"],
+                place=path.name,
             )
         degrees = found.pop("zero_offsets_deg")
         try:

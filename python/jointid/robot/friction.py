@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid.robot.columns import DIFFERENCE
 from jointid.robot.result import RobotEstimate
 
 Array = NDArray[np.float64]
@@ -22,7 +23,10 @@ def friction_of(estimate: RobotEstimate, velocity: Array) -> Array:
     # A joint's viscous coefficient contains what the motors add at its own speed.
     own = viscous - (robot.couplings**2).T @ motor_viscous
     of_motors = motor_coulomb * np.sign(motors) + motor_viscous * motors
-    return np.asarray(dry * np.sign(velocity) + own * velocity + of_motors @ robot.couplings)
+    difference = _values(estimate, DIFFERENCE) * np.abs(velocity)
+    return np.asarray(
+        dry * np.sign(velocity) + own * velocity + difference + of_motors @ robot.couplings
+    )
 
 
 def _values(estimate: RobotEstimate, name: str) -> Array:

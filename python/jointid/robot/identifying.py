@@ -9,10 +9,13 @@ from dataclasses import replace
 from jointid import _core
 from jointid.base.argument_checks import require_kind
 from jointid.base.errors import InputError
+from jointid.joint.checks import check_flag
 from jointid.joint.model import Model
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.aligning import aligned, delays_told
 from jointid.robot.asked import least_speeds, recordings_of
+from jointid.robot.assumed import assumptions_told
+from jointid.robot.asymmetry import asymmetry_told
 from jointid.robot.attempt import Asked
 from jointid.robot.diagnosis import diagnosed
 from jointid.robot.inertia import FREE, MODES
@@ -53,7 +56,10 @@ def identify_robot(
         the combinations that motion shows. Default ``"urdf"``.
     model : Model, str or mapping, optional
         Friction of the joints: "coulomb_viscous", "stribeck", or "auto" (default): each joint has static friction if
-        that predicts its held-out torque better. A mapping from joints' names to models says it for some of them.
+        that predicts its held-out torque better. With ``:asymmetric`` behind it, or as ``Model(asymmetric=True)``,
+        friction differs between the directions: "viscous" is then the mean, and "viscous_difference" half of what is
+        more in the positive direction; half the difference of Coulomb friction is in "torque_offset". A mapping from
+        joints' names to models says it for some of them.
     windows : float or int, optional
         Duration of the windows [s]; a whole number is how many. Default: what the velocities' noise asks for, at most
         0.1 s; of recordings longer than some minutes towards 0.1 s, because there are enough of them.
@@ -97,6 +103,7 @@ def identify_robot(
         raise InputError(
             f"one of {', '.join(MODES)} is expected", argument="inertia", value=inertia
         )
+    check_flag("", "mask_standstill", mask_standstill)
     asked = Asked(
         inertia=inertia,
         models=tuple(friction_models(model, robot)),
@@ -121,10 +128,13 @@ def identify_robot(
         "recordings": [run.name for run in runs],
     }
     findings = (
+        *assumptions_told(runs, given, attempt),
         *delays_told(found),
         *diagnosed(runs, given, asked, attempt),
         *impossible_links(estimate),
     )
+    if all(each.severity == "info" for each in findings):  # else it may follow from what is wrong
+        findings = (*findings, *asymmetry_told(attempt))
     zeros = attempt.zeros
     if zeros is not None and zeros.found:
         findings = (turned_zeros(zeros, robot), *findings)

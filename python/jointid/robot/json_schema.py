@@ -3,7 +3,7 @@
 from jointid.base.schema import Flag, Kind, ListOf, Number, OrNull, Plain, Record, TableOf, Text
 from jointid.estimate.json_schema import FINDING, MATRIX, PARAMETER, RESIDUALS, WINDOWS
 from jointid.robot.inertia import MODES
-from jointid.robot.models import PLAIN, STRIBECK
+from jointid.robot.models import PLAIN, STRIBECK, modelled
 
 _MOST = 1000  # joints
 _ANY = Number(infinite=True, undefined=True)
@@ -12,7 +12,9 @@ _TRIPLE = ListOf(_SIZE, 3, 3)
 
 _JOINT = Record(
     {
-        "model": Text(known=(PLAIN, STRIBECK)),
+        "model": Text(
+            known=tuple(modelled(n, a) for n in (PLAIN, STRIBECK) for a in (False, True))
+        ),
         "parameters": TableOf(PARAMETER),
         "residuals": RESIDUALS,
         "windows": OrNull(WINDOWS),

@@ -36,6 +36,10 @@ class LinkTree:
         In the order of `INERTIAL`.
     gravity : ndarray, shape (3,)
         Acceleration in the base's frame [m/s²].
+    locked : tuple of str
+        Joints that move and are left out; they stand at 0. Not known of a robot that was read from JSON.
+    spans : tuple of float or None
+        How far each joint may move by the URDF's limits [rad or m]; None: not known.
     """
 
     names: tuple[str, ...]
@@ -46,6 +50,8 @@ class LinkTree:
     prismatic: tuple[bool, ...]
     inertias: Array
     gravity: Array
+    locked: tuple[str, ...] = ()
+    spans: tuple[float, ...] | None = None
 
     @property
     def pairs(self) -> tuple[tuple[int, int], ...]:

@@ -1,11 +1,11 @@
-"""The friction model of each joint, as it is asked for."""
+"""The friction model of each joint, as it is asked for: a name, and ``:asymmetric`` where directions differ."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from jointid.base.errors import InputError
-from jointid.joint.model import Model
+from jointid.joint.model import FIELDS, Model
 from jointid.robot.robot import Robot
 
 PLAIN, STRIBECK, AUTO = "coulomb_viscous", "stribeck", "auto"
@@ -26,11 +26,11 @@ def friction_models(model: object, robot: Robot) -> list[str]:
     InputError
         No such joint, or a model that is not known here.
     """
-    if isinstance(model, Mapping) and any(name in robot.names for name in model):
+    if isinstance(model, Mapping) and not (model and set(model) <= set(FIELDS)):
         for name in model:
             if name not in robot.names:
                 raise InputError(
-                    f"the robot has the joints {', '.join(robot.names)}",
+                    f"the robot has no such joint; it has {', '.join(robot.names)}",
                     argument="model",
                     value=name,
                 )
@@ -40,11 +40,26 @@ def friction_models(model: object, robot: Robot) -> list[str]:
 
 def _named(model: object) -> str:
     chosen = Model.of(model)
-    stated = {name for name in chosen.stated() if name != "name"}
+    stated = {name for name in chosen.stated() if name not in ("name", "asymmetric")}
     if chosen.name not in (None, *_NAMES) or stated:
         raise InputError(
-            f"of a whole robot's friction, one of {', '.join(_NAMES)} is identified",
+            f"of a whole robot's friction, one of {', '.join(_NAMES)} is identified, each also as NAME:asymmetric",
             argument="model",
             value=str(chosen),
         )
-    return chosen.name or AUTO
+    return modelled(chosen.name or AUTO, bool(chosen.asymmetric))
+
+
+def modelled(name: str, asymmetric: bool) -> str:
+    """Return a model's text."""
+    return f"{name}:asymmetric" if asymmetric else name
+
+
+def name_of(model: str) -> str:
+    """Return the name in a model's text."""
+    return model.partition(":")[0]
+
+
+def asymmetric(models: Sequence[str]) -> list[bool]:
+    """Return which models' friction differs between the directions."""
+    return [bool(Model.parse(each).asymmetric) for each in models]

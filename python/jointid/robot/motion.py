@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 _UNKNOWNS = 6  # of a joint's balance, for the length of its windows
+_STILL = 8.0  # standard deviations that the velocity of a short standstill reaches, smoothed with the motion beside it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -35,7 +36,8 @@ class Motion:
     motor_position, motor_velocity : ndarray, shape (n, samples)
         Of the motors, divided by their gear ratios, counted from their own zero.
     moving : ndarray of bool, shape (n, samples - 1)
-        Intervals between samples in which a joint moves, and the recording has no gap.
+        Intervals between samples in which a joint moves, and the recording has no gap. Where noise may hide a
+        short standstill, it does not count as moving: friction has any value there.
     motor_moving : ndarray of bool, shape (n, samples - 1)
         The same of the motors.
     wished : ndarray, shape (n,)
@@ -77,14 +79,15 @@ class Motion:
         position, torque, at_motor = _signals(recording, robot)
         found = [_derived(recording, row, robot.names[k]) for k, row in enumerate(position)]
         velocity = np.array([each.velocity for each in found])
-        noise = np.array([float(np.median(each.derived.noise)) for each in found])
+        noise = np.array([each.derived.noise for each in found])
         if at_motor:
             back = np.linalg.inv(coupling)
-            own = (position, velocity)
+            own, own_noise = (position, velocity), noise
             position, velocity = back @ position, back @ velocity
             noise = np.sqrt((back * back) @ (noise * noise))
         else:
             own = (coupling @ position, coupling @ velocity)
+            own_noise = np.sqrt((coupling * coupling) @ (noise * noise))
         if robot.zero_offsets is not None:
             position = position + np.array(robot.zero_offsets)[:, None]
         masked = _Mask(
@@ -98,12 +101,15 @@ class Motion:
         of_motors = of_joints.copy()
         for k in np.flatnonzero(robot.coupled):
             of_motors[k] = masked.moving(masked.core(own[0][k], own[1][k], torque[k], min_speed[k]))
+        if mask_standstill:
+            of_joints &= _fast(velocity, noise)
+            of_motors &= _fast(own[1], own_noise)
         return cls(
             time=recording.time,
             position=position,
             velocity=velocity,
             torque=torque,
-            velocity_noise=noise,
+            velocity_noise=np.median(noise, axis=1),
             motor_position=own[0],
             motor_velocity=own[1],
             moving=of_joints,
@@ -112,6 +118,12 @@ class Motion:
             torque_held=recording.torque_hold == "zoh",
             wished=np.array([masked.wished(each) for each in joints]),
         )
+
+
+def _fast(velocity: Array, noise: Array) -> Flags:
+    """Intervals that are certainly no short standstill, which noise hides; friction has any value there."""
+    fast = np.abs(velocity) >= _STILL * noise
+    return np.asarray(fast[:, 1:] & fast[:, :-1])
 
 
 def part_of(recording: RobotRecording, first: int, end: int) -> RobotRecording:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid import _core
 from jointid.robot.bodies import moments_of, possible
 
 Array = NDArray[np.float64]
@@ -65,8 +66,6 @@ def nearest_possible(
     discs : ndarray, shape (10 n, motors)
         What a unit of inertia of motors adds to the links that cannot be told from these: the URDF's links lack it.
     """
-    from scipy.special import chdtri
-
     start = _as_bodies(urdf)
     search = _Search(
         urdf=start,
@@ -86,7 +85,7 @@ def nearest_possible(
             return PossibleBodies(inertial=exact, distance=0.0, by_chance=True)
     missed = base @ found.ravel() - wanted
     distance = float(np.sqrt(np.maximum(missed @ precision @ missed, 0.0)))
-    limit = float(chdtri(wanted.size, _BY_CHANCE) ** 0.5)
+    limit = _core.chi_square_quantile(_BY_CHANCE, wanted.size) ** 0.5
     return PossibleBodies(inertial=found, distance=distance, by_chance=distance <= limit)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.robot.balance import Balance, balance_of
+from jointid.robot.columns import DIFFERENCE
 from jointid.robot.inertia import URDF, basis_of, inertia_columns
 from jointid.robot.motion import Motion
 from jointid.robot.products import Products
@@ -99,7 +100,7 @@ def looked_at(
     kept = [
         place
         for place, (joint, name) in enumerate(balance.labels)
-        if name != "rotor_inertia" or joint not in columns.dropped
+        if name != DIFFERENCE and (name != "rotor_inertia" or joint not in columns.dropped)
     ]
     wanted = rows.torque - columns.known(balance)
     table = np.column_stack([balance.matrix[:, kept], columns.columns(balance), wanted])

@@ -18,11 +18,11 @@ from jointid.estimate.json import (
 )
 from jointid.estimate.statistics import ResidualStatistics
 from jointid.problem.window_table import WindowTable
-from jointid.robot.columns import MEANINGS
+from jointid.robot.columns import DIFFERENCE, MEANINGS
 from jointid.robot.document import KIND, SCHEMA
 from jointid.robot.json_schema import ROBOT_ESTIMATE
 from jointid.robot.link_tree import LinkTree
-from jointid.robot.models import STRIBECK
+from jointid.robot.models import PLAIN, STRIBECK, modelled
 from jointid.robot.result import RobotEstimate, RobotJoint
 from jointid.robot.robot import Robot
 from jointid.robot.shifts import torque_shift
@@ -170,7 +170,8 @@ def _of_joint(name: str, d: Mapping[str, Any], recordings: int) -> Iterator[tupl
     for pair in _PAIRS:
         if len(held.keys() & set(pair)) == 1:
             yield f"{place}.parameters", f"{' and '.join(pair)} go together"
-    if (d["model"] == STRIBECK) != ("static" in held):
+    has = modelled(STRIBECK if "static" in held else PLAIN, DIFFERENCE in held)
+    if d["model"] != has:
         yield f"{place}.model", "it does not fit the parameters"
     windows = d["windows"]
     if windows is not None:

@@ -49,6 +49,8 @@ def tree_of_urdf(path: Path, joints: Sequence[str] | None, gravity: Sequence[flo
     names = list(model.names)[1:]
     kept = names if joints is None else list(joints)
     for name in kept:
+        if kept.count(name) > 1:
+            raise InputError("each joint is named once", argument="joints", value=name)
         if name not in names:
             shown = ", ".join(names)
             raise InputError(
@@ -70,7 +72,18 @@ def tree_of_urdf(path: Path, joints: Sequence[str] | None, gravity: Sequence[flo
         prismatic=tuple(slides for _, slides in axes),
         inertias=np.array([each.toDynamicParameters() for each in list(model.inertias)[1:]]),
         gravity=np.array(gravity, dtype=np.float64),
+        locked=tuple(name for name in names if name not in kept),
+        spans=tuple(_span(model, name) for name in order),
     )
+
+
+def _span(model: Any, name: str) -> float:
+    """How far a joint may move by the URDF's limits; infinity where it has none."""
+    joint = model.joints[model.getJointId(name)]
+    if joint.nq != 1:
+        return float("inf")
+    low, high = model.lowerPositionLimit[joint.idx_q], model.upperPositionLimit[joint.idx_q]
+    return float(high - low) if high > low else float("inf")
 
 
 def _axis(model: Any, name: str) -> tuple[np.ndarray[Any, np.dtype[np.float64]], bool]:

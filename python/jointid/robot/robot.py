@@ -192,7 +192,7 @@ class Robot:
         """Return the recording's column of each joint.
 
         Joints are found by name; else by number, where the recording numbers them; else in order, where there are as
-        many.
+        many and none has a name of the robot's joints.
 
         Raises
         ------
@@ -209,8 +209,20 @@ class Robot:
                 return [recording.names.index(each) for each in found]
         except InputError:
             pass
-        if len(recording.names) == self.n:
+        known = [name for name in self.names if name in recording.names]
+        if len(recording.names) == self.n and not known:
             return list(range(self.n))
+        if known and len(recording.names) == self.n:
+            lacking = [name for name in self.names if name not in recording.names]
+            other = [name for name in recording.names if name not in self.names]
+            raise InputError(
+                f"the recording has {', '.join(known)}, but not {', '.join(lacking)}; beside these it has "
+                f"{', '.join(other)}",
+                argument="joints",
+                value=list(self.names),
+                place=recording.name,
+                remedy="give the recording's joints the URDF's names, or name the joints that were recorded",
+            )
         raise InputError(
             f"the robot has the joints {', '.join(self.names)}, the recording {', '.join(recording.names)}",
             argument="joints",

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid.base.errors import InputError
-from jointid.recording.shifting import checked_shift
+from jointid.recording.shifting import SHIFTED, checked_shift
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.robot import Robot
 
@@ -40,6 +40,13 @@ def torque_shift(shift: object, robot: Robot) -> Array:
         checked_shift(shift)
     assert isinstance(shift, Mapping)
     for signal in shift:
+        if signal not in SHIFTED:
+            raise InputError(
+                "there is no such signal; of a robot the delay of torque is taken away",
+                argument="shift",
+                value=signal,
+                remedy="pass shift={'torque': seconds}",
+            )
         if signal != "torque":
             raise InputError(
                 "of a robot, the torque's delay against the position is taken away; velocities are always derived from "

@@ -8,6 +8,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid import _core
 from jointid.identification.inference.segments import Segments, usual_length
 from jointid.robot.products import Products, powers, root_of, weighted
 
@@ -16,6 +17,7 @@ Whole = NDArray[np.int64]
 
 _ROUNDS = 6  # of weights and values; they settle within three
 _SETTLED = 1e-4
+_ALIKE = 1e-10  # of the largest singular value: smaller ones are rounding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -102,8 +104,6 @@ def bounded(product: Array, least: Array) -> tuple[Array, NDArray[np.bool_]]:
     least : ndarray, shape (parameters,)
         0 or minus infinity, which no scale changes.
     """
-    from scipy.optimize import lsq_linear
-
     count = least.size
     present = np.flatnonzero(np.diag(product)[:count] > 0.0)
     values, at_bound = np.zeros(count), np.zeros(count, dtype=bool)
@@ -111,15 +111,32 @@ def bounded(product: Array, least: Array) -> tuple[Array, NDArray[np.bool_]]:
         return values, at_bound
     root = root_of(product[np.ix_(np.append(present, count), np.append(present, count))])
     left, right = root[:, :-1], root[:, -1]
-    free = np.linalg.lstsq(left, right, rcond=1e-10)[0]
+    free = np.linalg.lstsq(left, right, rcond=_ALIKE)[0]
     lower = least[present]
     if np.any(free < lower):
-        found = lsq_linear(left, right, bounds=(lower, np.inf), method="bvls")
-        held = found.active_mask < 0
-        at_bound[present] = held
-        free = np.where(held, lower, found.x)
+        free = _above_zero(left, right, lower == 0.0)
+        at_bound[present] = (lower == 0.0) & (free == 0.0)
     values[present] = free
     return values, at_bound
+
+
+def _above_zero(left: Array, right: Array, limited: NDArray[np.bool_]) -> Array:
+    """The least-squares values of which the limited ones are not negative.
+
+    What the others can explain is taken out of the limited columns and the target; the others follow.
+    """
+    others, wanted = left[:, ~limited], left[:, limited]
+    basis, sizes, _ = np.linalg.svd(others, full_matrices=False)
+    basis = basis[:, sizes > _ALIKE * max(sizes, default=0.0)]
+    beside = wanted - basis @ (basis.T @ wanted)
+    # A column that the others explain has no value of its own.
+    length, before = np.linalg.norm(beside, axis=0), np.linalg.norm(wanted, axis=0)
+    beside[:, length <= _ALIKE * before] = 0.0
+    values = np.zeros(left.shape[1])
+    values[limited], _ = _core.non_negative_least_squares(beside, right - basis @ (basis.T @ right))
+    rest = right - wanted @ values[limited]
+    values[~limited] = np.linalg.lstsq(others, rest, rcond=_ALIKE)[0]
+    return values
 
 
 def scatter_of(power: Array, count: Whole) -> Array:

@@ -13,11 +13,13 @@ from typing import Any
 from jointid.base.advice import Action
 from jointid.base.argument_checks import require_path, whole_number
 from jointid.base.errors import InputError
-from jointid.identification.search.search import Search
+from jointid.identification.search.search import Method, Search
 from jointid.joint.joint import Joint
-from jointid.joint.model import Model
+from jointid.joint.model import Model, ModelName
+from jointid.problem.terms import Residual
 from jointid.problem.windows import Windows
 from jointid.recording.recording import Recording
+from jointid.recording.signals import TorqueHold
 from jointid.simulation.scenario import Scenario
 from jointid.study import study_file
 from jointid.study.execution import finished_rows
@@ -82,12 +84,12 @@ def sweep(
     *,
     grid: Mapping[str, Any] | None = None,
     trials: int = 10,
-    model: Model | str | Mapping[str, Any] | None = None,
+    model: Model | ModelName | Mapping[str, Any] | None = None,
     parameters: Mapping[str, Any] | None = None,
-    search: Search | str | None = None,
-    residual: str | None = None,
+    search: Search | Method | None = None,
+    residual: Residual | None = None,
     windows: Windows = None,
-    torque_hold: str | None = None,
+    torque_hold: TorqueHold | None = None,
     mask_standstill: bool = True,
     shift: Mapping[str, float] | None = None,
     min_speed: float | None = None,

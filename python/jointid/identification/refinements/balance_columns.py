@@ -7,13 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid import _core
 from jointid.identification.refinements.smooth_windows import SmoothWindows
 from jointid.problem.own_balance import OwnSignal
 
 Array = NDArray[np.float64]
 
 _LONGEST_DECAY = 0.4  # Stribeck speed, of the peak speed; each next one is half of it
-_DECAYS = 6
 
 
 def conservative(
@@ -40,23 +40,20 @@ def conservative(
 
 def friction(windows: SmoothWindows, circle: tuple[Array, Array]) -> list[Array]:
     """Friction as any smooth function of the speed, that may depend on direction, angle and time."""
-    v = windows.stretch.velocity
-    sign, speed = np.sign(v), np.abs(v)
-    peak = max(float(speed.max()), 1e-300)
-    smooth = v
-    if windows.stretch.derived or windows.half > 6:
-        smooth = np.convolve(v, windows.weight, mode="same")
-    time = np.linspace(-0.5, 0.5, len(v))
-    signals = [sign, v, v * speed, speed]
-    decay = np.exp(-((smooth / (_LONGEST_DECAY * peak)) ** 2))
-    for _ in range(_DECAYS):
-        signals.append(sign * decay)
-        decay = decay * decay
-        decay *= decay  # of half the speed
-    cosine, sine = circle
-    signals += [sign * cosine, sign * sine, v * cosine, v * sine]
-    signals += [sign * time, v * time]
-    return [windows.mean(each) for each in signals]
+    stretch, (cosine, sine) = windows.stretch, circle
+    smooth = stretch.velocity
+    if stretch.derived or windows.half > 6:
+        smooth = np.asarray(_core.smoothed(smooth, windows.weight))
+    means = _core.friction_means(
+        stretch.velocity,
+        smooth,
+        cosine,
+        sine,
+        longest=_LONGEST_DECAY,
+        weight=windows.weight,
+        middles=windows.used,
+    )
+    return list(np.asarray(means).T)
 
 
 def own_columns(
@@ -83,4 +80,5 @@ def own_columns(
 
 def stacked(columns: Sequence[Sequence[Array]]) -> Array:
     """One matrix from the columns of each stretch."""
-    return np.vstack([np.column_stack(list(each)) for each in columns])
+    parts = [np.array(each) for each in columns]
+    return (parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)).T

@@ -12,10 +12,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from jointid import _core
 from jointid.base.values import dataclass
 from jointid.identification.refinements.shift_fit import Shift
 from jointid.identification.refinements.stretches import Piece
-from jointid.recording.order_statistics import median
 
 Array = NDArray[np.float64]
 
@@ -93,35 +93,23 @@ def delay_in_command(pieces: Sequence[Piece]) -> Repeated | None:
     return Repeated(
         shift=shift,
         share=total,
-        reading_size=float(np.mean([_size(p.sensor) for p in pieces if p.sensor is not None])),
-        torque_size=float(np.mean([_size(p.torque) for p in pieces])),
+        reading_size=float(
+            np.mean([_core.roughness(p.sensor) for p in pieces if p.sensor is not None])
+        ),
+        torque_size=float(np.mean([_core.roughness(p.torque) for p in pieces])),
     )
 
 
 def _products(piece: Piece) -> Array:
     """Of each block: means of the reading's differences times the torque's, by how much earlier the torque is."""
     assert piece.sensor is not None
-    reading, torque = _differences(piece.sensor), _differences(piece.torque)
-    count = len(reading)
-    if not (reading.any() and torque.any()):
-        return np.zeros((0, 2 * _LAG + 1))
+    count = len(piece.sensor) - 3
     blocks = max(2, round(_BLOCKS * count / max(count, 6000)))
-    length = (count - 2 * _LAG) // blocks
-    middle = reading[_LAG : _LAG + blocks * length].reshape(blocks, length)
-    means = [
-        np.einsum("ij,ij->i", middle, torque[_LAG - k :][: blocks * length].reshape(blocks, length))
-        for k in range(-_LAG, _LAG + 1)
-    ]
-    return np.asarray(np.column_stack(means) / length)
-
-
-def _size(signal: Array) -> float:
-    return 1.4826 * median(np.abs(np.diff(signal, 3)[::2]))
-
-
-def _differences(signal: Array) -> Array:
-    change, size = np.diff(signal, 3), _size(signal)
-    return np.clip(change / max(size, 1e-300), -_CLIPPED, _CLIPPED) if size > 0.0 else 0.0 * change
+    return np.asarray(
+        _core.noise_products(
+            piece.sensor, piece.torque, blocks=blocks, longest=_LAG, clipped=_CLIPPED
+        )
+    )
 
 
 def _taps() -> Array:

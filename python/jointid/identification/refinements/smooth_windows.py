@@ -13,6 +13,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
+from jointid import _core
 from jointid.base.values import dataclass
 from jointid.recording.order_statistics import median
 
@@ -136,19 +137,7 @@ class SmoothWindows:
         return self._weighted(signal, weight)
 
     def _weighted(self, signal: Array, weight: Array) -> Array:
-        half, stride = len(weight) // 2, self.stride
-        if len(self.middles) == 0:
-            return np.zeros(0)
-        first, last = int(self.middles[0]) - half, int(self.middles[-1]) - half + 1
-        if stride != half + 1:
-            views = sliding_window_view(signal, len(weight))
-            return np.asarray((views[first:last:stride] @ weight)[self.kept])
-        # Windows that overlap by half: each sample is read once, for the two that it is in.
-        blocks = signal[first - 1 : first - 1 + (len(self.middles) + 1) * stride]
-        halves = np.zeros((stride, 2))
-        halves[1:, 0], halves[:, 1] = weight[:half], weight[half:]
-        sums = blocks.reshape(-1, stride) @ halves
-        return np.asarray((sums[:-1, 0] + sums[1:, 1])[self.kept])
+        return np.asarray(_core.window_means(signal, weight, self.used))
 
 
 def half_length(stretch: Stretch, shortest: int = 6) -> int:

@@ -58,7 +58,8 @@ class Piece:
     @cached_property
     def circle(self) -> tuple[Array, Array]:
         """Cosine and sine of the angle."""
-        return np.cos(self.angle), np.sin(self.angle)
+        cosine, sine = _core.circle(self.angle)
+        return np.asarray(cosine), np.asarray(sine)
 
 
 def pieces_of(problem: Problem) -> list[Piece]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
+from typing import Literal, cast, get_args
 
 from jointid import _core
 from jointid.base.argument_checks import require_path, whole_number
@@ -15,7 +16,9 @@ from jointid.joint.checks import check_choice
 Callback = Callable[[_core.Generation], bool | None]
 StatePath = str | os.PathLike[str]
 
-METHODS = ("ga", "separable", "random")
+Method = Literal["ga", "separable", "random"]
+Preset = Literal["default", "thesis", "thesis_code"]
+METHODS: tuple[str, ...] = get_args(Method)
 PRESETS: Mapping[str, Callable[[], _core.GaOptions]] = MappingProxyType(
     {
         "default": _core.GaOptions,
@@ -61,8 +64,8 @@ class Search:
     50
     """
 
-    method: str = "ga"
-    ga: _core.GaOptions | str = "default"
+    method: Method = "ga"
+    ga: _core.GaOptions | Preset = "default"
     seed: int = 0
     threads: int = 0
     callback: Callback | None = None
@@ -94,7 +97,7 @@ class Search:
             raise InputError("a function is expected", argument="callback", value=self.callback)
 
     @classmethod
-    def of(cls, value: object, *, method: str = "ga") -> Search:
+    def of(cls, value: object, *, method: Method = "ga") -> Search:
         """Return a search from a search, a method's name, or None.
 
         Parameters
@@ -113,7 +116,7 @@ class Search:
         if value is None:
             return cls(method)
         if isinstance(value, str):
-            return cls(value)
+            return cls(cast("Method", value))  # checked there
         raise InputError(
             "a Search or the name of a method is expected", argument="search", value=value
         )

@@ -8,12 +8,12 @@ from jointid.base.errors import InputError
 
 _SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
 BLANK = " "  # separates the cells of controllers' logs, one or several of them
-_TOKEN = re.compile(r'"[^"]*"|\S+')
-_UNITS = re.compile(r"[\[(][^\])]*[\])]|\S+")
-_OPEN = re.compile(r"[\[(][^\[\]()]*$")
-_DECIMAL_COMMA = re.compile(r"[+-]?(\d+,\d*|,\d+)(e[+-]?\d+)?", re.IGNORECASE)
+_TOKEN = r'"[^"]*"|\S+'
+_UNITS = r"[\[(][^\])]*[\])]|\S+"
+_OPEN = r"[\[(][^\[\]()]*$"
+_DECIMAL_COMMA = r"(?i)[+-]?(\d+,\d*|,\d+)(e[+-]?\d+)?"
 # 1,234 may mean 1234 or 1.234; 0,25 and 1,5 and 1234,567 are unambiguous.
-_AMBIGUOUS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
+_AMBIGUOUS = r"[+-]?[1-9]\d{0,2},\d{3}"
 
 
 def cells_of(line: str, separator: str) -> list[str]:
@@ -36,10 +36,10 @@ def _between_blanks(line: str) -> list[str]:
     if not any(sign in line for sign in '"[('):
         return line.split()
     if line.lstrip()[:1] in ("[", "("):  # a row of units
-        return _UNITS.findall(line)
+        return re.findall(_UNITS, line)
     cells: list[str] = []
-    for token in _TOKEN.findall(line):
-        if cells and (token[0] in "[(" or _OPEN.search(cells[-1])):
+    for token in re.findall(_TOKEN, line):
+        if cells and (token[0] in "[(" or re.search(_OPEN, cells[-1])):
             cells[-1] += f" {token}"
         else:
             cells.append(token.strip('"'))
@@ -51,7 +51,7 @@ def number_of(cell: str, separator: str = ",") -> float | None:
 
     A decimal comma is accepted unless commas separate the cells.
     """
-    if separator != "," and _DECIMAL_COMMA.fullmatch(cell):
+    if separator != "," and re.fullmatch(_DECIMAL_COMMA, cell):
         cell = cell.replace(",", ".")
     try:
         return float(cell) if cell.isascii() and "_" not in cell else None
@@ -143,7 +143,7 @@ def decimal_comma(columns: Sequence[Sequence[str]]) -> tuple[int, int, str] | No
         if points is None and "." in together:
             points = column, next(k for k, cell in enumerate(cells) if "." in cell)
         unambiguous = unambiguous or any(
-            "," in cell and not _AMBIGUOUS.fullmatch(cell) for cell in cells
+            "," in cell and not re.fullmatch(_AMBIGUOUS, cell) for cell in cells
         )
     if commas is None:
         return None

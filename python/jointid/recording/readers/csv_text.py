@@ -12,7 +12,7 @@ from jointid.recording.unpacking import Room
 _GZIP = b"\x1f\x8b"
 _BOM = b"\xef\xbb\xbf"
 # Characters on which Latin-1 and Windows-1252 agree.
-_LATIN = re.compile(rb"[\x09-\x0d\x20-\x7e\xa0-\xfe]*")
+_LATIN = rb"[\x09-\x0d\x20-\x7e\xa0-\xfe]*"
 
 
 def text_of(path: Path) -> str:
@@ -42,7 +42,7 @@ def _decoded(path: Path, content: bytes) -> str:
     try:
         text = (content[len(_BOM) :] if content.startswith(_BOM) else content).decode("utf-8")
     except UnicodeDecodeError as error:
-        if _LATIN.fullmatch(content):  # older Windows programs write the degree sign like this
+        if re.fullmatch(_LATIN, content):  # older Windows programs write the degree sign like this
             return content.decode("latin-1")
         line = content.count(b"\n", 0, error.start) + 1
         raise InputError(

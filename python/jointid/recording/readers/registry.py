@@ -1,10 +1,11 @@
 """The list of file formats. A new format is one file beside this one, and one line in `MODULES`."""
 
+from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
 
 from jointid.base.error_text import alternatives
-from jointid.base.file_endings import ending_of
+from jointid.base.file_endings import no_ending
 from jointid.recording.readers.reader import Reader
 
 # Each module defines `READER`; messages and help list the endings in this order.
@@ -18,14 +19,17 @@ MODULES = (
     "hdf5_reader",
 )
 
-READERS: tuple[Reader, ...] = tuple(
-    import_module(f"jointid.recording.readers.{module}").READER for module in MODULES
-)
+
+def readers() -> Iterator[Reader]:
+    """Yield the readers in order; the module of each is imported when it comes."""
+    for module in MODULES:
+        reader: Reader = import_module(f"jointid.recording.readers.{module}").READER
+        yield reader
 
 
 def endings() -> tuple[str, ...]:
     """Return the endings of all files that can be read."""
-    return tuple(ending for reader in READERS for ending in reader.endings)
+    return tuple(ending for reader in readers() for ending in reader.endings)
 
 
 def endings_text() -> str:
@@ -43,11 +47,14 @@ def reader_of(path: Path) -> Reader:
     """
     if path.is_dir():
         inside = [each.name.lower() for each in path.iterdir()]
-        for reader in READERS:
+        for reader in readers():
             if reader.folder and _is_whole(inside, reader.folder):
                 return reader
-    ending = ending_of(path, endings())
-    return next(reader for reader in READERS if ending in reader.endings)
+    name = path.name.lower()
+    for reader in readers():
+        if name.endswith(reader.endings):  # no name has the endings of two readers
+            return reader
+    raise no_ending(path, endings())
 
 
 def _is_whole(names: list[str], endings: tuple[str, ...]) -> bool:

@@ -19,12 +19,10 @@ from jointid.recording.units import UNITS
 
 _BLOCK = 80  # lines: no export has more above its rows
 _KEYS = ("Data-Type", "SampleTime[ms]", "SymbolName", "VariableSize", "Starttime of export")
-_TIME = re.compile(
-    r"Time(?: ?[\[(]ms[\])])?"
-)  # newer versions name channels beside it, without keys
+_TIME = r"Time(?: ?[\[(]ms[\])])?"  # newer versions name channels beside it, without keys
 # Where these are not sampled, the others are still a recording.
 _OPTIONAL = ("temperature", "reference")
-_COPY = re.compile(r"(.*\S) \((\d+)\)")
+_COPY = r"(.*\S) \((\d+)\)"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,8 +80,8 @@ class ScopeTable:
             if len(cells) > 1 and all(self._number(cell) is not None for cell in cells[:2]):
                 first = k
                 break
-            if _TIME.fullmatch(cells[0]):
-                cells = ["Name" if _TIME.fullmatch(cell) else cell for cell in cells]
+            if re.fullmatch(_TIME, cells[0]):
+                cells = ["Name" if re.fullmatch(_TIME, cell) else cell for cell in cells]
             if cells[0]:
                 keys[cells[0]] = cells
                 name_line = k if cells[0] == "Name" else name_line
@@ -258,7 +256,7 @@ def _header(keys: Mapping[str, list[str]], channel: int) -> str:
         return cells[channel] if channel < len(cells) else ""
 
     name = entry("Name")
-    copied = _COPY.fullmatch(name)  # the second time a channel is drawn; not a unit
+    copied = re.fullmatch(_COPY, name)  # the second time a channel is drawn; not a unit
     if copied:
         name = f"{copied[1]} copy {copied[2]}"
     unit = entry("Unit").strip("()[] ")

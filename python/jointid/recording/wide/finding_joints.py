@@ -17,11 +17,11 @@ from jointid.recording.wide.words import (
     meaning_of,
 )
 
-_UNIT = re.compile(r"\s*[\[(]\s*[^\[\](){}]*[^\[\](){}\d\s:,][^\[\](){}]*[\])]\s*$")
-_INDEX = re.compile(r"\[(\d+)\]|\((?::,)?(\d+)(?:,:)?\)")
-_SEPARATORS = re.compile(r"[\s_.\-/]+")
-_CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
-_LETTERS_DIGITS = re.compile(r"([^\W\d]+)(\d+)")
+_UNIT = r"\s*[\[(]\s*[^\[\](){}]*[^\[\](){}\d\s:,][^\[\](){}]*[\])]\s*$"
+_INDEX = r"\[(\d+)\]|\((?::,)?(\d+)(?:,:)?\)"
+_SEPARATORS = r"[\s_.\-/]+"
+_CAMEL = r"(?<=[a-z])(?=[A-Z])"
+_LETTERS_DIGITS = r"([^\W\d]+)(\d+)"
 _MARK = "{joint}"
 
 
@@ -82,14 +82,14 @@ def _is_joint(columns: list[JointHeader]) -> bool:
 
 def _without_unit(header: str) -> tuple[str, str]:
     """Return a header in two parts: all but a unit in brackets, and that."""
-    bracketed = _UNIT.search(header)
+    bracketed = re.search(_UNIT, header)
     cut = bracketed.start() if bracketed else len(header)
     return header[:cut], header[cut:]
 
 
 def words_of(header: str) -> tuple[str, ...]:
     """The words of a header without its unit."""
-    name, _, _ = parsed(_CAMEL.sub("_", header) if find_unit(header) is None else header)
+    name, _, _ = parsed(re.sub(_CAMEL, "_", header) if find_unit(header) is None else header)
     return tuple(word for word in name.split("_") if word)
 
 
@@ -101,7 +101,7 @@ def _column(index: int, joint: str, shown: str, pattern: str) -> JointHeader:
 def _indexed(index: int, header: str) -> JointHeader | None:
     """``q[2]``, ``states.position[2] [rad]``, ``position(:,2)``."""
     stem, unit = _without_unit(header)
-    found = list(_INDEX.finditer(stem))
+    found = list(re.finditer(_INDEX, stem))
     if len(found) != 1:
         return None
     (place,) = found
@@ -111,7 +111,7 @@ def _indexed(index: int, header: str) -> JointHeader | None:
     shown = f"{stem[: place.start()]}{stem[place.end() :]}"
     # What stands before the last point or slash is where the signal comes from; it may be a command, or no signal.
     *path, last = re.split(r"[./]", shown)
-    source = {word.casefold() for part in path for word in _split(_CAMEL.sub("_", part))}
+    source = {word.casefold() for part in path for word in _split(re.sub(_CAMEL, "_", part))}
     column = _column(index, number, "_".join([*sorted(source & COMMAND), f"{last}{unit}"]), pattern)
     return replace(column, meaning=None) if source & COMPUTED else column
 
@@ -155,18 +155,18 @@ def _numbered(index: int, header: str) -> JointHeader | None:
 
 
 def _split(text: str) -> list[str]:
-    return [word for word in _SEPARATORS.split(text) if word]
+    return [word for word in re.split(_SEPARATORS, text) if word]
 
 
 def _is_number_word(stem: str, place: re.Match[str]) -> bool:
     """Whether digits are a word, or the end of one that a joint's number may follow."""
-    if place.end() < len(stem) and not _SEPARATORS.match(stem, place.end()):
+    if place.end() < len(stem) and not re.match(_SEPARATORS, stem[place.end() :]):
         return False
     before = stem[: place.start()]
-    if not before or _SEPARATORS.search(before[-1]):
+    if not before or re.search(_SEPARATORS, before[-1]):
         return True
     word = re.split(r"[\W\d_]+", before)[-1]
-    return bool({word.casefold(), _CAMEL.split(word)[-1].casefold()} & NUMBERED)
+    return bool({word.casefold(), re.split(_CAMEL, word)[-1].casefold()} & NUMBERED)
 
 
 def _named(index: int, header: str) -> JointHeader | None:

@@ -8,8 +8,8 @@ from jointid.base.errors import InputError
 from jointid.recording.signals import closest
 from jointid.recording.wide.words import CARRIERS
 
-_DIGITS = re.compile(r"(\d+)")
-_BETWEEN = re.compile(r"[\W\d_]+")
+_DIGITS = r"(\d+)"
+_BETWEEN = r"[\W\d_]+"
 
 
 def joint_named(
@@ -72,7 +72,7 @@ def joint_named(
 
 def _numbered_alike(joints: Sequence[str]) -> dict[int, str]:
     """Return the names by their number where the same text stands around it in all; empty otherwise."""
-    parts = [_DIGITS.split(name) for name in joints]
+    parts = [re.split(_DIGITS, name) for name in joints]
     if len({len(each) for each in parts}) != 1:
         return {}
     if len(joints) > 1:
@@ -101,4 +101,4 @@ def _near(text: str, joints: Sequence[str]) -> str:
 
 
 def _words(name: str) -> list[str]:
-    return _BETWEEN.sub(" ", name).casefold().split()
+    return re.sub(_BETWEEN, " ", name).casefold().split()

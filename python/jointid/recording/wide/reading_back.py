@@ -1,6 +1,8 @@
 """Reading back what `RobotRecording.save` wrote."""
 
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -8,8 +10,9 @@ from jointid.base.errors import InputError
 from jointid.recording.extra import PREFIX as EXTRA
 from jointid.recording.signals import KINDS, header_unit
 from jointid.recording.table import Table
-from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.recording.wide.robot_signals import ROBOT_SIGNALS
+
+if TYPE_CHECKING:
+    from jointid.recording.wide.robot_recording import RobotRecording
 
 
 def saved_robot(table: Table) -> RobotRecording | None:
@@ -24,6 +27,9 @@ def saved_robot(table: Table) -> RobotRecording | None:
     robot = None if saved is None else saved.get("robot")
     if saved is None or robot is None:
         return None
+    from jointid.recording.wide.robot_recording import RobotRecording
+    from jointid.recording.wide.robot_signals import ROBOT_SIGNALS
+
     try:
         names, signals, extra = robot["names"], robot["signals"], robot["extra"]
         fields = {key: robot[key] for key in ("side", "gear_ratio")}

@@ -16,7 +16,7 @@ ROBOT_SIGNALS = (
     *("sensor", "reference", "link_position", "temperature"),
 )
 _MOST = 10_000  # joints: more are samples and joints exchanged
-_IN_HEADERS = re.compile(r"[^,;\"'\[\](){}\t\r\n]+")
+_IN_HEADERS = r"[^,;\"'\[\](){}\t\r\n]+"
 
 
 def joint_arrays(
@@ -117,7 +117,7 @@ def checked_names(names: Sequence[str] | None, joints: int) -> tuple[str, ...]:
             f"one name for each of the {joints} joints is expected", argument="names", value=names
         )
     for name in names:
-        if not isinstance(name, str) or not _IN_HEADERS.fullmatch(name) or name != name.strip():
+        if not isinstance(name, str) or not re.fullmatch(_IN_HEADERS, name) or name != name.strip():
             raise InputError(
                 "a text without brackets, commas or quotes is expected",
                 argument="names",

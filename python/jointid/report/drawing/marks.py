@@ -3,30 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from jointid.base.values import dataclass
 from jointid.report.drawing.palette import LOOKS
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
 class Mark:
     """One thing that is drawn.
 
     Attributes
     ----------
     look : str
-        One of the palette's: "measured", "fitted", "second", "third", "fourth", "fifth".
+        One of the palette's: "measured", "fitted", "second", "third", "fourth", "fifth". Default "fitted".
     label : str
         For the legend. Default: none.
     """
 
-    look: str = "fitted"
-    label: str = ""
+    __slots__ = ()
+    look: str
+    label: str
 
     def __post_init__(self) -> None:
         if self.look not in LOOKS:
@@ -51,6 +51,8 @@ class Line(Mark):
     across: ArrayLike
     up: ArrayLike
     dashed: bool = False
+    look: str = "fitted"
+    label: str = ""
 
     def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
         """What the two axes must have room for."""
@@ -68,6 +70,8 @@ class Points(Mark):
 
     across: ArrayLike
     up: ArrayLike
+    look: str = "fitted"
+    label: str = ""
 
     def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
         """What the two axes must have room for."""
@@ -86,6 +90,8 @@ class Band(Mark):
     across: ArrayLike
     low: ArrayLike
     high: ArrayLike
+    look: str = "fitted"
+    label: str = ""
 
     def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
         """What the two axes must have room for."""
@@ -105,6 +111,8 @@ class Bars(Mark):
 
     edges: ArrayLike
     up: ArrayLike
+    look: str = "fitted"
+    label: str = ""
 
     def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
         """What the two axes must have room for."""
@@ -121,6 +129,8 @@ class Level(Mark):
     """
 
     up: float
+    look: str = "fitted"
+    label: str = ""
 
     def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
         """What the two axes must have room for."""
@@ -151,6 +161,7 @@ class Panel:
 
 def numbers(values: ArrayLike) -> Array:
     """Return values as an array of numbers, masked ones as gaps."""
-    if isinstance(values, np.ma.MaskedArray):
+    # Only what has a mask is worth the import of numpy.ma.
+    if hasattr(values, "mask") and isinstance(values, np.ma.MaskedArray):
         return np.ma.filled(values.astype(np.float64), np.nan)
     return np.asarray(values, dtype=np.float64)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from jointid.base.values import dataclass
 from jointid.report.drawing.ticks import Ticks, linear_ticks, logarithmic_ticks
 
 Array = NDArray[np.float64]

@@ -1,0 +1,115 @@
+"""What is assumed of recordings and robot where nobody said it, and where that is not plausible."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.recording.wide.robot_recording import RobotRecording
+from jointid.robot.attempt import Attempt
+from jointid.robot.robot import Robot
+
+_FAR = 2.0  # times the URDF's range: no joint moves so far
+_MOVES = 0.01  # [rad or m]
+_DEGREES = 180.0 / np.pi
+_NEAR = 0.1  # of a logarithm: so near to degrees, a ratio is that of degrees
+
+
+def assumptions_told(
+    recordings: Sequence[RobotRecording], robot: Robot, attempt: Attempt
+) -> Iterator[Finding]:
+    """Findings of what was assumed: joints in order, joints that stand, no gravity, and the positions' unit.
+
+    Parameters
+    ----------
+    recordings : sequence of RobotRecording
+    robot : Robot
+        As given.
+    attempt : Attempt
+    """
+    for run in recordings:
+        columns = robot.columns_of(run)
+        taken = [run.names[column] for column in columns]
+        if columns == list(range(robot.n)) and not set(taken) & set(robot.names):
+            pairs = zip(robot.names, taken, strict=True)
+            yield Finding(
+                code="joints_in_order",
+                severity="info",
+                cause="the recording does not name the URDF's joints; they are taken in order: "
+                + ", ".join(f"{name} is {each}" for name, each in pairs),
+            )
+            break
+    yield from _locked(recordings, robot)
+    if not np.any(robot.tree.gravity):
+        yield Finding(
+            code="no_gravity",
+            severity="info",
+            cause="no gravity acts on this robot, as it was given",
+        )
+    yield from _units(recordings, robot, attempt)
+
+
+def _locked(recordings: Sequence[RobotRecording], robot: Robot) -> Iterator[Finding]:
+    """Joints of the URDF that were left out and move."""
+    for name in robot.tree.locked:
+        spans = [
+            float(np.ptp(run.position[:, run.names.index(name)]))
+            for run in recordings
+            if name in run.names
+        ]
+        if spans and max(spans) > _MOVES:
+            yield Finding(
+                code="locked_joint_moves",
+                evidence={"range": Measured(max(spans))},
+                cause=f"{name} moves by {max(spans):.3g} in the recording and is left out of the robot's joints, "
+                "which has it stand at 0",
+                advice=(Action("inspect", text=f"joints, which lack {name}"),),
+            )
+
+
+def _units(
+    recordings: Sequence[RobotRecording], robot: Robot, attempt: Attempt
+) -> Iterator[Finding]:
+    looks = list(attempt.looks.values())
+    spans = robot.tree.spans or (np.inf,) * robot.n
+    for joint, name in enumerate(robot.names):
+        if robot.tree.prismatic[joint]:
+            continue
+        moved = max(float(np.ptp(look.position[joint])) for look in looks)
+        ratio = _of_velocity(recordings, robot, joint)
+        far = moved > _FAR * spans[joint]
+        apart = ratio is not None and abs(abs(np.log(ratio)) - np.log(_DEGREES)) < _NEAR
+        if not far and not apart:
+            continue
+        signal = "velocity" if apart and ratio is not None and ratio > 1.0 else "position"
+        reasons = []
+        if far:
+            reasons.append(
+                f"{name} moves by {moved:.3g} rad, and by the URDF at most by {spans[joint]:.3g}"
+            )
+        if apart:
+            assert ratio is not None
+            reasons.append(f"its recorded velocity is {ratio:.3g} times that of its position")
+        yield Finding(
+            code="implausible_unit",
+            evidence={"range": Measured(moved, "rad")},
+            cause=f"{name}'s {signal} is probably in degrees and was taken for radians: "
+            + ", and ".join(reasons),
+            advice=(Action("inspect", text=f"the unit of the {signal} of {name}"),),
+        )
+
+
+def _of_velocity(recordings: Sequence[RobotRecording], robot: Robot, joint: int) -> float | None:
+    """The recorded velocity in terms of the position's; None where there is none."""
+    run = recordings[0]
+    if run.velocity is None:
+        return None
+    column = robot.columns_of(run)[joint]
+    recorded = float(np.median(np.abs(run.velocity[:, column])))
+    every = max(1, run.samples // 200)  # far apart, against the positions' noise
+    time, position = run.time[::every], run.position[::every, column]
+    derived = float(np.median(np.abs(np.diff(position) / np.diff(time))))
+    return recorded / derived if recorded > 0.0 and derived > 0.0 else None

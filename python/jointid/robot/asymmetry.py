@@ -1,0 +1,48 @@
+"""Friction that differs between the directions, where the model of a joint has none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from jointid.base.advice import Action
+from jointid.estimate.findings import Finding, Measured
+from jointid.robot.attempt import Attempt
+from jointid.robot.columns import DIFFERENCE
+from jointid.robot.looked_rows import LookedRows
+from jointid.robot.models import AUTO, modelled
+
+_SURE = 6.0  # standard errors
+_BETTER = 3.0  # standard errors by which held-out stretches fit better
+_LARGE = 0.03  # of the viscous friction
+_EXPLAINED = 0.1  # of the squared residual
+
+
+def asymmetry_told(attempt: Attempt) -> Iterator[Finding]:
+    """Findings of joints whose viscous friction clearly differs between the directions."""
+    rows = LookedRows(attempt.balance, attempt.fit, attempt.looks)
+    for joint, (name, found) in enumerate(attempt.estimate.joints.items()):
+        if DIFFERENCE in found.parameters:
+            continue
+        place = attempt.balance.labels.index((joint, DIFFERENCE))
+        share = rows.share(attempt.balance.matrix[rows.kept, place, None])
+        mine = rows.joint == joint
+        left = float(rows.residual[mine] @ rows.residual[mine]) or 1.0
+        explained = share.share * float(rows.residual @ rows.residual) / left
+        value, error = float(share.values[0]), float(share.errors[0])
+        viscous, unit = found.parameters["viscous"].value, found.parameters["viscous"].unit
+        large = abs(value) > max(_SURE * error, _LARGE * viscous)
+        if not (np.isfinite(error) and large):
+            continue
+        if share.certainty > _BETTER and explained > _EXPLAINED:
+            yield Finding(
+                code="asymmetric_friction",
+                evidence={"difference": Measured(value, unit), "explained": Measured(explained)},
+                cause=f"the viscous friction of {name} differs between the directions by "
+                f"{2.0 * abs(value):.3g} ± {2.0 * error:.2g} {unit}; that explains "
+                f"{100.0 * explained:.2g} % of its squared residual in stretches of motion that it was not taken from",
+                advice=(
+                    Action("call", {"model": modelled(AUTO, True)}, function="identify_robot"),
+                ),
+            )

@@ -1,0 +1,109 @@
+"""The page of a session is about the session: how it followed, limits, timing, stops, what is next."""
+
+import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from drawn_pictures import Picture
+
+from jointid.commissioning import Commissioning, commission
+from jointid.hardware.bench.bench import Bench
+from jointid.report.limit_margins import margin_rows
+from jointid.report.session_page import next_step, save_session_report, session_report
+
+EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
+
+
+@pytest.fixture(scope="module")
+def ring() -> Commissioning:
+    return commission(Bench.load(EXAMPLE), cycles=1, emulate=True, seed=1)
+
+
+def pictures(page: str) -> list[Picture]:
+    return [Picture(f"{part.split('</svg>')[0]}</svg>") for part in _svg(page)]
+
+
+def _svg(page: str) -> list[str]:
+    return [f"<svg {part}" for part in page.split("<svg ")[1:]]
+
+
+def test_the_errors_of_the_runs_are_drawn(ring: Commissioning) -> None:
+    page = session_report(ring)
+    tracking = pictures(page)[0]
+    first, last = ring.runs
+    for number, run in enumerate((first, last)):
+        recording = run.recording
+        assert recording.reference is not None
+        error = 1e3 * (recording.position - recording.reference)
+        # The upper panel's numbers, of the axis that both runs share.
+        heights = np.concatenate(tracking.points("line", number))[:, 1]
+        upper = [
+            (float(text.attrib["y"]) - 45.0, float((text.text or "").replace("−", "-")))
+            for text in tracking.root.iter("text")
+            if text.attrib.get("class") == "up"
+        ][: _ticks(tracking)]
+        places, values = zip(*upper, strict=True)
+        slope, offset = np.polyfit(places, values, 1)
+        assert slope * heights.min() + offset == pytest.approx(error.max(), abs=0.02)
+        assert slope * heights.max() + offset == pytest.approx(error.min(), abs=0.02)
+    assert f"initial, rms {1e3 * first.tracking_error:.3g} mrad" in tracking.texts
+    assert any(text.startswith("true parameters, rms") for text in tracking.texts)
+
+
+def _ticks(picture: Picture) -> int:
+    """How many numbers stand at the first panel's axis: they come before the second title."""
+    titles = [
+        n for n, each in enumerate(picture.root) if (each.text or "") == "tracking error [mrad]"
+    ]
+    inside = list(picture.root)[titles[0] : titles[1]]
+    return sum(each.attrib.get("class") == "up" for each in inside)
+
+
+def test_the_page_says_what_a_session_is_asked(ring: Commissioning) -> None:
+    page = session_report(ring)
+    assert "An emulated joint on an emulated drive: no hardware moved." in page
+    assert f"The tracking error fell by a factor of {ring.improvement:.1f}" in page
+    for name in ("tracking", "limits", "timing", "drive", "identified", "friction-map"):
+        assert f'id="{name}"' in page
+    assert "No run was stopped by a limit." in page
+    assert "The drive confirmed that the motor is off." in page
+    assert "195911405" in page
+    assert "http" not in page
+    assert "<img" not in page
+    body = page[page.index("<body>") : page.index("</body>") + 7]
+    ElementTree.fromstring(body.replace("<br>", "<br/>"))  # every element is closed
+
+
+def test_margins_are_shares_of_the_limits(ring: Commissioning) -> None:
+    recording = ring.runs[0].recording
+    rows = {row[0]: row[1:] for row in margin_rows([recording])[1:]}
+    assert set(rows) == {"position", "velocity", "torque", "torque rate", "tracking error"}
+    assert recording.velocity is not None
+    peak = float(np.abs(recording.velocity).max())
+    assert rows["velocity"] == [f"{peak:.4g} rad/s", "4 rad/s", f"{25.0 * peak:.0f} %"]
+    low, high = float(recording.position.min()), float(recording.position.max())
+    assert rows["position"][2] == f"{100.0 * max(-low, high) / 1.4:.0f} %"
+
+
+def test_the_next_step_follows_from_the_outcome(ring: Commissioning) -> None:
+    (found,) = ring.estimates[-1].warnings
+    assert next_step(ring, lambda action: f"<{action.kind}>") == [
+        f"Next: <{found.advice[0].kind}> (finding {found.code})."
+    ]
+    assert f"Next: {found.advice[0]}" in session_report(ring)
+    plain = replace(ring.estimates[-1], findings=())
+    (said,) = next_step(replace(ring, estimates=(plain,)))
+    assert said == "Next: save these values to the joint file; no finding speaks against it."
+    worse = replace(ring, runs=ring.runs[::-1])
+    assert "do not use these values" in next_step(worse)[0]
+    only = replace(ring, runs=ring.runs[:1], estimates=())
+    assert "identify the joint" in next_step(only)[0]
+    assert 'id="timing"' in session_report(only)
+    assert 'id="identified"' not in session_report(only)
+
+
+def test_it_is_written_whole(ring: Commissioning, tmp_path: Path) -> None:
+    path = save_session_report(ring, tmp_path / "session.html")
+    assert path.read_text(encoding="utf-8") == session_report(ring)

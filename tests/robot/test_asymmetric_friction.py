@@ -1,0 +1,89 @@
+"""Friction that differs between the directions, of one joint of an arm."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from small_arm import VISCOUS, recording, urdf
+
+import jointid as jid
+
+pytest.importorskip("pinocchio")
+DIFFERENCE, OFFSET = 0.3, 0.2  # of the elbow, half of what is more in the positive direction
+
+
+@pytest.fixture(name="path", scope="module")
+def _path(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return urdf(tmp_path_factory.mktemp("asymmetric"))
+
+
+@pytest.fixture(name="run", scope="module")
+def _run(path: Path) -> jid.RobotRecording:
+    run = recording(path)
+    assert run.torque is not None
+    torque = run.torque.copy()
+    torque[:, 1] += OFFSET + DIFFERENCE * np.abs(np.gradient(run.position[:, 1], run.time))
+    return jid.RobotRecording(
+        time=run.time, position=run.position, torque=torque, names=list(run.names)
+    )
+
+
+@pytest.fixture(name="found", scope="module")
+def _found(path: Path, run: jid.RobotRecording) -> jid.RobotEstimate:
+    model = {"elbow": jid.Model("coulomb_viscous", asymmetric=True)}
+    return jid.identify_robot(run, jid.Robot.from_urdf(path), model=model)
+
+
+@pytest.mark.parametrize("inertia", ["urdf", "free"])
+def test_it_comes_back(path: Path, run: jid.RobotRecording, inertia: str) -> None:
+    found = jid.identify_robot(
+        run, jid.Robot.from_urdf(path), inertia=inertia, model={"elbow": "auto:asymmetric"}
+    )
+    elbow = found.joints["elbow"].parameters
+    assert elbow["viscous_difference"].value == pytest.approx(DIFFERENCE, rel=0.05)
+    assert elbow["viscous"].value == pytest.approx(VISCOUS[1], rel=0.03)
+    assert elbow["torque_offset"].value == pytest.approx(OFFSET, rel=0.1)
+    assert "viscous_difference" not in found.joints["shoulder"].parameters
+    assert found.joints["elbow"].model == "coulomb_viscous:asymmetric"
+    assert found.warnings == ()
+
+
+def test_it_is_named_where_the_model_lacks_it(path: Path, run: jid.RobotRecording) -> None:
+    found = jid.identify_robot(run, jid.Robot.from_urdf(path))
+    (told,) = found.warnings
+    assert told.code == "asymmetric_friction"
+    assert "elbow" in told.cause
+    (advice,) = told.advice
+    again = jid.identify_robot(run, jid.Robot.from_urdf(path), **advice.arguments)
+    assert again.joints["elbow"].parameters["viscous_difference"].value == pytest.approx(
+        DIFFERENCE, rel=0.05
+    )
+    plain = jid.identify_robot(recording(path), jid.Robot.from_urdf(path))
+    assert plain.warnings == ()
+
+
+def test_it_is_saved_predicted_and_drawn(
+    found: jid.RobotEstimate, run: jid.RobotRecording, tmp_path: Path
+) -> None:
+    again = jid.RobotEstimate.load(found.save(tmp_path / "arm.json"))
+    assert again.to_json() == found.to_json()
+    ahead, back = again.friction([[0.0, 1.0], [0.0, -1.0]])[:, 1]
+    assert ahead + back == pytest.approx(2.0 * DIFFERENCE, rel=0.05)
+    assert again.predict(run).relative_residual < 0.01
+    assert "viscous_difference" in found.report()
+    assert found.bootstrap(20).parameters["elbow.viscous_difference"].interval is not None
+
+
+def test_a_urdf_has_no_place_for_it(path: Path, found: jid.RobotEstimate, tmp_path: Path) -> None:
+    target = tmp_path / "arm.urdf"
+    with pytest.raises(jid.InputError, match="elbow has friction that differs"):
+        jid.export(found, target, into=path)
+    jid.export(found, target, into=path, approximate=True)
+    assert "not in this file: friction that differs" in target.read_text(encoding="utf-8")
+
+
+def test_what_a_robots_joint_has_not_is_refused(path: Path, run: jid.RobotRecording) -> None:
+    with pytest.raises(jid.InputError, match="NAME:asymmetric"):
+        jid.identify_robot(run, jid.Robot.from_urdf(path), model={"elbow": "stribeck:ripple=2"})
