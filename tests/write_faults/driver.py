@@ -20,7 +20,7 @@ from jointid.hardware.session.recorder import COLUMNS, Recorder
 from jointid.study.row import Row
 from jointid.study.study_file import StudyFile
 
-Acknowledge = Callable[[], None]
+Acknowledge = Callable[[], object]
 _POWER = 99  # exit code of a process whose power failed
 _TIME = np.arange(20) * 1e-3
 _OLD = jid.Recording(time=_TIME, position=np.sin(_TIME), torque=np.cos(_TIME))
@@ -46,7 +46,9 @@ _ROWS = [
 
 def _whole(
     name: str, first: Callable[[Path], object], second: Callable[[Path], object]
-) -> tuple[Callable[[Path], None], Callable[[Path, Acknowledge], None], Callable[[Path, int], str]]:
+) -> tuple[
+    Callable[[Path], object], Callable[[Path, Acknowledge], None], Callable[[Path, int], str]
+]:
     """A file that is replaced: it is the old one or the new one, and the new one when that was said."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / name
@@ -65,7 +67,7 @@ def _whole(
             return "torn"
         return "lost" if known and found != contents[1] else ""
 
-    return lambda folder: (folder / name).write_bytes(contents[0]) and None, save, judged
+    return lambda folder: (folder / name).write_bytes(contents[0]), save, judged
 
 
 def _nothing(_: Path) -> None:
@@ -142,7 +144,7 @@ def _faulted(name: str, call: int, number: int, library: ctypes.CDLL) -> tuple[i
             library.arm(os.fsencode(folder), ctypes.c_long(call), number)
             said = "0"
             try:
-                act(folder, lambda: os.write(writing, b"+") and None)
+                act(folder, lambda: os.write(writing, b"+"))
             except (OSError, jid.InputError) as error:
                 said = "1" if "\n" not in str(error) and str(error) else "2"
             except BaseException:
