@@ -28,7 +28,7 @@ def once(contest: Contest, windows: int | None) -> dict[str, float]:
     marks = [time.perf_counter()]
     prepared = prepare(contest.recording, contest.joint, windows=windows)
     marks.append(time.perf_counter())
-    engine = Engine.of(prepared.penalty, prepared.domain, 0, "ga")
+    engine = Engine.of(prepared.penalty, prepared.domain, 0)
     marks.append(time.perf_counter())
     low, high = prepared.domain.lower, prepared.domain.upper
     found = _core.minimise_genetic(engine.form, low, high, options=options, seed=0)

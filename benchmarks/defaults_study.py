@@ -38,7 +38,7 @@ def reached(
     penalty: _core.Penalty, domain: SearchDomain, options: _core.GaOptions, seeds: int
 ) -> tuple[int, int]:
     """Seeds that reach the optimum with the whole polish, and alone."""
-    engine = Engine.of(penalty, domain, 0, "ga")
+    engine = Engine.of(penalty, domain, 0)
     low, high = domain.lower, domain.upper
     best = _core.minimise_separable(engine.form, low, high).best
     best_penalty = _core.polish(penalty, low, high, best).penalty

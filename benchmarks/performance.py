@@ -10,6 +10,7 @@ from pathlib import Path
 from string import Template
 
 from anatomy import BEHIND, STEPS
+from peers.table import all_peers
 from rounds import FAILED, FEW
 from store import Store
 from summary import OURS, RatioClaim, Verdict, claims, floors, ratio_claims, rows
@@ -67,6 +68,7 @@ def contest_table(store: Store, order: list[str]) -> str:
     """A line a peer."""
     found = rows(store, order)
     ours = next(row.seconds for row in found if row.key == OURS)
+    given = {peer.key: peer.given for peer in all_peers()}
     lines = []
     for row in found:
         sign = "> " if row.bound else ""
@@ -75,6 +77,7 @@ def contest_table(store: Store, order: list[str]) -> str:
             [
                 row.name,
                 row.form,
+                given[row.key],
                 sign + seconds(row.seconds),
                 "—" if row.bound else spread,
                 f"{sign}{row.seconds / ours:.3g}",
@@ -84,7 +87,16 @@ def contest_table(store: Store, order: list[str]) -> str:
                 seconds(row.candidate) if row.evaluations else "—",
             ]
         )
-    header = ["search", "penalty", "median time", "range", "times our search", "reached", "P/P*"]
+    header = [
+        "search",
+        "penalty",
+        "given",
+        "median time",
+        "range",
+        "times our search",
+        "reached",
+        "P/P*",
+    ]
     return table([*header, "candidates", "time a candidate"], lines)
 
 
@@ -166,6 +178,28 @@ def anatomy_table(store: Store) -> str:
     return table(header, [*lines, whole])
 
 
+def projection_table(store: Store) -> str:
+    """A line a problem: CPU time from the ready penalty to the end of the search."""
+    lines = []
+    for r in store.of("projection"):
+        quickest = min(r["genetic"], r["separable"])
+        lines.append(
+            [
+                r["name"],
+                f"{r['samples']:,}",
+                seconds(r["genetic"]),
+                seconds(r["separable"]),
+                seconds(r["numpy"]),
+                seconds(r["compiled"]),
+                f"{r['numpy'] / quickest:.2f}",
+                VERDICTS[r["numpy"] >= quickest],
+            ]
+        )
+    header = ["problem", "samples", "our search, default", "our search, separable"]
+    header += ["variable projection, NumPy", "with our compiled column", "NumPy / our quicker one"]
+    return table([*header, "not slower"], lines)
+
+
 def missed(store: Store, order: list[str]) -> str:
     """A line a missed ratio; empty when none is."""
     lines = []
@@ -221,6 +255,7 @@ def write(store: Store, order: list[str], limit: float, path: Path) -> None:
         ),
         ratios=ratios(store, order),
         missed=missed(store, order),
+        projection=projection_table(store),
         anatomy=anatomy_table(store),
         behind=f"{BEHIND:g}",
         contest=contest_table(store, order),

@@ -16,6 +16,7 @@ import charts
 import interruption
 import literal_code
 import performance
+import projections
 import scaling
 from peers.contest import make_contest
 from peers.table import all_peers
@@ -41,6 +42,9 @@ def main(*, budget: float, quick: bool, output: Path) -> None:
     run_contest(all_peers(), contest, store, seeds=seeds, seconds=seconds, limit=limit)
     if not store.of("candidate"):
         for record in candidates.measure(contest):
+            store.append(record)
+    if not store.of("projection"):
+        for record in projections.measure():
             store.append(record)
     if not store.of("literal"):
         store.append(literal_code.measure(contest.recording, WORK, 2 if quick else 7))

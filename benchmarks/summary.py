@@ -110,30 +110,48 @@ def ratio_claims(found: list[Row]) -> list[RatioClaim]:
     ours, whole = by_key[OURS].seconds, by_key[OURS_WHOLE].seconds
 
     def is_evolution(row: Row) -> bool:
-        return not row.name.startswith(("jointid", "pycma", "pygmo cmaes")) and (
-            "least_squares" not in row.name
+        others = ("jointid", "pycma", "pygmo cmaes", "variable projection")
+        return not row.name.startswith(others) and not any(
+            word in row.name for word in ("least_squares", "eliminated")
         )
 
     groups: list[tuple[str, float, Callable[[Row], bool]]] = [
         (
             "DEAP, pymoo and pygmo's SGA, NumPy penalty",
             500.0,
-            lambda r: r.form == "NumPy" and r.name.startswith(("DEAP", "pymoo", "pygmo sga")),
+            lambda r: (
+                r.form == "NumPy"
+                and r.name.startswith(("DEAP", "pymoo", "pygmo sga"))
+                and "eliminated" not in r.name
+            ),
         ),
         (
             "SciPy differential evolution, NumPy penalty",
             300.0,
-            lambda r: r.form == "NumPy" and "differential_evolution" in r.name,
+            lambda r: (
+                r.form == "NumPy"
+                and "differential_evolution" in r.name
+                and "eliminated" not in r.name
+            ),
         ),
         (
             "CMA-ES, NumPy penalty",
             40.0,
-            lambda r: r.form == "NumPy" and r.name.startswith(("pygmo cmaes", "pycma")),
+            lambda r: (
+                r.form == "NumPy"
+                and r.name.startswith(("pygmo cmaes", "pycma"))
+                and "eliminated" not in r.name
+            ),
         ),
         (
             "genetic algorithms and DE, compiled penalty",
             20.0,
             lambda r: r.form == "compiled" and is_evolution(r),
+        ),
+        (
+            "variable projection, NumPy columns",
+            1.0,
+            lambda r: r.form == "NumPy" and r.name.startswith("variable projection"),
         ),
         (
             "SciPy least squares from a good start, NumPy residual",

@@ -39,6 +39,7 @@ class Contest:
     joint: jid.Joint
     direct: _core.Penalty
     numpy: NumpyPenalty
+    usable: NDArray[np.bool_]
     full_lower: Array
     full_upper: Array
     best: Array
@@ -58,6 +59,13 @@ class Contest:
     def target(self) -> float:
         """What counts as found."""
         return self.best_penalty * (1.0 + CLOSE)
+
+    def sums(
+        self,
+    ) -> tuple[list[jid.Recording], list[NDArray[np.bool_]], NDArray[np.int64], list[int]]:
+        """What `numpy_decay` takes."""
+        windows = self.direct.windows
+        return [self.recording], [self.usable], windows, [0] * len(windows)
 
     def full(self, free: Array) -> Array:
         """With the fixed inertia in front."""
@@ -90,6 +98,7 @@ def make_contest(recording: jid.Recording | None = None) -> Contest:
         joint=joint,
         direct=direct,
         numpy=numpy,
+        usable=usable,
         full_lower=domain.lower,
         full_upper=domain.upper,
         best=best[1:],
@@ -151,6 +160,11 @@ class Objective:
                 raise Reached
         if time.perf_counter() > self._ends:
             raise Expired
+
+    def settled(self, value: float) -> float:
+        """The value of a candidate that a peer has evaluated by itself."""
+        self._settle(value, 1)
+        return value
 
     def __call__(self, free: Array) -> float:
         """Penalty of one candidate."""

@@ -104,10 +104,18 @@ def peers() -> list[Peer]:
         "jointid search, `thesis_code()` 200 × 1500": search(code),
         "jointid search, separable": separable,
     }
+
+    def given(name: str) -> str:
+        if "identify" in name:
+            return "recording"
+        if "thesis" in name:
+            return "values"
+        return "columns" if "separable" in name else "values; the polish: columns"
+
     return [
         *(
-            Peer(name=name, form="compressed", solve=solve, whole=True)
+            Peer(name=name, form="compressed", solve=solve, given=given(name), whole=True)
             for name, solve in rows.items()
         ),
-        Peer(name=POLISH, form="compiled", solve=polish, whole=True),
+        Peer(name=POLISH, form="compiled", solve=polish, given="residuals, Jacobian", whole=True),
     ]

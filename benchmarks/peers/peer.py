@@ -25,6 +25,8 @@ class Peer:
     solve : callable
         Takes an objective and a seed, and searches until the objective ends it. A search that ends by
         itself is started again with another seed until the limit.
+    given : str
+        What it makes use of.
     whole : bool
         Runs to its own end; it returns the penalty it found, in `objective.best`.
     """
@@ -32,6 +34,7 @@ class Peer:
     name: str
     form: str
     solve: Solve
+    given: str = "values"
     whole: bool = False
 
     @property

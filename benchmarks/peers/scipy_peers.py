@@ -67,8 +67,14 @@ def peers() -> list[Peer]:
         "SciPy least_squares, random starts": multi_start,
         "SciPy least_squares, start within 20 %": good_start,
     }
+
+    def given(name: str, form: str) -> str:
+        if "least_squares" not in name:
+            return "values"
+        return "residuals" if form == "NumPy" else "residuals, Jacobian"
+
     return [
-        Peer(name=name, form=form, solve=solve)
+        Peer(name=name, form=form, solve=solve, given=given(name, form))
         for name, solve in rows.items()
         for form in ("NumPy", "compiled")
     ]

@@ -6,6 +6,7 @@ from peers import (
     cma_peers,
     deap_peers,
     ours,
+    projection_peers,
     pygad_peers,
     pygmo_peers,
     pymoo_peers,
@@ -16,5 +17,14 @@ from peers.peer import Peer
 
 def all_peers() -> list[Peer]:
     """Ours first."""
-    rooms = (ours, scipy_peers, pygmo_peers, pymoo_peers, deap_peers, pygad_peers, cma_peers)
+    rooms = (
+        ours,
+        projection_peers,
+        scipy_peers,
+        pygmo_peers,
+        pymoo_peers,
+        deap_peers,
+        pygad_peers,
+        cma_peers,
+    )
     return [peer for room in rooms for peer in room.peers()]

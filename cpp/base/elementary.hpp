@@ -18,15 +18,33 @@ inline constexpr double kRound = 6755399441055744.0;
 inline constexpr double kLog2High = 0x1.62e42feep-1;  // 33 bits: k * high is exact for |k| < 2^20
 inline constexpr double kLog2Low = 0x1.a39ef35793c76p-33;  // ln 2 - high
 
-}  // namespace detail
+/// What the templates below ask of a type of values beside its arithmetic: their bits as integers,
+/// and one of two values by a mask. For pairs see lanes.hpp.
+template <class Value>
+struct Form;
+template <>
+struct Form<double> {
+  using Bits = std::uint64_t;
+  static Bits bits(double x) { return std::bit_cast<Bits>(x); }
+  static double value(Bits bits) { return std::bit_cast<double>(bits); }
+  static double choose(bool mask, double yes, double no) { return mask ? yes : no; }
+};
 
-/// e^x; 0 below -708 (no denormals), infinity above 709.78, NaN stays NaN.
-inline double exp(double x) {
-  const double clamped = x < -708.0 ? -708.0 : (x > 709.78 ? 709.78 : x);
-  const double shifted = clamped * 0x1.71547652b82fep+0 + detail::kRound;
-  const double k = shifted - detail::kRound;
-  const double r = (clamped - k * detail::kLog2High) - k * detail::kLog2Low;  // |r| <= ln2 / 2
-  double p = 1.0 / 6227020800.0;
+template <class Value>
+inline Value filled(double x) {
+  return Value{} + x;
+}
+
+template <class Value>
+[[gnu::always_inline]] inline Value exp(Value x) {
+  using F = Form<Value>;
+  const Value low = filled<Value>(-708.0);
+  const Value high = filled<Value>(709.78);
+  const Value clamped = F::choose(x < low, low, F::choose(x > high, high, x));
+  const Value shifted = clamped * 0x1.71547652b82fep+0 + kRound;
+  const Value k = shifted - kRound;
+  const Value r = (clamped - k * kLog2High) - k * kLog2Low;  // |r| <= ln2 / 2
+  Value p = filled<Value>(1.0 / 6227020800.0);
   p = p * r + 1.0 / 479001600.0;
   p = p * r + 1.0 / 39916800.0;
   p = p * r + 1.0 / 3628800.0;
@@ -38,20 +56,25 @@ inline double exp(double x) {
   p = p * r + 1.0 / 24.0;
   p = p * r + 1.0 / 6.0;
   p = p * r + 0.5;
-  const double series = 1.0 + (r + r * r * p);
+  const Value series = 1.0 + (r + r * r * p);
   // 2^k in two factors: k = 1024 overflows a single one.
-  const auto bits = std::bit_cast<std::uint64_t>(shifted);
-  const double scale = std::bit_cast<double>((bits + 1022U) << 52U);
-  const double result = series * scale * 2.0;
-  const double low = x < -708.0 ? 0.0 : result;
-  const double high = x > 709.78 ? std::numeric_limits<double>::infinity() : low;
-  return x == x ? high : x;
+  const Value scale = F::value((F::bits(shifted) + 1022U) << 52U);
+  const Value result = series * scale * 2.0;
+  const Value infinite = filled<Value>(std::numeric_limits<double>::infinity());
+  const Value kept = F::choose(x > high, infinite, F::choose(x < low, Value{}, result));
+  return F::choose(x == x, kept, x);
 }
 
-/// e^-y for y >= 0, within 4 ulp: for sums over many samples, where exp's last bit drowns. Ten
-/// terms, economised from the Chebyshev series over the reduced range, and no special cases.
-inline double exp_decay(double y) {
-  const double x = y < 600.0 ? -y : -600.0;
+}  // namespace detail
+
+/// e^x; 0 below -708 (no denormals), infinity above 709.78, NaN stays NaN.
+inline double exp(double x) {
+  return detail::exp(x);
+}
+
+/// e^x for -600 <= x <= 600, within 4 ulp: for sums over many samples, where exp's last bit drowns.
+/// Ten terms, economised from the Chebyshev series over the reduced range, and no special cases.
+inline double exp_short(double x) {
   const double shifted = x * 0x1.71547652b82fep+0 + detail::kRound;
   const double k = shifted - detail::kRound;
   const double r = (x - k * detail::kLog2High) - k * detail::kLog2Low;
@@ -68,6 +91,11 @@ inline double exp_decay(double y) {
   p = p * r + 1.0;
   const auto bits = std::bit_cast<std::uint64_t>(shifted);
   return p * std::bit_cast<double>((bits + 1023U) << 52U);
+}
+
+/// e^-y for y >= 0, by exp_short.
+inline double exp_decay(double y) {
+  return exp_short(y < 600.0 ? -y : -600.0);
 }
 
 /// Natural logarithm of a positive, finite, normal number: branch-free, for loops.
@@ -110,26 +138,29 @@ inline double log(double x) {
 
 namespace detail {
 
+template <class Value>
 struct Reduced {
-  double r;     // |r| <= pi / 4
-  double tail;  // what r lost in rounding
-  std::uint64_t quadrant;
+  Value r;     // |r| <= pi / 4
+  Value tail;  // what r lost in rounding
+  typename Form<Value>::Bits quadrant;
 };
 
 /// x - k pi/2 for |x| < 2^20 pi/2 (three-part pi/2; 33 bits each, so that k * part is exact).
-inline Reduced reduce(double x) {
-  const double shifted = x * 0x1.45f306dc9c883p-1 + kRound;
-  const double k = shifted - kRound;
-  const double a = x - k * 0x1.921fb544p+0;
-  const double b = k * 0x1.0b4611a6p-34;
-  const double r = a - b;
-  const double tail = ((a - r) - b) - k * 0x1.3198a2e037073p-69;
-  return {r + tail, (r - (r + tail)) + tail, std::bit_cast<std::uint64_t>(shifted)};
+template <class Value>
+inline Reduced<Value> reduce(Value x) {
+  const Value shifted = x * 0x1.45f306dc9c883p-1 + kRound;
+  const Value k = shifted - kRound;
+  const Value a = x - k * 0x1.921fb544p+0;
+  const Value b = k * 0x1.0b4611a6p-34;
+  const Value r = a - b;
+  const Value tail = ((a - r) - b) - k * 0x1.3198a2e037073p-69;
+  return {r + tail, (r - (r + tail)) + tail, Form<Value>::bits(shifted)};
 }
 
-inline double sin_series(double r, double tail) {
-  const double z = r * r;
-  double p = -1.0 / 121645100408832000.0;
+template <class Value>
+inline Value sin_series(Value r, Value tail) {
+  const Value z = r * r;
+  Value p = filled<Value>(-1.0 / 121645100408832000.0);
   p = p * z + 1.0 / 355687428096000.0;
   p = p * z - 1.0 / 1307674368000.0;
   p = p * z + 1.0 / 6227020800.0;
@@ -141,9 +172,10 @@ inline double sin_series(double r, double tail) {
   return r + (r * z * p + tail * (1.0 - 0.5 * z));
 }
 
-inline double cos_series(double r, double tail) {
-  const double z = r * r;
-  double p = 1.0 / 2432902008176640000.0;
+template <class Value>
+inline Value cos_series(Value r, Value tail) {
+  const Value z = r * r;
+  Value p = filled<Value>(1.0 / 2432902008176640000.0);
   p = p * z - 1.0 / 6402373705728000.0;
   p = p * z + 1.0 / 20922789888000.0;
   p = p * z - 1.0 / 87178291200.0;
@@ -152,8 +184,8 @@ inline double cos_series(double r, double tail) {
   p = p * z + 1.0 / 40320.0;
   p = p * z - 1.0 / 720.0;
   p = p * z + 1.0 / 24.0;
-  const double half = 0.5 * z;
-  const double lead = 1.0 - half;
+  const Value half = 0.5 * z;
+  const Value lead = 1.0 - half;
   return lead + (((1.0 - lead) - half) + (z * z * p - r * tail));
 }
 

@@ -187,83 +187,28 @@ Lanes<P> each_lane(const Lanes<P>& x, Function function) {
 #ifdef JOINTID_PAIRS
 namespace detail {
 
-// The functions of base/elementary.hpp, operation by operation: the same bits, two at a time.
 using Bits = unsigned long long __attribute__((vector_size(16)));
 
-[[gnu::always_inline]] inline Pair exp(Pair x) {
-  const Pair low = both(-708.0);
-  const Pair high = both(709.78);
-  const Pair clamped = pick(x < low, low, pick(x > high, high, x));
-  const Pair shifted = clamped * 0x1.71547652b82fep+0 + kRound;
-  const Pair k = shifted - kRound;
-  const Pair r = (clamped - k * kLog2High) - k * kLog2Low;
-  Pair p = both(1.0 / 6227020800.0);
-  p = p * r + 1.0 / 479001600.0;
-  p = p * r + 1.0 / 39916800.0;
-  p = p * r + 1.0 / 3628800.0;
-  p = p * r + 1.0 / 362880.0;
-  p = p * r + 1.0 / 40320.0;
-  p = p * r + 1.0 / 5040.0;
-  p = p * r + 1.0 / 720.0;
-  p = p * r + 1.0 / 120.0;
-  p = p * r + 1.0 / 24.0;
-  p = p * r + 1.0 / 6.0;
-  p = p * r + 0.5;
-  const Pair series = 1.0 + (r + r * r * p);
-  const auto scale = (Pair)(((Bits)shifted + 1022ULL) << 52ULL);
-  const Pair result = series * scale * 2.0;
-  const Pair kept = pick(x > high, both(std::numeric_limits<double>::infinity()),
-                         pick(x < low, both(0.0), result));
-  return pick(x == x, kept, x);
-}
-
-inline Pair sin_series(Pair r, Pair tail) {
-  const Pair z = r * r;
-  Pair p = both(-1.0 / 121645100408832000.0);
-  p = p * z + 1.0 / 355687428096000.0;
-  p = p * z - 1.0 / 1307674368000.0;
-  p = p * z + 1.0 / 6227020800.0;
-  p = p * z - 1.0 / 39916800.0;
-  p = p * z + 1.0 / 362880.0;
-  p = p * z - 1.0 / 5040.0;
-  p = p * z + 1.0 / 120.0;
-  p = p * z - 1.0 / 6.0;
-  return r + (r * z * p + tail * (1.0 - 0.5 * z));
-}
-
-inline Pair cos_series(Pair r, Pair tail) {
-  const Pair z = r * r;
-  Pair p = both(1.0 / 2432902008176640000.0);
-  p = p * z - 1.0 / 6402373705728000.0;
-  p = p * z + 1.0 / 20922789888000.0;
-  p = p * z - 1.0 / 87178291200.0;
-  p = p * z + 1.0 / 479001600.0;
-  p = p * z - 1.0 / 3628800.0;
-  p = p * z + 1.0 / 40320.0;
-  p = p * z - 1.0 / 720.0;
-  p = p * z + 1.0 / 24.0;
-  const Pair half = 0.5 * z;
-  const Pair lead = 1.0 - half;
-  return lead + (((1.0 - lead) - half) + (z * z * p - r * tail));
-}
+// The series of base/elementary.hpp two at a time: the same operations, the same bits.
+template <>
+struct Form<Pair> {
+  using Bits = detail::Bits;
+  static Bits bits(Pair x) { return (Bits)x; }
+  static Pair value(Bits bits) { return (Pair)bits; }
+  static Pair choose(PairMask mask, Pair yes, Pair no) { return pick(mask, yes, no); }
+};
 
 /// sin (0) or cos (1) of |x| < 1.6e6, by how many quarter turns it is ahead of the sine.
 inline Pair sine(Pair x, unsigned long long ahead) {
-  const Pair shifted = x * 0x1.45f306dc9c883p-1 + kRound;
-  const Pair k = shifted - kRound;
-  const Pair a = x - k * 0x1.921fb544p+0;
-  const Pair b = k * 0x1.0b4611a6p-34;
-  const Pair r = a - b;
-  const Pair lost = ((a - r) - b) - k * 0x1.3198a2e037073p-69;
-  const Pair near = r + lost;
-  const Pair tail = (r - near) + lost;
-  const Bits quadrant = (Bits)shifted + ahead;
+  const auto reduced = reduce(x);
+  const Bits quadrant = reduced.quadrant + ahead;
   const Bits odd = quadrant & 1ULL;
   Pair value;
   if (odd[0] == odd[1]) {  // most often: one series serves both
-    value = odd[0] != 0 ? cos_series(near, tail) : sin_series(near, tail);
+    value = odd[0] != 0 ? cos_series(reduced.r, reduced.tail) : sin_series(reduced.r, reduced.tail);
   } else {
-    value = pick(odd != 0ULL, cos_series(near, tail), sin_series(near, tail));
+    value =
+        pick(odd != 0ULL, cos_series(reduced.r, reduced.tail), sin_series(reduced.r, reduced.tail));
   }
   return (Pair)((Bits)value ^ (((quadrant >> 1ULL) & 1ULL) << 63ULL));
 }

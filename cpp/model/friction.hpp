@@ -5,6 +5,8 @@
 // parameters. A basis owns value, slope and unit; a new one is a case in each function here, and a
 // row in identify/balance/terms.cpp.
 
+#include <limits>
+
 #include "base/elementary.hpp"
 
 namespace jointid::model {
@@ -36,6 +38,32 @@ inline BasisUnit basis_unit(SpeedBasis basis) {
   return {"N·m", "N"};
 }
 
+/// Below the logarithm of any speed.
+inline constexpr double kRest = -1e5;
+
+/// log |v|; for a joint at rest a number so low that any power of the speed is 0.
+inline double log_speed(double speed) {
+  constexpr double least = std::numeric_limits<double>::min();
+  const double rest = speed >= least ? 0.0 : -1e6;  // added, since a choice would be a branch
+  return base::log_normal(speed >= least ? speed : least) + rest;
+}
+
+/// exp(-|v/v_s|^d) and its derivatives, without a branch: loops over it vectorise.
+struct GeneralDecay {
+  double value;
+  double by_velocity;
+  double by_exponent;
+};
+/// `scaled`: log(|v| / v_s).
+inline GeneralDecay general_decay(double scaled, double velocity, double exponent) {
+  const double wanted = exponent * scaled;
+  const double lowest = wanted > -600.0 ? wanted : -600.0;
+  const double power = base::exp_short(lowest < 7.0 ? lowest : 7.0);  // e^-1096 is 0 anyway
+  const double value = base::exp_decay(power);
+  const double slope = value * power;
+  return {value, slope * exponent / velocity, -slope * scaled};
+}
+
 /// h(|v|) for one speed; `shapes` holds as many values as the basis has.
 inline double basis_value(SpeedBasis basis, double speed, const double* shapes) {
   switch (basis) {
@@ -46,7 +74,7 @@ inline double basis_value(SpeedBasis basis, double speed, const double* shapes) 
     case SpeedBasis::stribeck:
       return base::exp(-shapes[0] * speed * speed);
     case SpeedBasis::stribeck_general:
-      return base::exp(-base::pow(speed / shapes[0], shapes[1]));
+      return general_decay(log_speed(speed) - base::log(shapes[0]), shapes[0], shapes[1]).value;
   }
   return 0.0;
 }
@@ -60,11 +88,9 @@ inline double basis_slope(SpeedBasis basis, double speed, const double* shapes, 
     case SpeedBasis::stribeck:
       return -speed * speed * base::exp(-shapes[0] * speed * speed);
     case SpeedBasis::stribeck_general: {
-      if (speed == 0.0) return 0.0;
-      const double ratio = speed / shapes[0];
-      const double power = base::pow(ratio, shapes[1]);
-      const double value = base::exp(-power);
-      return which == 0 ? value * power * shapes[1] / shapes[0] : -value * power * base::log(ratio);
+      const double scaled = log_speed(speed) - base::log(shapes[0]);
+      const auto decay = general_decay(scaled, shapes[0], shapes[1]);
+      return which == 0 ? decay.by_velocity : decay.by_exponent;
     }
   }
   return 0.0;

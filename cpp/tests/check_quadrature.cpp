@@ -59,9 +59,12 @@ const identify::Term kStatic = identify::find_term("static");
 /// A column and its derivative by the only shape.
 void decayed_column(const FrictionNodes& nodes, double shape, const base::Cancel* cancel,
                     Eigen::VectorXd& column, Eigen::VectorXd* change) {
-  identify::integrate_friction(kStatic, nodes, &shape, identify::kValue, cancel, column);
+  identify::integrate_friction(kStatic, nodes, &shape, cancel, column);
   if (change != nullptr) {
-    identify::integrate_friction(kStatic, nodes, &shape, 0, cancel, *change);
+    Eigen::MatrixXd both(column.size(), 2);
+    identify::integrate_slopes(kStatic, nodes, &shape, cancel, both);
+    CHECK(both.col(0) == column);
+    *change = both.col(1);
   }
 }
 
@@ -241,8 +244,8 @@ CHECK_CASE("quadrature: directions apart add up to both") {
     const auto column = [&](const std::string& key) {
       const auto term = identify::find_term(key);
       Eigen::VectorXd result(1);
-      identify::integrate_friction(term, identify::nodes_of(term.direction, nodes), &shape,
-                                   identify::kValue, nullptr, result);
+      identify::integrate_friction(term, identify::nodes_of(term.direction, nodes), &shape, nullptr,
+                                   result);
       return result[0];
     };
     CHECK(column(name + "_positive") > 0.0);

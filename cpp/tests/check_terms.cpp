@@ -1,5 +1,7 @@
 // Terms: bases and their derivatives, keys and names.
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
@@ -31,6 +33,37 @@ CHECK_CASE("terms: the general decay's derivatives are its differences") {
   const double shape = 100.0;  // 1 / 0.1^2: exponent 2 is (4-1)
   CHECK_CLOSE(model::basis_value(SpeedBasis::stribeck_general, 0.07, gaussian),
               model::basis_value(SpeedBasis::stribeck, 0.07, &shape), 1e-15);
+}
+
+CHECK_CASE("terms: the general decay and its derivatives are those of long double") {
+  for (const double d : {0.1, 0.5, 1.0, 1.37, 2.0, 4.0, 8.0}) {
+    for (double ratio = 1e-9; ratio < 60.0; ratio *= 1.21) {
+      const double velocity = 0.037;
+      const double speed = velocity * ratio;
+      const long double logarithm = std::log(static_cast<long double>(speed) / velocity);
+      const long double power = std::exp(d * logarithm);
+      const long double value = std::exp(-power);
+      const double shapes[] = {velocity, d};
+      const auto slope = [&](int which) {
+        return model::basis_slope(SpeedBasis::stribeck_general, speed, shapes, which);
+      };
+      // Of 1, which the samples at rest have.
+      CHECK_CLOSE(model::basis_value(SpeedBasis::stribeck_general, speed, shapes),
+                  static_cast<double>(value), 2e-15 * std::max(1.0, 0.5 * d));
+      CHECK_CLOSE(slope(0), static_cast<double>(value * power * d / velocity),
+                  1e-14 * std::max(1.0, d) * d / velocity);
+      CHECK_CLOSE(slope(1), static_cast<double>(-value * power * logarithm), 4e-14);
+    }
+  }
+  const double shapes[] = {0.037, 0.5};
+  for (const double speed : {0.0, 1e-320}) {
+    CHECK(model::basis_value(SpeedBasis::stribeck_general, speed, shapes) == 1.0);
+    CHECK_CLOSE(model::basis_slope(SpeedBasis::stribeck_general, speed, shapes, 0), 0.0, 1e-200);
+    CHECK_CLOSE(model::basis_slope(SpeedBasis::stribeck_general, speed, shapes, 1), 0.0, 1e-200);
+  }
+  const double sudden[] = {1e-6, 4.0};  // the power is beyond all numbers
+  CHECK_CLOSE(model::basis_value(SpeedBasis::stribeck_general, 1e6, sudden), 0.0, 1e-200);
+  CHECK_CLOSE(model::basis_slope(SpeedBasis::stribeck_general, 1e6, sudden, 1), 0.0, 1e-200);
 }
 
 // The rows below are read from the table, so that a new row is checked without a line here.

@@ -12,8 +12,6 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr std::size_t kBlock = 2048;  // nodes: two buffers stay in the first-level cache
-
 /// Whether every interval of a window is usable.
 bool whole(const std::vector<std::uint8_t>& usable, const Window& window) {
   std::uint8_t all = 1;
@@ -118,6 +116,7 @@ bool steady(const Term& term, const RecordingView& r, const std::vector<std::uin
 
 void FrictionNodes::clear() {
   speed.clear();
+  logarithm.clear();
   weight.clear();
   first.assign(1, 0);
 }
@@ -166,7 +165,7 @@ void integrate(const Term& term, double gear_ratio, const RecordingView& r,
     if (term.basis == model::SpeedBasis::one && steady(term, r, usable, part, rows)) continue;
     nodes.clear();
     append_nodes(r, usable, part, nodes);
-    integrate_friction(term, nodes_of(term.direction, nodes), nullptr, kValue, nullptr, rows);
+    integrate_friction(term, nodes_of(term.direction, nodes), nullptr, nullptr, rows);
   }
 }
 
@@ -238,78 +237,6 @@ void append_nodes(const RecordingView& r, const std::vector<std::uint8_t>& usabl
   }
 }
 
-namespace {
-
-JOINTID_CLONES void stribeck_values(double shape, const double* speed, const double* weight,
-                                    std::size_t count, double* value) {
-  for (std::size_t i = 0; i < count; ++i) {
-    value[i] = weight[i] * model::basis_value(model::SpeedBasis::stribeck, speed[i], &shape);
-  }
-}
-
-JOINTID_CLONES void stribeck_slopes(double shape, const double* speed, const double* weight,
-                                    std::size_t count, double* value) {
-  for (std::size_t i = 0; i < count; ++i) {
-    value[i] = weight[i] * model::basis_slope(model::SpeedBasis::stribeck, speed[i], &shape, 0);
-  }
-}
-
-/// Sums a block's weighted values window by window; `fill` gives them.
-template <class Fill>
-void sum_nodes(const FrictionNodes& nodes, const base::Cancel* cancel,
-               Eigen::Ref<Eigen::VectorXd> column, Fill fill) {
-  std::array<double, kBlock> value;
-  const std::size_t windows = nodes.first.size() - 1;
-  const std::size_t total = nodes.speed.size();
-  std::size_t w = 0;
-  double sum = 0.0;
-  const auto finish = [&](std::size_t reached) {
-    while (w < windows && nodes.first[w + 1] <= reached) {
-      column[static_cast<Eigen::Index>(w)] = sum;
-      sum = 0.0;
-      ++w;
-    }
-  };
-  finish(0);  // windows without a node
-  for (std::size_t begin = 0; begin < total; begin += kBlock) {
-    if (cancel != nullptr) cancel->check();
-    const std::size_t count = std::min(kBlock, total - begin);
-    const double* speed = nodes.speed.data() + begin;
-    const double* weight = nodes.weight.data() + begin;
-    fill(speed, weight, count, value.data());
-    std::size_t i = 0;
-    while (i < count) {
-      const std::size_t stop = std::min(count, nodes.first[w + 1] - begin);
-      for (std::size_t j = i; j < stop; ++j) sum += value[j];
-      i = stop;
-      finish(begin + i);
-    }
-  }
-}
-
-}  // namespace
-
-void integrate_friction(const Term& term, const FrictionNodes& nodes, const double* shapes,
-                        int which, const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) {
-  if (term.basis == model::SpeedBasis::stribeck) {  // spelt out: these loops must vectorise
-    const auto values = which == kValue ? stribeck_values : stribeck_slopes;
-    sum_nodes(nodes, cancel, column,
-              [&](const double* speed, const double* weight, std::size_t count, double* value) {
-                values(shapes[0], speed, weight, count, value);
-              });
-    return;
-  }
-  sum_nodes(nodes, cancel, column,
-            [&](const double* speed, const double* weight, std::size_t count, double* value) {
-              for (std::size_t i = 0; i < count; ++i) {
-                value[i] =
-                    weight[i] * (which == kValue
-                                     ? model::basis_value(term.basis, speed[i], shapes)
-                                     : model::basis_slope(term.basis, speed[i], shapes, which));
-              }
-            });
-}
-
 FrictionNodes nodes_of(model::Direction direction, const FrictionNodes& nodes) {
   if (direction == model::Direction::both) return nodes;
   const double wanted = direction == model::Direction::positive ? 1.0 : -1.0;
@@ -319,6 +246,7 @@ FrictionNodes nodes_of(model::Direction direction, const FrictionNodes& nodes) {
       if (nodes.weight[i] * wanted <= 0.0) continue;
       result.speed.push_back(nodes.speed[i]);
       result.weight.push_back(nodes.weight[i]);
+      if (!nodes.logarithm.empty()) result.logarithm.push_back(nodes.logarithm[i]);
     }
     result.first.push_back(result.speed.size());
   }

@@ -17,12 +17,14 @@ namespace jointid::identify {
 
 /// Nodes of all windows in a row: integral over window w of sgn v h(|v|) = sum of weight[i]
 /// h(speed[i]), first[w] <= i < first[w+1]. Samples in unusable intervals have no node; memory is
-/// two doubles a sample.
+/// two doubles a sample, three with the logarithms that the general decay needs.
 struct FrictionNodes {
   std::vector<double> speed;
+  std::vector<double> logarithm;  ///< model::log_speed of each, or empty
   std::vector<double> weight;
   std::vector<std::size_t> first{0};
   void clear();
+  void take_logarithms();
 };
 
 /// Appends the nodes of a recording's windows.
@@ -44,12 +46,13 @@ void integrate_torque(const RecordingView& recording, const std::vector<std::uin
 void sum_torque_steps(const RecordingView& recording, const std::vector<std::uint8_t>& usable,
                       std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result);
 
-/// What integrate_friction fills: the column of a friction term, or its derivative by a shape.
-constexpr int kValue = -1;
-
-/// The friction column of a term for given shapes (`which` = kValue), or its derivative by shape
-/// number `which`. `cancel` is read once a block of nodes; it may be null.
+/// The friction column of a term for given shapes. `cancel` is read once a block of nodes; it may
+/// be null.
 void integrate_friction(const Term& term, const FrictionNodes& nodes, const double* shapes,
-                        int which, const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column);
+                        const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column);
+
+/// The same of a term with shapes, and behind it its derivative by each: windows x (1 + shapes).
+void integrate_slopes(const Term& term, const FrictionNodes& nodes, const double* shapes,
+                      const base::Cancel* cancel, Eigen::Ref<Eigen::MatrixXd> columns);
 
 }  // namespace jointid::identify

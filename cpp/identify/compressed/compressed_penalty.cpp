@@ -25,7 +25,8 @@ constexpr std::size_t kLanes = ShapeTable::kLanes;
 /// What the inner loop needs, as plain numbers.
 struct View {
   const ShapeTable* table;
-  const double* triangle;  ///< padded rows, column by column; the target last
+  const GeneralTable* general;  ///< in its place, if any
+  const double* triangle;       ///< padded rows, column by column; the target last
   std::size_t rows;
   std::size_t padded;
   const Eigen::Index* constant;
@@ -52,7 +53,11 @@ inline double penalty_of(const View& v, const double* theta) {
   if (v.shapeds > 0) {
     std::array<double, 2> shapes{};
     for (std::size_t i = 0; i < v.shapes; ++i) shapes[i] = theta[v.coefficients + v.order[i]];
-    v.table->values(shapes.data(), functions.data());
+    if (v.general != nullptr) {
+      v.general->values(shapes.data(), functions.data());
+    } else {
+      v.table->values(shapes.data(), functions.data());
+    }
     const double* product = functions.data() + v.shapeds * v.rows;
     for (std::size_t j = 0; j < v.shapeds; ++j) {
       const double s = theta[v.shaped[j]];
@@ -149,6 +154,10 @@ void CompressedPenalty::build(const Penalty& penalty, const search::Domain& doma
     assemble(std::nullopt, digest_all(penalty, {}, pool));
     return;
   }
+  if (decay_of(penalty.shaped().front().term) == model::Decay::general) {
+    build_general(penalty, domain, pool);
+    return;
+  }
   const double speed = penalty.peak_speed();
   double density = 1.0;
   for (int attempt = 0; attempt < kAttempts && !exact_; ++attempt, density *= kDenser) {
@@ -158,14 +167,35 @@ void CompressedPenalty::build(const Penalty& penalty, const search::Domain& doma
   }
 }
 
+void CompressedPenalty::take_triangle(const Eigen::MatrixXd& triangle) {
+  const auto lanes = static_cast<Eigen::Index>(kLanes);
+  triangle_ = Eigen::MatrixXd::Zero((rows_ + lanes - 1) / lanes * lanes, rows_);
+  triangle_.topRows(rows_) = triangle;
+  target_ = Eigen::VectorXd::Zero(rows_ + static_cast<Eigen::Index>(shaped_.size()));
+  target_.head(rows_) = triangle.col(rows_ - 1);
+}
+
+void CompressedPenalty::compare(const Eigen::MatrixXd& found, const Eigen::MatrixXd& expected,
+                                double scale) {
+  const auto size = static_cast<Eigen::Index>(shaped_.size()) * rows_;
+  error_ = 0.0;
+  if (found.cols() > 0) {
+    const Eigen::MatrixXd difference = (found - expected).cwiseAbs();
+    error_ = std::max(0.1 * difference.topRows(size).maxCoeff() / std::sqrt(scale),
+                      difference.bottomRows(difference.rows() - size).maxCoeff() / scale);
+  }
+  exact_ = error_ <= kTolerance;
+  std::ostringstream text;
+  text.precision(2);
+  text << "the shapes' functions could not be interpolated to " << kTolerance << ": " << error_
+       << " is left after " << passes_ << " shapes";
+  reason_ = exact_ ? "" : text.str();
+}
+
 void CompressedPenalty::assemble(const std::optional<ShapeNodes>& nodes,
                                  const std::vector<Digest>& digests) {
   const Digest& whole = digests.front();
-  const auto lanes = static_cast<Eigen::Index>(kLanes);
-  triangle_ = Eigen::MatrixXd::Zero((rows_ + lanes - 1) / lanes * lanes, rows_);
-  triangle_.topRows(rows_) = whole.triangle;
-  target_ = Eigen::VectorXd::Zero(rows_ + static_cast<Eigen::Index>(shaped_.size()));
-  target_.head(rows_) = whole.triangle.col(rows_ - 1);
+  take_triangle(whole.triangle);
   exact_ = true;
   if (!nodes) return;
   order_ = nodes->order;
@@ -189,32 +219,28 @@ void CompressedPenalty::assemble(const std::optional<ShapeNodes>& nodes,
     scale = std::max(scale,
                      line.topRows(size).colwise().squaredNorm().maxCoeff() + products.maxCoeff());
   }
-  error_ = 0.0;
-  std::vector<double> found(table_.width());
-  for (std::size_t i = 0; i < expected.size(); ++i) {
-    table_.values(nodes->probes[i].data(), found.data());
-    const Eigen::Map<const Eigen::VectorXd> values(found.data(), expected[i].size());
-    const Eigen::VectorXd difference = (values - expected[i]).cwiseAbs();
-    error_ = std::max({error_, 0.1 * difference.head(size).maxCoeff() / std::sqrt(scale),
-                       difference.tail(difference.size() - size).maxCoeff() / scale});
+  const auto count = static_cast<Eigen::Index>(expected.size());
+  Eigen::MatrixXd found(size + pairs(static_cast<Eigen::Index>(shaped_.size())), count);
+  Eigen::MatrixXd wanted(found.rows(), count);
+  std::vector<double> values(table_.width());
+  for (Eigen::Index i = 0; i < count; ++i) {
+    table_.values(nodes->probes[static_cast<std::size_t>(i)].data(), values.data());
+    found.col(i) = Eigen::Map<const Eigen::VectorXd>(values.data(), found.rows());
+    wanted.col(i) = expected[static_cast<std::size_t>(i)];
   }
-  exact_ = error_ <= kTolerance;
-  std::ostringstream text;
-  text.precision(2);
-  text << "the shapes' functions could not be interpolated to " << kTolerance << ": " << error_
-       << " is left after " << passes_ << " shapes";
-  reason_ = exact_ ? "" : text.str();
+  compare(found, wanted, scale);
 }
 
 void CompressedPenalty::require_inside(const double* shapes) const {
-  for (std::size_t i = 0; i < table_.axes().size(); ++i) {
-    const auto& axis = table_.axes()[i];
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const double lower = general_ ? general_->lower(i) : table_.axes()[i].lower();
+    const double upper = general_ ? general_->upper(i) : table_.axes()[i].upper();
     const double value = shapes[order_[i]];
-    if (value >= axis.lower() && value <= axis.upper()) continue;
+    if (value >= lower && value <= upper) continue;
     const auto at = static_cast<std::size_t>(coefficients_ + order_[i]);
     throw std::invalid_argument(names_[at] + " must lie within the bounds it was compressed for, " +
-                                std::to_string(axis.lower()) + " to " +
-                                std::to_string(axis.upper()) + ", got " + std::to_string(value));
+                                std::to_string(lower) + " to " + std::to_string(upper) + ", got " +
+                                std::to_string(value));
   }
 }
 
@@ -228,19 +254,35 @@ void CompressedPenalty::columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& 
   require_inside(shapes.data());
   std::array<double, 2> own{};
   for (std::size_t i = 0; i < order_.size(); ++i) own[i] = shapes[order_[i]];
-  std::array<double, kWidest> functions;
-  table_.values(own.data(), functions.data());
-  const Eigen::MatrixXd shaped = shaped_columns(functions.data());
+  const Eigen::MatrixXd shaped = shaped_columns(own.data());
   for (std::size_t j = 0; j < shaped_.size(); ++j) {
     result.col(shaped_[j]) = shaped.col(static_cast<Eigen::Index>(j));
   }
 }
 
-Eigen::MatrixXd CompressedPenalty::shaped_columns(const double* functions) const {
+Eigen::MatrixXd CompressedPenalty::shaped_columns(const double* shapes) const {
+  if (general_) return general_->columns(shapes);
   const auto count = static_cast<Eigen::Index>(shaped_.size());
+  std::array<double, kWidest> functions;
+  table_.values(shapes, functions.data());
   Eigen::MatrixXd result(rows_ + count, count);
-  result.topRows(rows_) = Eigen::Map<const Eigen::MatrixXd>(functions, rows_, count);
-  result.bottomRows(count) = root_of(functions + rows_ * count, count, nullptr, nullptr);
+  result.topRows(rows_) = Eigen::Map<const Eigen::MatrixXd>(functions.data(), rows_, count);
+  result.bottomRows(count) = root_of(functions.data() + rows_ * count, count, nullptr, nullptr);
+  return result;
+}
+
+Eigen::MatrixXd CompressedPenalty::shaped_slopes(const double* shapes, int which) const {
+  if (general_) return general_->slopes(shapes, which);
+  const auto count = static_cast<Eigen::Index>(shaped_.size());
+  std::array<double, kWidest> functions;
+  std::array<double, kWidest> slopes;
+  table_.values(shapes, functions.data());
+  table_.slopes(shapes, which, slopes.data());
+  Eigen::MatrixXd lower;
+  root_of(functions.data() + rows_ * count, count, slopes.data() + rows_ * count, &lower);
+  Eigen::MatrixXd result(rows_ + count, count);
+  result.topRows(rows_) = Eigen::Map<const Eigen::MatrixXd>(slopes.data(), rows_, count);
+  result.bottomRows(count) = lower;
   return result;
 }
 
@@ -266,18 +308,11 @@ void CompressedPenalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd&
     const auto count = static_cast<Eigen::Index>(shaped_.size());
     std::array<double, 2> own{};
     for (std::size_t i = 0; i < order_.size(); ++i) own[i] = theta[coefficients_ + order_[i]];
-    std::array<double, kWidest> functions;
-    std::array<double, kWidest> slopes;
-    if (count > 0) table_.values(own.data(), functions.data());
     Eigen::VectorXd s(count);
     for (Eigen::Index j = 0; j < count; ++j) s[j] = theta[shaped_[static_cast<std::size_t>(j)]];
     for (std::size_t i = 0; i < order_.size(); ++i) {
-      table_.slopes(own.data(), static_cast<int>(i), slopes.data());
-      Eigen::MatrixXd lower;
-      root_of(functions.data() + rows_ * count, count, slopes.data() + rows_ * count, &lower);
-      auto column = jacobian->col(coefficients_ + order_[i]);
-      column.head(rows_) = -Eigen::Map<const Eigen::MatrixXd>(slopes.data(), rows_, count) * s;
-      column.tail(count) = -lower * s;
+      jacobian->col(coefficients_ + order_[i]) =
+          -shaped_slopes(own.data(), static_cast<int>(i)) * s;
     }
   }
   if (residual_ != Residual::sensor) return;
@@ -292,6 +327,7 @@ void CompressedPenalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd&
 void CompressedPenalty::evaluate(const Eigen::MatrixXd& candidates, Eigen::VectorXd& penalties,
                                  base::Pool& pool) const {
   const View view{&table_,
+                  general_ ? &*general_ : nullptr,
                   triangle_.data(),
                   static_cast<std::size_t>(rows_),
                   static_cast<std::size_t>(triangle_.rows()),

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "identify/compressed/compression.hpp"
+#include "identify/compressed/general_table.hpp"
 #include "identify/compressed/shape_table.hpp"
 #include "identify/penalty/penalty.hpp"
 #include "search/domain.hpp"
@@ -43,8 +44,8 @@ class CompressedPenalty final : public PenaltyFunction {
   [[nodiscard]] bool is_cheap() const override { return true; }
   [[nodiscard]] const Eigen::VectorXd& target() const override { return target_; }
 
-  /// As few rows as there are coefficients and a target; equal to the direct ones in every inner
-  /// product.
+  /// As few rows as there are coefficients and a target, some more for the general decay; equal to
+  /// the direct ones in every inner product.
   void columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
                const base::Cancel* cancel = nullptr) const override;
   double operator()(const Eigen::VectorXd& theta,
@@ -57,11 +58,18 @@ class CompressedPenalty final : public PenaltyFunction {
  private:
   explicit CompressedPenalty(const Penalty& frame);
   void build(const Penalty& penalty, const search::Domain& domain, base::Pool& pool);
+  void build_general(const Penalty& penalty, const search::Domain& domain, base::Pool& pool);
+  void take_triangle(const Eigen::MatrixXd& triangle);
+  /// Settles whether the functions found at some shapes are near enough to those expected there,
+  /// functions x shapes. `scale`: the shaped columns' squared size.
+  void compare(const Eigen::MatrixXd& found, const Eigen::MatrixXd& expected, double scale);
   void assemble(const std::optional<ShapeNodes>& nodes, const std::vector<Digest>& digests);
   [[nodiscard]] bool has_too_many_terms() const;
   void require_inside(const double* shapes) const;
-  /// Shaped columns at table values, rows x shaped.
-  [[nodiscard]] Eigen::MatrixXd shaped_columns(const double* functions) const;
+  /// Shaped columns at shapes in the table's order, rows x shaped.
+  [[nodiscard]] Eigen::MatrixXd shaped_columns(const double* shapes) const;
+  /// Their derivatives by a shape.
+  [[nodiscard]] Eigen::MatrixXd shaped_slopes(const double* shapes, int which) const;
 
   std::vector<std::string> names_;
   Eigen::Index coefficients_;
@@ -74,6 +82,7 @@ class CompressedPenalty final : public PenaltyFunction {
   Eigen::MatrixXd triangle_;            ///< padded rows x (constant columns, target)
   Eigen::VectorXd target_;
   ShapeTable table_;
+  std::optional<GeneralTable> general_;  ///< for the general decay of a whole recording
   bool exact_ = false;
   std::string reason_;
   Eigen::Index passes_ = 0;

@@ -33,7 +33,7 @@ void Penalty::plain_columns(const double* shapes, bool backward, const base::Can
         (backward ? backward_nodes_ : nodes_)[static_cast<std::size_t>(s.term.direction)];
     std::array<double, 4> own{};
     for (std::size_t i = 0; i < s.shapes.size(); ++i) own[i] = shapes[s.shapes[i]];
-    integrate_friction(s.term, nodes, own.data(), kValue, cancel, result.col(s.coefficient));
+    integrate_friction(s.term, nodes, own.data(), cancel, result.col(s.coefficient));
   }
 }
 
@@ -113,17 +113,18 @@ void Penalty::loaded_residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& re
   }
   jacobian->col(p + load_) = -balance.by_load;
   if (share_ >= 0) jacobian->col(p + share_) = -balance.by_share;
-  Eigen::VectorXd every(window_count());
-  Eigen::VectorXd part(window_count());
   for (const auto& s : shaped_) {
     std::array<double, 4> own{};
     for (std::size_t i = 0; i < s.shapes.size(); ++i) own[i] = shapes[s.shapes[i]];
     const auto direction = static_cast<std::size_t>(s.term.direction);
+    Eigen::MatrixXd every(window_count(), static_cast<Eigen::Index>(s.shapes.size()) + 1);
+    Eigen::MatrixXd part(every.rows(), every.cols());
+    integrate_slopes(s.term, nodes_[direction], own.data(), cancel, every);
+    integrate_slopes(s.term, backward_nodes_[direction], own.data(), cancel, part);
     for (std::size_t i = 0; i < s.shapes.size(); ++i) {
-      const int which = static_cast<int>(i);
-      integrate_friction(s.term, nodes_[direction], own.data(), which, cancel, every);
-      integrate_friction(s.term, backward_nodes_[direction], own.data(), which, cancel, part);
-      jacobian->col(p + s.shapes[i]) -= theta[s.coefficient] * balance.slope(every, part, 0.0);
+      const auto column = static_cast<Eigen::Index>(i) + 1;
+      jacobian->col(p + s.shapes[i]) -=
+          theta[s.coefficient] * balance.slope(every.col(column), part.col(column), 0.0);
     }
   }
   if (cumulative_) {

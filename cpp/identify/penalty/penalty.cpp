@@ -259,6 +259,10 @@ void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel
                  std::span(windows_).subspan(w, end - w), all);
     w = end;
   }
+  const bool general = std::any_of(shaped_.begin(), shaped_.end(), [](const Shaped& shaped) {
+    return decay_of(shaped.term) == model::Decay::general;
+  });
+  if (general) all.take_logarithms();
   bool both = false;
   for (const auto& shaped : shaped_) {
     auto& nodes = store[static_cast<std::size_t>(shaped.term.direction)];
@@ -303,19 +307,37 @@ void Penalty::accumulate(Eigen::Ref<Eigen::VectorXd> values) const {
   }
 }
 
-void Penalty::shaped_column(const Shaped& shaped, const double* shapes, int which,
-                            const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) const {
+namespace {
+
+std::array<double, 4> shapes_of(const Penalty::Shaped& shaped, const double* shapes) {
   std::array<double, 4> own{};
   for (std::size_t i = 0; i < shaped.shapes.size(); ++i) own[i] = shapes[shaped.shapes[i]];
-  integrate_friction(shaped.term, nodes(shaped.term.direction), own.data(), which, cancel, column);
+  return own;
+}
+
+}  // namespace
+
+void Penalty::shaped_column(const Shaped& shaped, const double* shapes, const base::Cancel* cancel,
+                            Eigen::Ref<Eigen::VectorXd> column) const {
+  integrate_friction(shaped.term, nodes(shaped.term.direction), shapes_of(shaped, shapes).data(),
+                     cancel, column);
   if (cumulative_) accumulate(column);
+}
+
+void Penalty::shaped_slopes(const Shaped& shaped, const double* shapes, const base::Cancel* cancel,
+                            Eigen::MatrixXd& columns) const {
+  columns.resize(window_count(), static_cast<Eigen::Index>(shaped.shapes.size()) + 1);
+  integrate_slopes(shaped.term, nodes(shaped.term.direction), shapes_of(shaped, shapes).data(),
+                   cancel, columns);
+  if (!cumulative_) return;
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) accumulate(columns.col(j));
 }
 
 void Penalty::columns(const Eigen::VectorXd& shapes, Eigen::MatrixXd& result,
                       const base::Cancel* cancel) const {
   result = columns_;
   for (const auto& s : shaped_) {
-    shaped_column(s, shapes.data(), kValue, cancel, result.col(s.coefficient));
+    shaped_column(s, shapes.data(), cancel, result.col(s.coefficient));
   }
   if (cumulative_ && load_ >= 0) {
     for (Eigen::Index j = 0; j < result.cols(); ++j) {
@@ -345,17 +367,20 @@ void Penalty::residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
   }
   residual = target_;
   residual.noalias() -= columns_ * theta.head(p);
-  Eigen::VectorXd column(shaped_.empty() ? 0 : window_count());
+  Eigen::MatrixXd own(shaped_.empty() ? 0 : window_count(), 1);
   const double* shapes = theta.data() + p;
   for (const auto& s : shaped_) {
     const double coefficient = theta[s.coefficient];
-    shaped_column(s, shapes, kValue, cancel, column);
-    residual.noalias() -= coefficient * column;
+    if (jacobian == nullptr) {
+      shaped_column(s, shapes, cancel, own.col(0));
+    } else {
+      shaped_slopes(s, shapes, cancel, own);
+    }
+    residual.noalias() -= coefficient * own.col(0);
     if (jacobian == nullptr) continue;
-    jacobian->col(s.coefficient) -= column;
+    jacobian->col(s.coefficient) -= own.col(0);
     for (std::size_t i = 0; i < s.shapes.size(); ++i) {
-      shaped_column(s, shapes, static_cast<int>(i), cancel, column);
-      jacobian->col(p + s.shapes[i]) -= coefficient * column;
+      jacobian->col(p + s.shapes[i]) -= coefficient * own.col(static_cast<Eigen::Index>(i) + 1);
     }
   }
   divide_by_gain(theta, residual, jacobian);

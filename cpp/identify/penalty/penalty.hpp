@@ -118,9 +118,12 @@ class Penalty final : public PenaltyFunction {
   void integrate_all(const Masked& recordings, double gear_ratio, base::Pool* pool);
   void collect_nodes(const Masked& recordings, const base::Cancel* cancel, bool backward);
   void own_columns(const std::vector<std::string>& per_recording, std::size_t recordings);
-  /// A shaped term's column, or its derivative by the term's shape number `which`.
-  void shaped_column(const Shaped& shaped, const double* shapes, int which,
-                     const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) const;
+  /// A shaped term's column.
+  void shaped_column(const Shaped& shaped, const double* shapes, const base::Cancel* cancel,
+                     Eigen::Ref<Eigen::VectorXd> column) const;
+  /// The same, and behind it its derivatives by the term's shapes.
+  void shaped_slopes(const Shaped& shaped, const double* shapes, const base::Cancel* cancel,
+                     Eigen::MatrixXd& columns) const;
   /// All columns, not accumulated; of the intervals with negative velocity, or of all.
   void plain_columns(const double* shapes, bool backward, const base::Cancel* cancel,
                      Eigen::MatrixXd& result) const;

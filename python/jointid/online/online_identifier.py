@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import weakref
 from collections.abc import Callable, Mapping
 from types import TracebackType
@@ -102,6 +103,7 @@ class OnlineIdentifier:
         )
         self._signals: tuple[str, ...] | None = None
         self._last_time = -np.inf
+        self._feeding = threading.RLock()
         self._worker = Worker(self._settings, callback)
         weakref.finalize(self, self._worker.stop)
 
@@ -113,7 +115,7 @@ class OnlineIdentifier:
         torque: ArrayLike | None = None,
         **others: ArrayLike | None,
     ) -> None:
-        """Add one sample, or several.
+        """Add one sample, or several. Any thread may do so; each call is taken as a whole.
 
         Parameters
         ----------
@@ -139,6 +141,11 @@ class OnlineIdentifier:
                     place="samples",
                 )
         given = {"time": time, "position": position, "torque": torque, **others}
+        with self._feeding:
+            self._take(given)
+
+    def _take(self, given: Mapping[str, ArrayLike | None]) -> None:
+        """Check samples against those before, and hand them to the thread; by one caller at a time."""
         here = tuple(name for name, value in given.items() if value is not None)
         signals = self._signals or here
         if "position" not in signals:

@@ -121,9 +121,7 @@ class Runner:
             if self._ready is None or self._ready[0] != key:
                 self._ready = None  # frees the memory of the last one first
                 prepared = prepare(recordings, joint, **options, threads=work.threads)
-                engine = Engine.of(
-                    prepared.penalty, prepared.domain, work.threads, searches[0].method
-                )
+                engine = Engine.of(prepared.penalty, prepared.domain, work.threads)
                 self._ready = key, prepared, engine
             _, prepared, engine = self._ready
             outcomes = _outcomes(searches, prepared, engine)

@@ -12,6 +12,7 @@ from typing import Any, Self
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
+from jointid.base.files import open_locked
 from jointid.base.schema import read_bytes, read_json
 from jointid.study.row import REFUSED, Row
 from jointid.study.saved_header import EXPECTED, read_header
@@ -36,46 +37,58 @@ class StudyFile:
     Raises
     ------
     InputError
-        The file exists, or belongs to another study, or its folder does not exist.
+        The file exists, or belongs to another study, or another program writes it, or its folder does not exist.
     """
 
     def __init__(self, path: Path, header: dict[str, Any], *, resume: bool) -> None:
         self.path = path
         self.rows: list[Row] = []
         self._synced = 0.0
-        if path.exists() and path.stat().st_size > 0:
-            if not resume:
-                raise InputError(
-                    "the file exists",
-                    argument="output",
-                    value=str(path),
-                    remedy=(
-                        Action("call", {"resume": True}, text="to continue it", function="sweep"),
-                        _ANOTHER,
-                    ),
-                )
-            known, self.rows, length = read(path)
+        if not path.parent.is_dir():
+            raise InputError(
+                f"the folder {path.parent} does not exist",
+                argument="output",
+                value=str(path),
+                remedy="create it first",
+            )
+        if not resume:
+            self._refuse_rows()  # without touching it
+        self._file = open_locked(path)
+        try:
+            self._begin(header, resume)
+        except BaseException:
+            self._file.close()
+            raise
+
+    def _refuse_rows(self) -> None:
+        if self.path.exists() and self.path.stat().st_size > 0:
+            raise InputError(
+                "the file exists",
+                argument="output",
+                value=str(self.path),
+                remedy=(
+                    Action("call", {"resume": True}, text="to continue it", function="sweep"),
+                    _ANOTHER,
+                ),
+            )
+
+    def _begin(self, header: dict[str, Any], resume: bool) -> None:
+        """Read what is there, and write the header where it is not."""
+        if not resume:
+            self._refuse_rows()  # another program may have written it in the meantime
+        if self.path.stat().st_size > 0:
+            known, self.rows, length = read(self.path)
             if known["fingerprint"] != header["fingerprint"]:
                 raise InputError(
                     f"the file belongs to another study: {_difference(known, header)}",
                     argument="output",
-                    place=str(path),
+                    place=str(self.path),
                     remedy=_ANOTHER,
                 )
-            self._file = path.open("r+b")
             self._file.truncate(length)  # a line that a crash cut off
             self._file.seek(length)
             if known["trials"] == header["trials"]:
                 return
-        else:
-            if not path.parent.is_dir():
-                raise InputError(
-                    f"the folder {path.parent} does not exist",
-                    argument="output",
-                    value=str(path),
-                    remedy="create it first",
-                )
-            self._file = path.open("w+b")
         self._write([header])
 
     def append(self, rows: Iterable[Row]) -> None:

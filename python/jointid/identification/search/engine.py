@@ -53,11 +53,8 @@ class Engine:
     threads: int = 0
 
     @classmethod
-    def of(cls, penalty: _core.Penalty, domain: SearchDomain, threads: int, method: str) -> Engine:
+    def of(cls, penalty: _core.Penalty, domain: SearchDomain, threads: int) -> Engine:
         """Return an engine; it compresses the penalty if that saves time and is exact but for rounding."""
-        if method == "separable" and _free_shapes(penalty, domain) > 1:
-            # The search takes a few hundred sums over the samples, the table of two shapes thousands.
-            return cls(direct=penalty, form=penalty, reason="", threads=threads)
         compressed = _core.CompressedPenalty(penalty, domain.lower, domain.upper, threads=threads)
         if compressed.exact:
             return cls(direct=penalty, form=compressed, reason="", threads=threads)
@@ -75,9 +72,8 @@ class Engine:
         near = _core.refine_separable(
             self.form, domain.lower, domain.upper, start, threads=self.threads
         )
-        if shapes < 2:
+        if self.form is not self.direct:
             return near.best, near.evaluations, True
-        # With several shapes the compressed residuals are too nonlinear for the last digits.
         last = _core.polish(self.direct, domain.lower, domain.upper, near.best)
         return last.best, near.evaluations + last.iterations, last.converged
 

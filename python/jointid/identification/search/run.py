@@ -31,7 +31,7 @@ def run_search(search: Search, penalty: _core.Penalty, domain: SearchDomain) -> 
     KeyboardInterrupt
         Ctrl-C.
     """
-    engine = Engine.of(penalty, domain, search.threads, search.method)
+    engine = Engine.of(penalty, domain, search.threads)
     if search.method == "separable":
         return separable(search, engine, domain)
     result = (_random if search.method == "random" else _genetic)(search, engine, domain)

@@ -1,0 +1,168 @@
+// Sums of friction over the nodes of windows.
+
+#include <algorithm>
+#include <array>
+
+#include "base/clones.hpp"
+#include "identify/balance/quadrature.hpp"
+
+namespace jointid::identify {
+
+namespace {
+
+constexpr std::size_t kBlock = 2048;  // nodes: two buffers stay in the first-level cache
+
+JOINTID_CLONES void log_speeds(const double* speed, std::size_t count, double* logarithm) {
+  for (std::size_t i = 0; i < count; ++i) logarithm[i] = model::log_speed(speed[i]);
+}
+
+// A block's weighted values of a decay, and its weighted derivatives where asked for (by_* not
+// null). Spelt out for each basis: these loops must vectorise.
+JOINTID_CLONES void stribeck_values(double shape, const double* speed, const double* weight,
+                                    std::size_t count, double* value) {
+  for (std::size_t i = 0; i < count; ++i) {
+    value[i] = weight[i] * model::basis_value(model::SpeedBasis::stribeck, speed[i], &shape);
+  }
+}
+
+JOINTID_CLONES void stribeck_slopes(double shape, const double* speed, const double* weight,
+                                    std::size_t count, double* value, double* slope) {
+  for (std::size_t i = 0; i < count; ++i) {
+    value[i] = weight[i] * model::basis_value(model::SpeedBasis::stribeck, speed[i], &shape);
+    slope[i] = weight[i] * model::basis_slope(model::SpeedBasis::stribeck, speed[i], &shape, 0);
+  }
+}
+
+struct GeneralShapes {
+  double velocity;
+  double exponent;
+  double origin;  ///< log of the velocity
+};
+
+JOINTID_CLONES void general_values(const GeneralShapes& shapes, const double* logarithm,
+                                   const double* weight, std::size_t count, double* value) {
+  const auto [velocity, exponent, origin] = shapes;
+  for (std::size_t i = 0; i < count; ++i) {
+    value[i] = weight[i] * model::general_decay(logarithm[i] - origin, velocity, exponent).value;
+  }
+}
+
+JOINTID_CLONES void general_slopes(const GeneralShapes& shapes, const double* logarithm,
+                                   const double* weight, std::size_t count, double* value,
+                                   double* by_velocity, double* by_exponent) {
+  const auto [velocity, exponent, origin] = shapes;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto decay = model::general_decay(logarithm[i] - origin, velocity, exponent);
+    value[i] = weight[i] * decay.value;
+    by_velocity[i] = weight[i] * decay.by_velocity;
+    by_exponent[i] = weight[i] * decay.by_exponent;
+  }
+}
+
+/// A block's logarithms: those of the nodes, or `made` now.
+const double* logarithms(const FrictionNodes& nodes, std::size_t begin, std::size_t count,
+                         std::array<double, kBlock>& made) {
+  if (!nodes.logarithm.empty()) return nodes.logarithm.data() + begin;
+  log_speeds(nodes.speed.data() + begin, count, made.data());
+  return made.data();
+}
+
+/// Sums `Columns` weighted values of each node window by window; `fill` gives a block of them.
+template <std::size_t Columns, class Fill>
+void sum_nodes(const FrictionNodes& nodes, const base::Cancel* cancel,
+               Eigen::Ref<Eigen::MatrixXd> result, Fill fill) {
+  std::array<std::array<double, kBlock>, Columns> value;
+  const std::size_t windows = nodes.first.size() - 1;
+  const std::size_t total = nodes.speed.size();
+  std::size_t w = 0;
+  std::array<double, Columns> sum{};
+  const auto finish = [&](std::size_t reached) {
+    while (w < windows && nodes.first[w + 1] <= reached) {
+      for (std::size_t c = 0; c < Columns; ++c) {
+        result(static_cast<Eigen::Index>(w), static_cast<Eigen::Index>(c)) = sum[c];
+      }
+      sum.fill(0.0);
+      ++w;
+    }
+  };
+  finish(0);  // windows without a node
+  for (std::size_t begin = 0; begin < total; begin += kBlock) {
+    if (cancel != nullptr) cancel->check();
+    const std::size_t count = std::min(kBlock, total - begin);
+    fill(begin, count, value);
+    std::size_t i = 0;
+    while (i < count) {
+      const std::size_t stop = std::min(count, nodes.first[w + 1] - begin);
+      for (std::size_t j = i; j < stop; ++j) {
+        for (std::size_t c = 0; c < Columns; ++c) sum[c] += value[c][j];
+      }
+      i = stop;
+      finish(begin + i);
+    }
+  }
+}
+
+/// A general decay whose exponent is 2 is a Gaussian one.
+bool is_gaussian(const Term& term, const double* shapes) {
+  return term.basis == model::SpeedBasis::stribeck_general && shapes[1] == 2.0;
+}
+
+double gaussian_rate(const double* shapes) {
+  return 1.0 / (shapes[0] * shapes[0]);
+}
+
+}  // namespace
+
+void FrictionNodes::take_logarithms() {
+  logarithm.resize(speed.size());
+  log_speeds(speed.data(), speed.size(), logarithm.data());
+}
+
+void integrate_friction(const Term& term, const FrictionNodes& nodes, const double* shapes,
+                        const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column) {
+  const bool gaussian = is_gaussian(term, shapes);
+  const bool general = !gaussian && term.basis == model::SpeedBasis::stribeck_general;
+  const GeneralShapes both =
+      general ? GeneralShapes{shapes[0], shapes[1], base::log(shapes[0])} : GeneralShapes{};
+  std::array<double, kBlock> made;
+  sum_nodes<1>(nodes, cancel, column, [&](std::size_t begin, std::size_t count, auto& value) {
+    const double* speed = nodes.speed.data() + begin;
+    const double* weight = nodes.weight.data() + begin;
+    double* values = value[0].data();
+    if (term.basis == model::SpeedBasis::stribeck) {
+      stribeck_values(shapes[0], speed, weight, count, values);
+    } else if (gaussian) {
+      stribeck_values(gaussian_rate(shapes), speed, weight, count, values);
+    } else if (general) {
+      general_values(both, logarithms(nodes, begin, count, made), weight, count, values);
+    } else {
+      for (std::size_t i = 0; i < count; ++i) {
+        values[i] = weight[i] * model::basis_value(term.basis, speed[i], shapes);
+      }
+    }
+  });
+}
+
+void integrate_slopes(const Term& term, const FrictionNodes& nodes, const double* shapes,
+                      const base::Cancel* cancel, Eigen::Ref<Eigen::MatrixXd> columns) {
+  const double* speed = nodes.speed.data();
+  const double* weight = nodes.weight.data();
+  if (term.basis == model::SpeedBasis::stribeck) {
+    sum_nodes<2>(nodes, cancel, columns, [&](std::size_t begin, std::size_t count, auto& value) {
+      stribeck_slopes(shapes[0], speed + begin, weight + begin, count, value[0].data(),
+                      value[1].data());
+    });
+    return;
+  }
+  const GeneralShapes both{shapes[0], shapes[1], base::log(shapes[0])};
+  std::array<double, kBlock> made;
+  sum_nodes<3>(nodes, cancel, columns, [&](std::size_t begin, std::size_t count, auto& value) {
+    general_slopes(both, logarithms(nodes, begin, count, made), weight + begin, count,
+                   value[0].data(), value[1].data(), value[2].data());
+    if (is_gaussian(term, shapes)) {  // the bits of integrate_friction
+      stribeck_values(gaussian_rate(shapes), speed + begin, weight + begin, count, value[0].data());
+    }
+  });
+}
+
+}  // namespace jointid::identify
