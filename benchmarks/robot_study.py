@@ -86,7 +86,7 @@ friction that may hold any torque at standstill, a controller along sums of sine
 is in it."""
 
 _BESIDE = {
-    "friction": """The raw log at the motors, 5 kHz, 9 s; the call is told the URDF, gear ratios, the zeros of
+    "friction": """The raw log at the motors, 5 kHz, 9 s; the call gets the URDF, gear ratios, the zeros of
 joints 2 and 3, and that motor 6 turns with joints 5 and 6. Model: Coulomb and viscous, as
 published (Janot, Vandanjon, Gautier). The published viscous friction of joints 5 and 6 holds
 motor 6's. Filtered least squares at 20 Hz; its standstill and slow rows are left out by the
@@ -108,10 +108,11 @@ of 32 settings that were tried on four of these arms.""",
 friction. The ratio is that of the standard deviations of a second difference of the true
 positions and of its error, of the best joint.""",
     "heavier": """Scales of the links, and what a call says that takes the URDF's inertias for true.""",
-    "facts": """One arm; the call is told something wrong, and has to say what.""",
-    "wrong": """The call is not told of it; the largest over the arms, and how often each warning came.""",
-    "delays": """Every torque as it was so much before; the call is not told. Errors are the largest over the arms.""",
-    "causes": """One fact is wrong, and the call is not told. Counted are the runs in which the cause is named,
+    "facts": """One arm; the call gets something wrong, and has to say what.""",
+    "wrong": """The call is not informed of it; the largest over the arms, and how often each warning came.""",
+    "delays": """Every torque as it was so much before; the call does not know it. Errors are the largest over the
+arms.""",
+    "causes": """One fact is wrong, and the call does not know it. Counted are the runs in which the cause is named,
 and those in which something else is named as a cause, too or instead. Explained: of the squared
 residual, in stretches of motion from which the cause's size was not taken. Free inertias follow what
 is wrong with links: then there is nothing to name.""",

@@ -100,8 +100,8 @@ def named(estimate: jid.RobotEstimate) -> str:
 
 
 def wrong_facts(seed: int) -> Iterator[str]:
-    """What is told is not what was recorded."""
-    yield "| told wrongly | relative residual | what is said |"
+    """What is stated is not what was recorded."""
+    yield "| stated wrongly | relative residual | what is said |"
     yield "|---|--:|---|"
     ((_, ran),) = simulated([seed])
     recording = recorded(ran, Sensors(), seed)

@@ -1,5 +1,6 @@
 #include "identify/solve/regression.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "bind/recording.hpp"
@@ -40,6 +41,20 @@ void bind_regression(py::module_& m) {
       },
       py::arg("matrix"), py::arg("target"),
       "The solution without negative entries, and the norm of what is left of the target.");
+  m.def(
+      "segment_sums",
+      [](const Matrix& jacobian, const Eigen::VectorXd& residual, const Eigen::MatrixXd& whitening,
+         const std::vector<std::int64_t>& cuts) {
+        const bool ordered = std::is_sorted(cuts.begin(), cuts.end());
+        if (cuts.size() < 2 || !ordered || cuts.front() < 0 || cuts.back() > jacobian.rows() ||
+            residual.size() != jacobian.rows() || whitening.cols() != jacobian.cols()) {
+          throw std::invalid_argument("cuts, residual and whitening must fit the Jacobian");
+        }
+        auto found = identify::segment_sums(jacobian, residual, whitening, cuts);
+        return std::make_pair(std::move(found.shares), Eigen::MatrixXd(found.scores.transpose()));
+      },
+      py::arg("jacobian"), py::arg("residual"), py::arg("whitening"), py::arg("cuts"),
+      "Products of whitened rows over segments: with each other, and with the residual.");
   m.def(
       "robust_variance",
       [](const Matrix& jacobian, const Eigen::VectorXd& residual, const Eigen::VectorXd& scale,

@@ -5,7 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "base/elementary.hpp"
+#include "base/circle.hpp"
+#include "base/clones.hpp"
 
 namespace jointid::diagnose {
 
@@ -22,6 +23,32 @@ struct Sums {
   Eigen::Matrix<double, Eigen::Dynamic, 4> circle;
 };
 
+constexpr std::size_t kLanes = 8;  // windows side by side
+
+/// Adds residual times cosine and sine of `halves` multiples of the windows' angles, and the
+/// cosines and sines alone: four sums a multiple, each in kLanes parts.
+JOINTID_CLONES void turn(const double* mean, const double* cosine, const double* sine,
+                         std::size_t halves, double* sums) {
+  std::array<double, kLanes> real;
+  std::array<double, kLanes> imaginary;
+  for (std::size_t j = 0; j < kLanes; ++j) {
+    real[j] = cosine[j];
+    imaginary[j] = sine[j];
+  }
+  for (std::size_t h = 0; h < halves; ++h) {
+    double* sum = sums + h * 4 * kLanes;
+    for (std::size_t j = 0; j < kLanes; ++j) {
+      sum[j] += mean[j] * real[j];
+      sum[kLanes + j] += mean[j] * imaginary[j];
+      sum[2 * kLanes + j] += real[j];
+      sum[3 * kLanes + j] += imaginary[j];
+      const double turned = real[j] * cosine[j] - imaginary[j] * sine[j];
+      imaginary[j] = real[j] * sine[j] + imaginary[j] * cosine[j];
+      real[j] = turned;
+    }
+  }
+}
+
 Sums sums_of(const identify::PenaltyParts& parts, std::size_t index, const Eigen::VectorXd& theta,
              double gear_ratio, int halves) {
   const auto part = parts.part(index);
@@ -30,48 +57,39 @@ Sums sums_of(const identify::PenaltyParts& parts, std::size_t index, const Eigen
   const double scale =
       part.residual() == identify::Residual::sensor ? theta[part.gain_index()] : 1.0;
   Sums sums;
-  sums.circle.setZero(halves, 4);
-  constexpr std::size_t kLanes = 8;  // side by side: one turn after the other would wait for itself
-  std::array<double, kLanes> mean{};
-  std::array<double, kLanes> cosine{};
-  std::array<double, kLanes> sine{};
-  std::size_t lane = 0;
-  const auto turn = [&] {
-    std::array<double, kLanes> real = cosine;
-    std::array<double, kLanes> imaginary = sine;
-    for (int h = 0; h < halves; ++h) {
-      std::array<double, 4> sum{};
-      for (std::size_t j = 0; j < lane; ++j) {
-        sum[0] += mean[j] * real[j];
-        sum[1] += mean[j] * imaginary[j];
-        sum[2] += real[j];
-        sum[3] += imaginary[j];
-      }
-      for (int i = 0; i < 4; ++i) sums.circle(h, i) += sum[static_cast<std::size_t>(i)];
-      for (std::size_t j = 0; j < kLanes; ++j) {
-        const double turned = real[j] * cosine[j] - imaginary[j] * sine[j];
-        imaginary[j] = real[j] * sine[j] + imaginary[j] * cosine[j];
-        real[j] = turned;
-      }
-    }
-    lane = 0;
-  };
+  std::vector<double> means;
+  std::vector<double> angles;
   for (std::size_t w = 0; w < part.windows().size(); ++w) {
     const auto row = static_cast<Eigen::Index>(w);
     const auto& position = parts.recording(part.recording_of()[w]).position;
     const double from = position[part.windows()[w].begin];
     const double to = position[part.windows()[w].end];
     if (!(std::fabs(to - from) * gear_ratio * 0.5 * halves < 4.0 * kPi)) continue;
-    const double angle = 0.5 * gear_ratio * 0.5 * (from + to);
-    mean[lane] = scale * residual[row] / part.usable_duration()[row];
-    cosine[lane] = base::cos(angle);
-    sine[lane] = base::sin(angle);
-    ++sums.windows;
-    sums.residual += mean[lane];
-    sums.square += mean[lane] * mean[lane];
-    if (++lane == kLanes) turn();
+    const double mean = scale * residual[row] / part.usable_duration()[row];
+    means.push_back(mean);
+    angles.push_back(0.5 * gear_ratio * 0.5 * (from + to));
+    sums.residual += mean;
+    sums.square += mean * mean;
   }
-  turn();
+  const std::size_t count = means.size();
+  const std::size_t padded = (count + kLanes - 1) / kLanes * kLanes;
+  sums.windows = static_cast<std::int64_t>(count);
+  means.resize(padded, 0.0);
+  std::vector<double> cosine(padded, 0.0);  // what fills the last lanes adds nothing
+  std::vector<double> sine(padded, 0.0);
+  base::circle(angles.data(), count, cosine.data(), sine.data());
+  const auto multiples = static_cast<std::size_t>(halves);
+  std::vector<double> lanes(multiples * 4 * kLanes, 0.0);
+  for (std::size_t w = 0; w < padded; w += kLanes) {
+    turn(means.data() + w, cosine.data() + w, sine.data() + w, multiples, lanes.data());
+  }
+  sums.circle.setZero(halves, 4);
+  const double* lane = lanes.data();
+  for (Eigen::Index h = 0; h < halves; ++h) {
+    for (Eigen::Index i = 0; i < 4; ++i, lane += kLanes) {
+      for (std::size_t j = 0; j < kLanes; ++j) sums.circle(h, i) += lane[j];
+    }
+  }
   return sums;
 }
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "base/clones.hpp"
-#include "base/quantile.hpp"
 
 namespace jointid::signals {
 
@@ -47,12 +47,13 @@ JOINTID_CLONES void lagged_sums(const double* reading, const double* torque, std
 double roughness(const Signal& signal) {
   const Eigen::Index differences = signal.size() - 3;
   if (differences <= 0) return 0.0;
-  const auto count = static_cast<std::size_t>((differences + 1) / 2);
+  std::vector<double> sizes(static_cast<std::size_t>((differences + 1) / 2));
   const double* x = signal.data();
-  return kOfMedian * base::quantile(count, count, 0.5, [&](std::size_t i, double& out) {
-           out = std::fabs(third(x + 2 * i));
-           return true;
-         });
+  for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = std::fabs(third(x + 2 * i));
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  if (sizes.size() % 2 == 1) return kOfMedian * *middle;
+  return kOfMedian * 0.5 * (*middle + *std::max_element(sizes.begin(), middle));
 }
 
 Eigen::MatrixXd noise_products(const Signal& reading, const Signal& torque, Eigen::Index blocks,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/circle.hpp"
 #include "base/clones.hpp"
 #include "base/elementary.hpp"
 
@@ -30,17 +31,6 @@ JOINTID_CLONES void smooth_inside(const double* signal, const double* weight, st
     double sum = 0.0;
     for (std::size_t k = 0; k < width; ++k) sum += weight[k] * signal[i + k];
     result[i] = sum;
-  }
-}
-
-JOINTID_CLONES void circle(const double* angle, std::size_t count, double* cosine, double* sine) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto [r, tail, quadrant] = base::detail::reduce(angle[i]);
-    const double s = base::detail::sin_series(r, tail);
-    const double c = base::detail::cos_series(r, tail);
-    const bool odd = (quadrant & 1U) != 0;
-    sine[i] = base::detail::flip(odd ? c : s, (quadrant >> 1U) & 1U);
-    cosine[i] = base::detail::flip(odd ? s : c, ((quadrant + 1U) >> 1U) & 1U);
   }
 }
 
@@ -126,16 +116,8 @@ Eigen::VectorXd smoothed(const Signal& signal, const Signal& weight) {
 
 Circle circle_of(const Signal& angle) {
   Circle result{Eigen::VectorXd(angle.size()), Eigen::VectorXd(angle.size())};
-  if (angle.size() == 0) return result;
-  if (angle.cwiseAbs().maxCoeff() < 1.6e6) {
-    circle(angle.data(), static_cast<std::size_t>(angle.size()), result.cosine.data(),
-           result.sine.data());
-    return result;
-  }
-  for (Eigen::Index i = 0; i < angle.size(); ++i) {
-    result.cosine[i] = base::cos(angle[i]);
-    result.sine[i] = base::sin(angle[i]);
-  }
+  base::circle(angle.data(), static_cast<std::size_t>(angle.size()), result.cosine.data(),
+               result.sine.data());
   return result;
 }
 
@@ -150,7 +132,7 @@ Eigen::MatrixXd friction_means(const Rubbing& rubbing, double longest, const Sig
       rubbing.velocity.data(), rubbing.smooth.data(),
       rubbing.cosine.data(),   rubbing.sine.data(),
       longest * peak,          1.0 / static_cast<double>(std::max<std::size_t>(1, count - 1))};
-  std::vector<double> rows(count * kColumns);
+  Eigen::VectorXd rows(static_cast<Eigen::Index>(count * kColumns));  // not set to zero before
   friction_at(samples, count, rows.data());
   const auto width = static_cast<std::size_t>(weight.size());
   std::array<double, kColumns> sum;

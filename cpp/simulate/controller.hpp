@@ -15,12 +15,38 @@ namespace jointid::simulate {
 
 using Controller = std::variant<OpenLoop, Pd, Pid, CompensatedPid, AdaptiveRobust, LugreObserver>;
 
+/// A law at work.
+template <class Law>
+struct Running {
+  Law config;
+  typename Law::State state{};
+};
+using AnyRunning =
+    std::variant<Running<OpenLoop>, Running<Pd>, Running<Pid>, Running<CompensatedPid>,
+                 Running<AdaptiveRobust>, Running<LugreObserver>>;
+
+// Structs, not generic lambdas in the class: clang 14 never instantiates those.
+struct Begin {
+  template <class Law>
+  AnyRunning operator()(const Law& law) const {
+    law.validate();
+    return Running<Law>{law, {}};
+  }
+};
+
+struct Ask {
+  const ControlInput& input;
+
+  template <class Law>
+  double operator()(Running<Law>& running) const {
+    return running.config.law(running.state, input);
+  }
+};
+
 class ControlRun {
  public:
   ControlRun(const Controller& controller, double period, double torque_limit)
-      : running_(std::visit([](const auto& law) -> Any { return begin(law); }, controller)),
-        period_(period),
-        torque_limit_(torque_limit) {
+      : running_(std::visit(Begin{}, controller)), period_(period), torque_limit_(torque_limit) {
     const base::Requirement require("controller");
     require.above_zero("period", period);
     require.that(torque_limit > 0.0, "torque_limit", torque_limit, "above 0");
@@ -29,8 +55,7 @@ class ControlRun {
   /// The torque to hold until the next instant.
   double step(ControlInput input) {
     input.period = period_;
-    const double asked = std::visit(
-        [&](auto& running) { return running.config.law(running.state, input); }, running_);
+    const double asked = std::visit(Ask{input}, running_);
     if (std::fabs(asked) <= torque_limit_) return asked;
     ++saturations_;
     return std::clamp(asked, -torque_limit_, torque_limit_);
@@ -56,19 +81,7 @@ class ControlRun {
   [[nodiscard]] long saturations() const { return saturations_; }
 
  private:
-  template <class Law>
-  struct Running {
-    Law config;
-    typename Law::State state{};
-  };
-  template <class Law>
-  static Running<Law> begin(const Law& law) {
-    law.validate();
-    return {law, {}};
-  }
-  using Any = std::variant<Running<OpenLoop>, Running<Pd>, Running<Pid>, Running<CompensatedPid>,
-                           Running<AdaptiveRobust>, Running<LugreObserver>>;
-  Any running_;
+  AnyRunning running_;
   double period_;
   double torque_limit_;
   long saturations_ = 0;

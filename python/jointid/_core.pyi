@@ -93,6 +93,7 @@ __all__: list[str] = [
     "refine_separable",
     "robust_variance",
     "roughness",
+    "segment_sums",
     "shape",
     "shapes",
     "shift_coefficients",
@@ -3573,6 +3574,19 @@ def robust_variance(
 def roughness(signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> float:
     """
     Standard deviation of a signal's third differences.
+    """
+
+def segment_sums(
+    jacobian: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
+    residual: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    whitening: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+    cuts: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+) -> tuple[
+    list[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]],
+    typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+]:
+    """
+    Products of whitened rows over segments: with each other, and with the residual.
     """
 
 def shape(name: str) -> Shape:

@@ -42,7 +42,7 @@ def test_every_curve_stands_out(colours: dict[str, str]) -> None:
         assert contrast(colours[look], ground) >= LEAST
         for band in LOOKS:
             assert contrast(colours[look], mixed(colours[band], ground, BAND)) >= LEAST
-    for text in ("ink", "muted", "link", "alarm"):
+    for text in ("ink", "muted", "link", "alarm", "third", "fifth"):
         assert contrast(colours[text], ground) >= TEXT
 
 

@@ -32,6 +32,15 @@ def test_white_noise_gives_the_reported_errors(found: jid.RobotEstimate) -> None
     assert "elbow.coulomb" in drawn.report()
 
 
+def test_errors_are_widened_for_few_blocks(found: jid.RobotEstimate) -> None:
+    """Four parameters of a joint, 30 blocks: the draws themselves are too narrow by the square root of 30 / 26."""
+    drawn = found.bootstrap(400)
+    moved = drawn.samples[:, list(drawn.parameters).index("elbow.coulomb")]
+    low, high = np.quantile(moved, (0.158655, 0.841345))
+    widened = drawn.parameters["elbow.coulomb"].stderr / (0.5 * (high - low))
+    assert widened == pytest.approx(np.sqrt(30.0 / 26.0), rel=1e-3)
+
+
 def test_a_seed_is_a_promise(found: jid.RobotEstimate) -> None:
     first, again, other = (found.bootstrap(30, seed) for seed in (1, 1, 2))
     assert first.samples.tobytes() == again.samples.tobytes()

@@ -58,7 +58,7 @@ void integrate_decays(const FrictionNodes& nodes, const Stretch& windows, const 
   const double* speed = nodes.speed.data() + begin;
   group.exponent == 2.0 ? squares(speed, count, x.data())
                         : powers(speed, group.exponent, count, x.data());
-  std::vector<double> sums(rows * kLanes);
+  Eigen::VectorXd sums(static_cast<Eigen::Index>(rows * kLanes));  // not set to zero before
   for (std::size_t from = 0; from < group.rates.size(); from += kLanes) {
     if (cancel != nullptr) cancel->check();
     const std::size_t lanes = std::min(kLanes, group.rates.size() - from);

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <utility>
 
-#include "base/elementary.hpp"
+#include "base/circle.hpp"
 #include "identify/penalty/penalty.hpp"
 #include "identify/penalty/penalty_parts.hpp"
 
@@ -87,15 +88,23 @@ Eigen::MatrixXd Penalty::instrument_rows(const Instruments& instruments,
 
 void Penalty::integrate_link(const RecordingView& recording, Eigen::Index first,
                              Eigen::Index count) {
-  for (Eigen::Index row = first; row < first + count; ++row) {
-    // Simpson's rule: an instrument need not be exact, only free of the reading's errors.
+  // Simpson's rule: an instrument need not be exact, only free of the reading's errors.
+  Eigen::Array3Xd angle(3, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto& window = windows_[static_cast<std::size_t>(first + i)];
+    angle(0, i) = recording.position[window.begin];
+    angle(1, i) = recording.position[(window.begin + window.end) / 2];
+    angle(2, i) = recording.position[window.end];
+  }
+  Eigen::Array3Xd cosine(3, count);
+  Eigen::Array3Xd sine(3, count);
+  base::circle(angle.data(), static_cast<std::size_t>(angle.size()), cosine.data(), sine.data());
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index row = first + i;
     const auto& window = windows_[static_cast<std::size_t>(row)];
-    const double from = recording.position[window.begin];
-    const double middle = recording.position[(window.begin + window.end) / 2];
-    const double to = recording.position[window.end];
     const double sixth = usable_duration_[row] / 6.0;
-    link_(row, 0) = sixth * (base::cos(from) + 4.0 * base::cos(middle) + base::cos(to));
-    link_(row, 1) = sixth * (base::sin(from) + 4.0 * base::sin(middle) + base::sin(to));
+    link_(row, 0) = sixth * (cosine(0, i) + 4.0 * cosine(1, i) + cosine(2, i));
+    link_(row, 1) = sixth * (sine(0, i) + 4.0 * sine(1, i) + sine(2, i));
     link_(row, 2) = usable_duration_[row];
     link_(row, 3) = recording.velocity[window.end] - recording.velocity[window.begin];
   }
@@ -113,7 +122,7 @@ Eigen::MatrixXd Penalty::instrument_triangle(const Instruments& instruments, bas
     both.leftCols(instruments.size()) = own;
     if (!kept_rows_.empty()) kept_rows_[i].swap(own);
     both.rightCols(1) = observed.segment(static_cast<Eigen::Index>(parts[i].begin), rows);
-    triangles[i] = square_triangle(both);
+    triangles[i] = square_triangle(std::move(both));
   });
   return fold(triangles);
 }

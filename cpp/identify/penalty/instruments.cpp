@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace jointid::identify {
 
@@ -115,14 +116,14 @@ FirstStage solve_first_stage(const Instruments& instruments, const Eigen::Matrix
   return result;
 }
 
-Eigen::MatrixXd square_triangle(const Eigen::MatrixXd& rows) {
+Eigen::MatrixXd square_triangle(Eigen::MatrixXd rows) {
   const Eigen::Index m = rows.cols();
-  Eigen::MatrixXd padded = rows;
-  if (rows.rows() < m) {  // rows of zeros change nothing
-    padded.conservativeResize(m, Eigen::NoChange);
-    padded.bottomRows(m - rows.rows()).setZero();
+  const Eigen::Index given = rows.rows();
+  if (given < m) {  // rows of zeros change nothing
+    rows.conservativeResize(m, Eigen::NoChange);
+    rows.bottomRows(m - given).setZero();
   }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(padded);
+  const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> qr(rows);  // in place
   return qr.matrixQR().topRows(m).triangularView<Eigen::Upper>();
 }
 
@@ -137,7 +138,7 @@ Eigen::MatrixXd fold(const std::vector<Eigen::MatrixXd>& triangles) {
     for (std::size_t i = begin; i < end; ++i) {
       stack.middleRows(m * static_cast<Eigen::Index>(i - begin + 1), m) = triangles[i];
     }
-    result = square_triangle(stack);
+    result = square_triangle(std::move(stack));
   }
   return result;
 }

@@ -53,7 +53,7 @@ FirstStage solve_first_stage(const Instruments& instruments, const Eigen::Matrix
                              Eigen::Index windows);
 
 /// R of the QR decomposition, always square.
-Eigen::MatrixXd square_triangle(const Eigen::MatrixXd& rows);
+Eigen::MatrixXd square_triangle(Eigen::MatrixXd rows);
 /// The triangle of all rows from those of parts of them; at least one.
 Eigen::MatrixXd fold(const std::vector<Eigen::MatrixXd>& triangles);
 

@@ -111,4 +111,21 @@ Eigen::VectorXd robust_variance(const Eigen::Ref<const Eigen::MatrixXd>& jacobia
   return variance;
 }
 
+SegmentSums segment_sums(const Eigen::Ref<const Eigen::MatrixXd>& jacobian,
+                         const Eigen::VectorXd& residual, const Eigen::MatrixXd& whitening,
+                         const std::vector<std::int64_t>& cuts) {
+  const Eigen::MatrixXd rows = whitening * jacobian.transpose();
+  const auto count = static_cast<Eigen::Index>(cuts.size()) - 1;
+  SegmentSums result;
+  result.scores.resize(whitening.rows(), count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index first = cuts[static_cast<std::size_t>(i)];
+    const Eigen::Index length = cuts[static_cast<std::size_t>(i) + 1] - first;
+    const auto mine = rows.middleCols(first, length);
+    result.shares.emplace_back(mine * mine.transpose());
+    result.scores.col(i).noalias() = mine * residual.segment(first, length);
+  }
+  return result;
+}
+
 }  // namespace jointid::identify

@@ -21,4 +21,15 @@ Eigen::VectorXd robust_variance(const Eigen::Ref<const Eigen::MatrixXd>& jacobia
                                 const Eigen::VectorXd& residual, const Eigen::VectorXd& scale,
                                 const Eigen::MatrixXd& weights, base::Pool* pool);
 
+/// Products of the directions `whitening` makes of the Jacobian's rows, over each segment of rows.
+struct SegmentSums {
+  std::vector<Eigen::MatrixXd> shares;  ///< with each other
+  Eigen::MatrixXd scores;               ///< with the residual; directions x segments
+};
+
+/// Segments are from one cut to the next.
+SegmentSums segment_sums(const Eigen::Ref<const Eigen::MatrixXd>& jacobian,
+                         const Eigen::VectorXd& residual, const Eigen::MatrixXd& whitening,
+                         const std::vector<std::int64_t>& cuts);
+
 }  // namespace jointid::identify

@@ -2,6 +2,7 @@
 
 import errno
 import os
+from io import FileIO
 from pathlib import Path
 
 from jointid.base.errors import InputError
@@ -40,6 +41,39 @@ def write_whole(path: Path, content: bytes) -> None:
         if error.errno is None:  # a message of its own
             raise
         raise OSError(error.errno, error.strerror, str(path)) from error
+
+
+def open_locked(path: Path) -> FileIO:
+    """Open a file to read and write, without a buffer; nobody else can open it so until it is closed.
+
+    It is made if it does not exist.
+
+    The lock ends with the program, however it ends. Systems without such locks (Windows) have none.
+
+    Raises
+    ------
+    InputError
+        Another program, or another part of this one, has it open.
+    OSError
+        It cannot be opened.
+    """
+    file = FileIO(os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666), "r+")
+    try:
+        import fcntl
+
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except ModuleNotFoundError:
+        return file
+    except OSError as error:
+        if error.errno not in (errno.EWOULDBLOCK, errno.EACCES):
+            return file  # a file system without locks, such as some of a network
+        file.close()
+        raise InputError(
+            "another program is writing this file",
+            place=str(path),
+            remedy=("wait for its end", "write another file"),
+        ) from None
+    return file
 
 
 def _replace(target: Path, content: bytes) -> None:

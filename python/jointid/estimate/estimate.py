@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
     from jointid.estimate.derived import DerivedValue
     from jointid.estimate.follow_up import FollowUp
+    from jointid.estimate.verdict import Verdict
     from jointid.joint.joint import Joint
     from jointid.recording.recording import Recording
 
@@ -159,6 +160,13 @@ class Estimate(Questions):
     def warnings(self) -> tuple[Finding, ...]:
         """Findings that may bias values or make them unusable."""
         return tuple(found for found in self.findings if found.severity != "info")
+
+    @property
+    def verdict(self) -> Verdict:
+        """Whether the values may be used, and for what; `jointid.estimate.verdict.judged` takes a self-test, too."""
+        from jointid.estimate.verdict import judged
+
+        return judged(self)
 
     def friction(self, velocity: ArrayLike, *, load: float = 0.0) -> FrictionCurve:
         """Friction at given velocities, with a pointwise 95 % band.

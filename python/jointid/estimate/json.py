@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.base.json_text import json_text
+from jointid.base.json_layout import json_text
 from jointid.base.schema import Number, read_json
 from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
@@ -38,6 +38,7 @@ def write_estimate(estimate: Estimate) -> str:
         if item.name != "follow_up":  # it holds the recordings, which have files of their own
             document[item.name] = plain(getattr(estimate, item.name))
     document["derived"] = plain(estimate.derived)
+    document["verdict"] = estimate.verdict.document()
     for entry, found in zip(document["findings"], estimate.findings, strict=True):
         entry["message"] = found.message  # for readers that are not ours
     return json_text(document)

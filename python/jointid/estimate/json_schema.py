@@ -128,6 +128,10 @@ ESTIMATE: dict[int, Kind] = {
         {**_FIELDS, "findings": ListOf(FINDING)},
         {
             "derived": Plain(),
+            # Judged again.
+            "verdict": Record(
+                {"level": Text(), "reasons": ListOf(_SENTENCES), "uses": TableOf(Plain())}
+            ),
             "information": OrNull(ListOf(ListOf(_VALUE))),
             "selection": OrNull(SELECTION),
             "selftest": Plain(),

@@ -129,7 +129,12 @@ def text_report(estimate: Estimate, action: Callable[[Action], str] = str) -> st
     """
     table = [HEAD, *rows(estimate)]
     widths = [max(len(row[column]) for row in table) for column in range(len(HEAD))]
-    lines = [f"jointid estimate — {estimate.joint.name or 'joint'}", ""]
+    lines = [
+        f"jointid estimate — {estimate.joint.name or 'joint'}",
+        "",
+        *estimate.verdict.lines(),
+        "",
+    ]
     for index, row in enumerate(table):
         cells = [
             cell.rjust(w) if 0 < c < 4 and index else cell.ljust(w)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from jointid.joint.units import torque_unit
 from jointid.problem.window_table import WindowTable
+from jointid.recording.order_statistics import distinct, median
 
 if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
@@ -33,14 +34,14 @@ def map_velocities(peak: float, count: int = 400) -> Array:
 
 def whole_windows(windows: WindowTable) -> NDArray[np.bool_]:
     """Return which windows hold enough samples for a mean: more than half of the usual time."""
-    return windows.duration > 0.5 * float(np.median(windows.duration))
+    return windows.duration > 0.5 * median(windows.duration)
 
 
 def window_centres(windows: WindowTable) -> Array:
     """Return the window centres on one time axis [s], on which recordings follow one another."""
     centre = 0.5 * (windows.start + windows.stop)
     begin = 0.0
-    for run in np.unique(windows.recording):
+    for run in distinct(windows.recording):
         same = windows.recording == run
         first, last = float(windows.start[same].min()), float(windows.stop[same].max())
         if begin:
@@ -54,5 +55,5 @@ def with_gaps(centre: Array, *values: Array) -> tuple[Array, ...]:
     if len(centre) < 3:
         return (centre, *values)
     steps = np.diff(centre)
-    breaks = np.flatnonzero(steps > 2.5 * float(np.median(steps))) + 1
+    breaks = np.flatnonzero(steps > 2.5 * median(steps)) + 1
     return tuple(np.insert(each, breaks, np.nan) for each in (centre, *values))

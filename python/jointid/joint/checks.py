@@ -109,7 +109,8 @@ def set_numbers(
     instance: Any, owner: str, names: Collection[str], convert: Callable[[str, str, object], float]
 ) -> None:
     """Convert fields of a frozen instance to checked floats; None stays where it is the default."""
-    for name, optional in _optional(type(instance)).items():
+    kind: type = type(instance)
+    for name, optional in _optional(kind).items():
         if name not in names:
             continue
         value = getattr(instance, name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import weakref
 from collections.abc import Callable, Mapping
 from types import TracebackType
@@ -67,11 +68,18 @@ class OnlineIdentifier:
 
     Examples
     --------
-    >>> with jid.OnlineIdentifier(joint, window=30.0) as identifier:
-    ...     for sample in drive:
-    ...         identifier.feed(time=..., position=..., velocity=..., torque=..., sensor=...)
-    ...         if identifier.estimate is not None:
-    ...             controller = retuned(identifier.estimate.joint)
+    >>> with jid.OnlineIdentifier(joint, window=10.0) as identifier:
+    ...     for block in recording.split(24):  # half a second each, as a drive delivers them
+    ...         identifier.feed(
+    ...             time=block.time,
+    ...             position=block.position,
+    ...             velocity=block.velocity,
+    ...             torque=block.torque,
+    ...             sensor=block.sensor,
+    ...         )
+    ...     latest = identifier.wait()  # `identifier.estimate` does not wait
+    >>> bool(abs(latest.joint.parameters["coulomb"].value - 25.0) < 0.5)
+    True
     """
 
     def __init__(
@@ -102,6 +110,7 @@ class OnlineIdentifier:
         )
         self._signals: tuple[str, ...] | None = None
         self._last_time = -np.inf
+        self._feeding = threading.RLock()
         self._worker = Worker(self._settings, callback)
         weakref.finalize(self, self._worker.stop)
 
@@ -113,7 +122,7 @@ class OnlineIdentifier:
         torque: ArrayLike | None = None,
         **others: ArrayLike | None,
     ) -> None:
-        """Add one sample, or several.
+        """Add one sample, or several. Any thread may do so; each call is taken as a whole.
 
         Parameters
         ----------
@@ -139,6 +148,11 @@ class OnlineIdentifier:
                     place="samples",
                 )
         given = {"time": time, "position": position, "torque": torque, **others}
+        with self._feeding:
+            self._take(given)
+
+    def _take(self, given: Mapping[str, ArrayLike | None]) -> None:
+        """Check samples against those before, and hand them to the thread; by one caller at a time."""
         here = tuple(name for name, value in given.items() if value is not None)
         signals = self._signals or here
         if "position" not in signals:

@@ -67,24 +67,30 @@ class Problem:
         """
         return self._cut(_core.Penalty, windows)
 
-    def parts(self, windows: Windows) -> _core.PenaltyParts:
+    def parts(self, windows: Windows, residual: str | None = None) -> _core.PenaltyParts:
         """Return the same penalty, summed part by part: for a caller that evaluates it once or twice.
+
+        Parameters
+        ----------
+        windows : int, float, str, WindowOptions or None
+        residual : str, optional
+            Default: that of the problem.
 
         Raises
         ------
         InputError
             Windows that cannot be cut.
         """
-        return self._cut(_core.PenaltyParts, windows)
+        return self._cut(_core.PenaltyParts, windows, residual)
 
-    def _cut(self, made: type[Made], windows: Windows) -> Made:
+    def _cut(self, made: type[Made], windows: Windows, residual: str | None = None) -> Made:
         options = self.window_options(windows)
         recordings = self.in_core  # its errors are values already
         return made(
             recordings=recordings,
             terms=list(self.choice.terms),
             windows=options,
-            residual=_core.Residual[self.choice.residual],
+            residual=_core.Residual[residual or self.choice.residual],
             mask_standstill=self.mask_standstill,
             gear_ratio=self.choice.gear_ratio,
             per_recording=list(self.choice.per_recording),

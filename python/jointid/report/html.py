@@ -17,9 +17,12 @@ from jointid.estimate.html_tables import (
     html_shifts,
     html_table,
 )
+from jointid.estimate.tables import shown_name
 from jointid.identification.warnings.registry import finding_types
 from jointid.report.estimate_pictures import picture_sections
 from jointid.report.style import STYLE
+
+_REASONS = 3  # those that matter most; the findings have all
 
 
 def html_report(estimate: Estimate, action: Callable[[Action], str] = str) -> str:
@@ -32,7 +35,38 @@ def html_report(estimate: Estimate, action: Callable[[Action], str] = str) -> st
         Words the advice of a finding. Default: as at a Python prompt.
     """
     title = f"{estimate.joint.name or 'joint'}: friction identified by jointid"
-    return page(title, STYLE, element("h1", title), *sections(estimate, action), footer(estimate))
+    return page(
+        title,
+        STYLE,
+        element("h1", title),
+        *verdict_lines(estimate),
+        *sections(estimate, action),
+        footer(estimate),
+    )
+
+
+def verdict_lines(estimate: Estimate) -> list[Html]:
+    """Whether the values may be used, for what, and what speaks against it."""
+    verdict = estimate.verdict
+    level = verdict.level.replace(" ", "-")
+    words = [
+        element("li", element("b", f"{purpose}: {use.level}"), *_named(use.parameters))
+        for purpose, use in verdict.uses.items()
+    ]
+    lines = [
+        element("p", element("b", f"{verdict.level.capitalize()}."), class_=f"verdict {level}"),
+        element("ul", *words, class_="uses"),
+    ]
+    if verdict.reasons:
+        shown = [element("li", reason) for reason in verdict.reasons[:_REASONS]]
+        more = len(verdict.reasons) - len(shown)
+        shown += [element("li", f"and {more} more, below")] if more else []
+        lines += [element("p", "Because:"), element("ul", *shown)]
+    return lines
+
+
+def _named(parameters: tuple[str, ...]) -> list[Html | str]:
+    return [f": {', '.join(map(shown_name, parameters))}"] if parameters else []
 
 
 def sections(estimate: Estimate, action: Callable[[Action], str] = str) -> list[Html]:

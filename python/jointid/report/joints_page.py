@@ -15,7 +15,7 @@ from jointid.estimate.html_tables import html_table as html_parameters
 from jointid.joints.html_tables import html_couplings, html_shares, html_table
 from jointid.joints.result import JointEstimates, JointResult
 from jointid.report.estimate_pictures import friction_picture, windows_picture
-from jointid.report.html import shown_by
+from jointid.report.html import shown_by, verdict_lines
 from jointid.report.style import STYLE, WIDE
 
 if TYPE_CHECKING:
@@ -75,6 +75,7 @@ def _of_estimate(estimate: Estimate, action: Callable[[Action], str]) -> list[Ht
     pictured = {"friction-map", "windows", "convergence"}
     shown = {code: name for code, name in shown_by(estimate).items() if name not in pictured}
     return [
+        *verdict_lines(estimate),
         element("div", html_parameters(estimate), class_="wide"),
         html_findings(estimate, shown, action),
         friction_picture(estimate),

@@ -141,6 +141,8 @@ def _friction(estimate: RobotEstimate, joint: RobotJoint, number: int) -> Panel:
         if "static" in p:
             decay = np.exp(-p["stribeck"].value * speeds**2)
             values = values + sign * p["static"].value * decay
+        if "viscous_difference" in p:
+            values = values + p["viscous_difference"].value * np.abs(speeds)
         marks.append(Line(label="identified" if sign > 0.0 else "", across=speeds, up=values))
     slides = estimate.robot.tree.prismatic[number]
     return Panel(

@@ -12,7 +12,7 @@ from jointid.base.files import write_whole
 from jointid.base.html import Html, element, page, table
 from jointid.report.drawing.marks import Level, Line, Mark, Panel
 from jointid.report.figure import captioned
-from jointid.report.html import footer, sections
+from jointid.report.html import footer, sections, verdict_lines
 from jointid.report.limit_margins import margin_rows
 from jointid.report.style import STYLE
 
@@ -62,7 +62,8 @@ def session_report(result: Commissioning, action: Callable[[Action], str] = str)
     body += _drive(first.metadata)
     if result.estimates:
         changed = "What was assumed and what was identified"
-        body += [element("h2", changed, id="identified"), _table(parameter_rows(result))]
+        body += [element("h2", changed, id="identified"), *verdict_lines(result.estimates[-1])]
+        body.append(_table(parameter_rows(result)))
         body += sections(result.estimates[-1], action)
         body.append(footer(result.estimates[-1]))
     return page(title, STYLE, *body)

@@ -18,6 +18,8 @@ table.facts td:nth-child(2) {{ text-align: left; }}
 table.numbers th {{ text-align: left; font-weight: normal; }} table.numbers td {{ text-align: right; }}
 figure {{ margin: 1rem 0; }} figcaption {{ color: var(--muted); font-size: .9rem; max-width: 46rem; }}
 ul.findings li {{ margin-bottom: .4rem; }} li.blocking b {{ color: var(--alarm); }} li.info {{ color: var(--muted); }}
+p.verdict {{ font-size: 1.2rem; }} p.not-usable {{ color: var(--alarm); }}
+p.usable-with-care {{ color: var(--fifth); }} p.usable {{ color: var(--third); }}
 footer {{ margin-top: 3rem; color: var(--muted); font-size: .85rem; }}
 """
 # Of pages with wide tables: a row for each joint.

@@ -11,7 +11,7 @@ from jointid.estimate.findings import Finding, Measured
 from jointid.robot.attempt import Attempt
 from jointid.robot.columns import DIFFERENCE
 from jointid.robot.looked_rows import LookedRows
-from jointid.robot.models import modelled
+from jointid.robot.models import AUTO, modelled
 
 _SURE = 6.0  # standard errors
 _BETTER = 3.0  # standard errors by which held-out stretches fit better
@@ -36,12 +36,13 @@ def asymmetry_told(attempt: Attempt) -> Iterator[Finding]:
         if not (np.isfinite(error) and large):
             continue
         if share.certainty > _BETTER and explained > _EXPLAINED:
-            model = modelled(found.model, asymmetric=True)
             yield Finding(
                 code="asymmetric_friction",
                 evidence={"difference": Measured(value, unit), "explained": Measured(explained)},
                 cause=f"the viscous friction of {name} differs between the directions by "
                 f"{2.0 * abs(value):.3g} ± {2.0 * error:.2g} {unit}; that explains "
                 f"{100.0 * explained:.2g} % of its squared residual in stretches of motion that it was not taken from",
-                advice=(Action("call", {"model": {name: model}}, function="identify_robot"),),
+                advice=(
+                    Action("call", {"model": modelled(AUTO, True)}, function="identify_robot"),
+                ),
             )

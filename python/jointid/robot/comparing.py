@@ -108,9 +108,9 @@ def compare_robot_models(
         )
     scores = np.array([row.fold_scores for row in rows])
     best, chosen = _chosen(scores, [row.parameters for row in rows])
-    told = _with_reasons(rows, best, chosen)
-    winner = told[chosen]
-    rivals = [row for row in told if row.inertia == winner.inertia]
+    reasoned = _with_reasons(rows, best, chosen)
+    winner = reasoned[chosen]
+    rivals = [row for row in reasoned if row.inertia == winner.inertia]
     found = {name: _model_of(name, rivals, winner) for name in robot.names}
     estimate = identify_robot(
         given,
@@ -124,10 +124,10 @@ def compare_robot_models(
     )
     several = len(given) > 1
     return RobotComparison(
-        rows=told,
+        rows=reasoned,
         winner=winner,
         models=found,
-        reason=_sentence(told, best, chosen),
+        reason=_sentence(reasoned, best, chosen),
         estimate=estimate,
         settings={
             "folds": int(blocks.max()) + 1,
@@ -230,7 +230,7 @@ def _with_reasons(
     rows: Sequence[ComparedRobotModel], best: int, chosen: int
 ) -> tuple[ComparedRobotModel, ...]:
     winner = rows[chosen]
-    told = []
+    reasoned = []
     for number, row in enumerate(rows):
         excess = np.array(row.fold_scores) - np.array(rows[best].fold_scores)
         if number == chosen:
@@ -247,8 +247,8 @@ def _with_reasons(
                 "not significantly better than the winner, with "
                 f"{row.parameters} parameters instead of {winner.parameters}"
             )
-        told.append(replace(row, reason=reason))
-    return tuple(told)
+        reasoned.append(replace(row, reason=reason))
+    return tuple(reasoned)
 
 
 def _sentence(rows: Sequence[ComparedRobotModel], best: int, chosen: int) -> str:

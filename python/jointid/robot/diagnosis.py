@@ -71,8 +71,8 @@ def diagnosed(
     left = {_key(each, attempt) for each in last.estimate.findings}
     stay = [each for each in attempt.estimate.findings if _key(each, attempt) in left]
     gone = [each for each in attempt.estimate.warnings if _key(each, attempt) not in left]
-    told = [*causes, *_summary(causes, gone, attempt, last), *stay]
-    return tuple(told)
+    every = [*causes, *_summary(causes, gone, attempt, last), *stay]
+    return tuple(every)
 
 
 def _corrected(
@@ -138,9 +138,9 @@ def _without_fact(
     without = attempted(runs, other, asked, attempt.delay)
     before, after = (_left(each) for each in (attempt, without))
     shown = int(np.argmax(before / after))
-    told = replace(wrong, before=float(before[shown]), after=float(after[shown]))
+    measured = replace(wrong, before=float(before[shown]), after=float(after[shown]))
     return _Corrected(
-        finding=named_fact(told, robot.names[shown]),
+        finding=named_fact(measured, robot.names[shown]),
         recordings=runs,
         robot=other,
         attempt=without,

@@ -26,7 +26,7 @@ _CERTAIN = 2.0  # standard errors of that, by its scatter over stretches
 _WALD = 150.0  # of the values per column; errors of a model, too, are no chance
 _AS_GOOD = 0.93  # of what the best explains: a simpler cause is taken
 _SETTLED = 0.02  # of an error: what is left of it
-_MAY_BE = 0.97  # of it: another cause that is told
+_MAY_BE = 0.97  # of it: another cause that is named
 TILT, ZERO, TORQUE, LINK, CENTRE, PAYLOAD = (
     *("tilted_base", "wrong_zero", "wrong_torque_scale"),
     *("wrong_inertia", "wrong_centre", "payload"),
@@ -83,13 +83,13 @@ def small_errors(attempt: Attempt) -> list[SmallError]:
     A simpler one that explains nearly as much stands before it: what each leaves if it is corrected decides.
     """
     found = [
-        (kind, joint, told)
-        for kind, joint, told in _shares(attempt)
-        if told.share > _EXPLAINED
-        and told.certainty > _CERTAIN
-        and told.wald > _WALD
-        and _size(attempt, kind, joint, told.values) > _MATTERS[kind]
-        and not (kind in (TORQUE, LINK) and told.values[0] <= -1.0)  # a sign, or no body
+        (kind, joint, share)
+        for kind, joint, share in _shares(attempt)
+        if share.share > _EXPLAINED
+        and share.certainty > _CERTAIN
+        and share.wald > _WALD
+        and _size(attempt, kind, joint, share.values) > _MATTERS[kind]
+        and not (kind in (TORQUE, LINK) and share.values[0] <= -1.0)  # a sign, or no body
     ]
     if not found:
         return []
@@ -102,23 +102,23 @@ def small_errors(attempt: Attempt) -> list[SmallError]:
 
 def _error(attempt: Attempt, near: list[_Told], of: _Told) -> SmallError:
     """One of the errors that explain nearly the same, with those that may be it."""
-    kind, joint, told = of
+    kind, joint, share = of
     best = max(each.share for _, _, each in near)
     others = tuple(
         (other, place)
         for other, place, each in near
         if (other, place) != (kind, joint)
         and each.share >= _MAY_BE * best
-        and each.values.size == told.values.size
+        and each.values.size == share.values.size
     )
     return SmallError(
         kind=kind,
         joint=joint,
-        values=told.values,
-        errors=told.errors,
-        share=told.share,
+        values=share.values,
+        errors=share.errors,
+        share=share.share,
         given=attempt.robot,
-        robot=_corrected(attempt, kind, joint, told.values),
+        robot=_corrected(attempt, kind, joint, share.values),
         others=others,
     )
 
@@ -130,13 +130,15 @@ def refined(error: SmallError, attempt: Attempt) -> SmallError | None:
     """
     if error.kind not in (TILT, ZERO):
         return None
-    told = next(
-        told for kind, joint, told in _shares(attempt) if (kind, joint) == (error.kind, error.joint)
+    share = next(
+        share
+        for kind, joint, share in _shares(attempt)
+        if (kind, joint) == (error.kind, error.joint)
     )
-    if np.linalg.norm(told.values) < _SETTLED * np.linalg.norm(error.values):
+    if np.linalg.norm(share.values) < _SETTLED * np.linalg.norm(error.values):
         return None
-    other = _corrected(attempt, error.kind, error.joint, told.values)
-    return replace(error, robot=other, errors=told.errors)
+    other = _corrected(attempt, error.kind, error.joint, share.values)
+    return replace(error, robot=other, errors=share.errors)
 
 
 def tilts(gravity: Array) -> Array:

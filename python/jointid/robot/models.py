@@ -52,7 +52,7 @@ def _named(model: object) -> str:
 
 def modelled(name: str, asymmetric: bool) -> str:
     """Return a model's text."""
-    return str(Model(name, asymmetric=True)) if asymmetric else name
+    return f"{name}:asymmetric" if asymmetric else name
 
 
 def name_of(model: str) -> str:

@@ -51,8 +51,8 @@ def predict_robot(estimate: RobotEstimate, recording: RobotRecording) -> RobotPr
     )
     whole = estimate.inertial.reshape(-1, 1)
     balance = balance_of(robot, [motion], float(settings["window_duration"]), whole)
-    told = balance.inertia[:, 0] + balance.known + _friction(estimate, balance)
-    residual, measured = balance.rows.torque - told, balance.rows.torque
+    predicted = balance.inertia[:, 0] + balance.known + _friction(estimate, balance)
+    residual, measured = balance.rows.torque - predicted, balance.rows.torque
     shares = {}
     for joint, name in enumerate(robot.names):
         mine = balance.places[joint]

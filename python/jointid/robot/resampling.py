@@ -109,6 +109,7 @@ def bootstrapped(estimate: RobotEstimate, count: int, seed: int) -> Bootstrap:
     below, above = source.lower - source.values, source.upper - source.values
     moved = draws(source.cells, below, above, count, seed)
     freedom = max(1, source.cells.blocks - 1)
+    wider = np.clip(_widening(source) * moved, below, above)
     names = [
         name if joint is None else f"{estimate.robot.names[joint]}.{name}"
         for joint, name in source.labels
@@ -117,7 +118,7 @@ def bootstrapped(estimate: RobotEstimate, count: int, seed: int) -> Bootstrap:
     return Bootstrap(
         parameters={
             name: replace(
-                drawn_parameter(every[name], moved[:, i], (below[i], above[i]), freedom), name=name
+                drawn_parameter(every[name], wider[:, i], (below[i], above[i]), freedom), name=name
             )
             for i, name in enumerate(names)
         },
@@ -126,6 +127,17 @@ def bootstrapped(estimate: RobotEstimate, count: int, seed: int) -> Bootstrap:
         blocks=source.cells.blocks,
         seed=seed,
     )
+
+
+def _widening(source: RobotDraws) -> float:
+    """Return the factor by which errors of so few blocks are larger than the draws say.
+
+    A fit takes part of each block's error away, as much as it has parameters for the blocks: the correction of
+    MacKinnon and White (1985, HC1) with a block as one observation, and the parameters of one joint.
+    """
+    joints = [joint for joint, _ in source.labels if joint is not None]
+    blocks, each = source.cells.blocks, len(joints) / max(1, len(set(joints)))
+    return float(np.sqrt(blocks / max(blocks - each, 0.5 * blocks, 1.0)))
 
 
 def _limits(rows: Rows, length: float) -> tuple[list[tuple[int, int]], NDArray[np.int64]]:

@@ -186,7 +186,8 @@ class RobotEstimate:
         A check of the standard errors that does not rest on their formula. A block holds all joints; it is as long as
         a segment of motion: an eighth of the recordings, between 0.25 and 1 s, and longer on recordings over 10 min. A
         draw is refitted inside the parameters' bounds, with the balance linearised at the estimate, and with what is
-        known beforehand of base parameters.
+        known beforehand of base parameters. Errors are widened by the square root of B / (B - p), for B blocks and
+        p parameters of a joint, at most 1.41 times: so much of the blocks' errors the fit takes away.
 
         Parameters
         ----------

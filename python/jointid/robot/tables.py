@@ -95,8 +95,8 @@ def _turning(estimate: RobotEstimate) -> list[tuple[str, str]]:
     shift = estimate.settings.get("shift", {}).get("torque")
     if shift:
         late = shift.items() if isinstance(shift, Mapping) else [("all joints", shift)]
-        told = ", ".join(f"{1e3 * value:.3g} ms of {name}" for name, value in late)
-        found.append(("delay", f"torques' delay taken away: {told}"))
+        delays = ", ".join(f"{1e3 * value:.3g} ms of {name}" for name, value in late)
+        found.append(("delay", f"torques' delay taken away: {delays}"))
     return found
 
 

@@ -25,7 +25,7 @@ _BETTER = (
 )
 _BETTER_COUPLED = 0.15  # the same of a coupling, which light joints hardly show
 _CLEARLY = 0.05  # by which it has to be better than the next
-_LEAST = 0.01  # of a motor's torque: less residual is not told apart
+_LEAST = 0.01  # of a motor's torque: less residual does not decide
 _FRICTION = ("coulomb", "viscous", "motor_coulomb", "motor_viscous")
 _SLOW = 0.02  # of a peak speed: standing still, for a quick look
 
@@ -134,14 +134,14 @@ def wrong_fact(
     ]
     if len(same) < len(others):
         return None
-    told = int(np.argmax(before / after))
+    most = int(np.argmax(before / after))
     found = [
         WrongFact(
             kind=each.kind,
             joints=tuple(robot.names[joint] for joint in each.joints),
             coupling=each.coupling,
-            before=float(before[told]),
-            after=float(after[told]),
+            before=float(before[most]),
+            after=float(after[most]),
             robot=each.robot,
             order=each.order,
             torque_order=each.torque_order,

@@ -6,12 +6,14 @@ import json
 import os
 import time
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
+from jointid.base.files import open_locked
 from jointid.base.schema import read_bytes, read_json
 from jointid.study.row import REFUSED, Row
 from jointid.study.saved_header import EXPECTED, read_header
@@ -36,46 +38,58 @@ class StudyFile:
     Raises
     ------
     InputError
-        The file exists, or belongs to another study, or its folder does not exist.
+        The file exists, or belongs to another study, or another program writes it, or its folder does not exist.
     """
 
     def __init__(self, path: Path, header: dict[str, Any], *, resume: bool) -> None:
         self.path = path
         self.rows: list[Row] = []
         self._synced = 0.0
-        if path.exists() and path.stat().st_size > 0:
-            if not resume:
-                raise InputError(
-                    "the file exists",
-                    argument="output",
-                    value=str(path),
-                    remedy=(
-                        Action("call", {"resume": True}, text="to continue it", function="sweep"),
-                        _ANOTHER,
-                    ),
-                )
-            known, self.rows, length = read(path)
+        if not path.parent.is_dir():
+            raise InputError(
+                f"the folder {path.parent} does not exist",
+                argument="output",
+                value=str(path),
+                remedy="create it first",
+            )
+        if not resume:
+            self._refuse_rows()  # without touching it
+        self._file = open_locked(path)
+        try:
+            self._begin(header, resume)
+        except BaseException:
+            self._file.close()
+            raise
+
+    def _refuse_rows(self) -> None:
+        if self.path.exists() and self.path.stat().st_size > 0:
+            raise InputError(
+                "the file exists",
+                argument="output",
+                value=str(self.path),
+                remedy=(
+                    Action("call", {"resume": True}, text="to continue it", function="sweep"),
+                    _ANOTHER,
+                ),
+            )
+
+    def _begin(self, header: dict[str, Any], resume: bool) -> None:
+        """Read what is there, and write the header where it is not."""
+        if not resume:
+            self._refuse_rows()  # another program may have written it in the meantime
+        if self.path.stat().st_size > 0:
+            known, self.rows, length = read(self.path)
             if known["fingerprint"] != header["fingerprint"]:
                 raise InputError(
                     f"the file belongs to another study: {_difference(known, header)}",
                     argument="output",
-                    place=str(path),
+                    place=str(self.path),
                     remedy=_ANOTHER,
                 )
-            self._file = path.open("r+b")
             self._file.truncate(length)  # a line that a crash cut off
             self._file.seek(length)
             if known["trials"] == header["trials"]:
                 return
-        else:
-            if not path.parent.is_dir():
-                raise InputError(
-                    f"the folder {path.parent} does not exist",
-                    argument="output",
-                    value=str(path),
-                    remedy="create it first",
-                )
-            self._file = path.open("w+b")
         self._write([header])
 
     def append(self, rows: Iterable[Row]) -> None:
@@ -85,10 +99,17 @@ class StudyFile:
         self.rows += rows
 
     def _write(self, records: Iterable[dict[str, Any]]) -> None:
-        self._file.write(
-            "".join(json.dumps(record, ensure_ascii=False) + "\n" for record in records).encode()
-        )
-        self._file.flush()
+        lines = "".join(json.dumps(record, ensure_ascii=False) + "\n" for record in records)
+        end = self._file.tell()
+        rest = lines.encode()
+        try:
+            while rest:
+                rest = rest[self._file.write(rest) :]
+        except BaseException:  # a full disk takes a part of a line, which the next one would follow
+            with suppress(OSError):
+                self._file.truncate(end)
+                self._file.seek(end)
+            raise
         if time.monotonic() - self._synced > _SYNC:
             os.fsync(self._file.fileno())
             self._synced = time.monotonic()
@@ -104,9 +125,10 @@ class StudyFile:
         trace: TracebackType | None,
     ) -> None:
         """Write everything to the disk, and close the file."""
-        self._file.flush()
-        os.fsync(self._file.fileno())
-        self._file.close()
+        try:
+            os.fsync(self._file.fileno())
+        finally:
+            self._file.close()
 
 
 def read(path: Path) -> tuple[dict[str, Any], list[Row], int]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from io import StringIO
 from pathlib import Path
@@ -12,6 +13,8 @@ import can
 from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
 
+_HIGHEST = 0x7FF  # identifier of 11 bits
+_LONGEST = 8  # bytes of a classic frame
 ENDINGS = (".log", ".asc", ".blf")
 
 LoggedFrame = tuple[float, int, bytes]  # time [s], identifier, payload
@@ -22,7 +25,7 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
 
     Frames that were received although the host sends frames with their identifier are another master's,
     and are left out too, where the file says which were sent. A last line that is cut off is no frame.
-    Errors do not name the file: the caller does.
+    Frames of CAN FD are left out, too. Errors do not name the file: the caller does.
 
     Parameters
     ----------
@@ -32,7 +35,8 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
     Raises
     ------
     InputError
-        The file cannot be read.
+        The file cannot be read, or a frame is none that a bus can carry: an identifier above 7FFh, more than 8 bytes,
+        a stamp that is not finite.
     """
     if path.suffix.lower() not in ENDINGS:
         raise InputError(
@@ -46,16 +50,34 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
             number += 1
             if message.is_error_frame or message.is_remote_frame or message.is_extended_id:
                 continue
+            if message.is_fd:  # no drive's: CANopen sends classic frames
+                continue
+            problem = _problem(message)
+            if problem:
+                raise InputError(f"frame {number} {problem}")
             if not message.is_rx:
                 sent.add(message.arbitration_id)
             if not message.is_rx or message.arbitration_id not in sent:
                 yield message.timestamp, message.arbitration_id, bytes(message.data)
+    except InputError:
+        raise
     except FileNotFoundError:
         raise InputError("there is no such file") from None
     except OSError as error:
         raise InputError(f"the file cannot be read ({error.strerror})") from None
     except Exception as error:  # each of python-can's readers has errors of its own
         raise InputError(f"what follows frame {number} is no frame ({reason_of(error)})") from error
+
+
+def _problem(message: can.Message) -> str:
+    """What no classic frame with an 11-bit identifier has; python-can's readers do not look."""
+    if not math.isfinite(message.timestamp):
+        return "has a stamp that is no number"
+    if not 0 <= message.arbitration_id <= _HIGHEST:
+        return f"has the identifier {message.arbitration_id:X}h, above {_HIGHEST:X}h"
+    if len(message.data) > _LONGEST:
+        return f"has {len(message.data)} bytes, more than {_LONGEST}"
+    return ""
 
 
 def _messages(path: Path) -> Iterator[can.Message]:

@@ -7,8 +7,6 @@ give a parameter (Satterthwaite), which is few where few segments determine it.
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -168,14 +166,8 @@ def _clustered(jacobian: Array, residual: Array, whitening: Array, cuts: Cuts) -
 
 def _sums(jacobian: Array, residual: Array, whitening: Array, cuts: Cuts) -> tuple[Array, Array]:
     """Products of the determined directions over each segment, with each other and with the residual."""
-    directions = len(whitening)
-    shares = np.empty((len(cuts) - 1, directions, directions))
-    scores = np.empty((len(cuts) - 1, directions))
-    for i, (first, last) in enumerate(itertools.pairwise(cuts)):
-        rows = np.einsum("ip,rp->ir", jacobian[first:last], whitening)
-        shares[i] = np.einsum("ir,iq->rq", rows, rows)
-        scores[i] = np.einsum("ir,i->r", rows, residual[first:last])
-    return shares, scores
+    shares, scores = _core.segment_sums(jacobian, residual, whitening, cuts.tolist())
+    return np.array(shares), np.asarray(scores)
 
 
 def _windows_alone(jacobian: Array, residual: Array, whitening: Array, most: int = 4096) -> Array:

@@ -163,8 +163,12 @@ def _integrals(
 def _rests_on_a_limit(recording: Recording) -> bool:
     """Whether the reading may be clipped: what it lacks there is no half step."""
     reading, speed = np.asarray(recording.sensor), np.abs(recording.velocity)
-    moving = reading[speed > _MOVING * speed.max()]  # at rest a clean reading stays, too
-    return any(np.mean(moving == limit) > _RESTING for limit in (reading.min(), reading.max()))
+    moving = speed > _MOVING * speed.max()  # at rest a clean reading stays, too
+    most = _RESTING * np.count_nonzero(moving)
+    return any(
+        np.count_nonzero(moving[reading == limit]) > most
+        for limit in (reading.min(), reading.max())
+    )
 
 
 def _with_step(problem: Problem, number: int, step: float) -> Recording:

@@ -45,7 +45,9 @@ def _highest_peak(evidence: Evidence, gear: float) -> _Peak | None:
     """
     period = min(recording.sample_period for recording in evidence.recordings)
     try:
-        fine = evidence.problem.parts(_FINE * period)
+        # Without a first stage instruments are the torque's residual: what they need is not summed.
+        own = evidence.problem.choice.residual
+        fine = evidence.problem.parts(_FINE * period, "torque" if own == "instruments" else own)
     except InputError:
         return None
     windows, power, sums = fine.ripple(

@@ -6,12 +6,13 @@ are equal, byte for byte, are then read together.
 """
 
 import struct
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from jointid.base.values import dataclass
 from jointid.recording.messages.definitions import Types
 from jointid.recording.messages.joints import Path, may_name
 from jointid.recording.messages.topic import DamageError

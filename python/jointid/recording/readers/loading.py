@@ -16,7 +16,7 @@ from jointid.recording.contents import read_contents
 from jointid.recording.copies import without_copies
 from jointid.recording.damaged_rows import NOTE
 from jointid.recording.readers.reader import Reader
-from jointid.recording.readers.registry import endings, reader_of
+from jointid.recording.readers.registry import reader_of
 from jointid.recording.recording import Recording
 from jointid.recording.runs import one_run
 from jointid.recording.table import Table
@@ -136,7 +136,7 @@ def load(
     >>> recording = jid.load("log.csv", columns={"position": "enc1"}, units={"position": "deg"})
     >>> recording = jid.load("robot.csv", extra={"gravity": "model_gravity_torque_1_Nm"})
     >>> elbow = jid.load("arm.csv", joint=3, gear_ratio=-48)
-    >>> elbow = jid.load("arm.mcap", joint="elbow", topic="/joint_states")
+    >>> elbow = jid.load("arm.mcap", joint="elbow", topic="/joint_states")  # doctest: +SKIP
     """
     file = require_path("path", path)
     try:
@@ -298,7 +298,7 @@ def table_of(
 
 
 def _without(file: Path, argument: str) -> str:
-    return f"{ending_of(file, endings()) if file.is_file() else 'such'} files have no {argument}"
+    return f"{ending_of(file, reader_of(file).endings) if file.is_file() else 'such'} files have no {argument}"
 
 
 def _form(file: Path, reader: Reader) -> str:
@@ -307,7 +307,11 @@ def _form(file: Path, reader: Reader) -> str:
 
 def file_name(file: Path, fields: Mapping[str, Any], name: str | None) -> Any:
     """Return a recording's name: as given, as saved, or the file's without its ending."""
-    stem = file.resolve().name if file.is_dir() else file.name[: -len(ending_of(file, endings()))]
+    stem = (
+        file.resolve().name
+        if file.is_dir()
+        else file.name[: -len(ending_of(file, reader_of(file).endings))]
+    )
     # Bytes of a file name that are not UTF-8 reach Python as surrogates, which no file can hold.
     stem = re.sub(_SURROGATE, "\ufffd", stem)
     return fields.get("name", stem) if name is None else name

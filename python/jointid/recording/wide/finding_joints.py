@@ -160,7 +160,7 @@ def _split(text: str) -> list[str]:
 
 def _is_number_word(stem: str, place: re.Match[str]) -> bool:
     """Whether digits are a word, or the end of one that a joint's number may follow."""
-    if place.end() < len(stem) and not re.match(_SEPARATORS, stem, place.end()):
+    if place.end() < len(stem) and not re.match(_SEPARATORS, stem[place.end() :]):
         return False
     before = stem[: place.start()]
     if not before or re.search(_SEPARATORS, before[-1]):

@@ -161,6 +161,7 @@ class Panel:
 
 def numbers(values: ArrayLike) -> Array:
     """Return values as an array of numbers, masked ones as gaps."""
-    if isinstance(values, np.ma.MaskedArray):
+    # Only what has a mask is worth the import of numpy.ma.
+    if hasattr(values, "mask") and isinstance(values, np.ma.MaskedArray):
         return np.ma.filled(values.astype(np.float64), np.nan)
     return np.asarray(values, dtype=np.float64)

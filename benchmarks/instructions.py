@@ -1,0 +1,113 @@
+"""Instructions of warm calls, counted by callgrind: what does not depend on what else the machine does. Markdown.
+
+A program with some calls, less one with fewer: imports and the first call drop out. Needs valgrind, which emulates
+AVX2. With one thread of BLAS, since threads that wait count, too.
+"""
+
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+_PROGRAM = """
+import sys
+import jointid as jid
+recording, joint = jid.load(sys.argv[1]), jid.thesis_joint()
+estimate = jid.identify(recording, joint)
+calls = {
+    "identify": lambda: jid.identify(recording, joint),
+    "auto": lambda: jid.identify(recording, joint, model="auto"),
+    "bootstrap": lambda: estimate.bootstrap(1000),
+    "compare two": lambda: jid.compare_models(recording, joint, models=["coulomb_viscous", "stribeck"]),
+    "compare five": lambda: jid.compare_models(
+        recording,
+        joint,
+        models=["coulomb_viscous", "stribeck", "stribeck_general", "stribeck:ripple=1", "coulomb_viscous:ripple=1"],
+    ),
+}
+for _ in range(int(sys.argv[3])):
+    calls[sys.argv[2]]()
+"""
+_FEWER = 1  # calls of the program that is subtracted
+_OLDEST = 67.8  # millions: a default identify() of version 0.1.0
+_OLDEST_TIME = 7.1  # [ms] of CPU on the machine to which required times refer
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Row:
+    """A call, and what is required of it: millions of instructions, or milliseconds of that machine."""
+
+    name: str
+    what: str
+    calls: int
+    instructions: float | None = None
+    time: float | None = None
+
+    @property
+    def limit(self) -> float:
+        """Millions of instructions that are allowed."""
+        if self.instructions is not None:
+            return self.instructions
+        return (self.time or 0.0) * _OLDEST / _OLDEST_TIME
+
+
+ROWS = (
+    Row(name="identify", what="default `identify()`", calls=4, instructions=45.0),
+    Row(name="auto", what='`identify(model="auto")`', calls=2, time=25.0),
+    Row(name="bootstrap", what="`bootstrap(1000)`", calls=2, time=150.0),
+    Row(name="compare two", what="`compare_models` of two models", calls=1, time=35.0),
+    Row(name="compare five", what="the same of five, one general", calls=1, time=250.0),
+)
+
+
+def counted(row: Row, path: Path) -> float:
+    """Millions of instructions of one call."""
+    totals = [_total(row.name, path, _FEWER + more) for more in (0, row.calls)]
+    return (totals[1] - totals[0]) / row.calls / 1e6
+
+
+def _total(name: str, path: Path, calls: int) -> int:
+    with tempfile.TemporaryDirectory() as folder:
+        found = Path(folder) / "found"
+        environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": "0"}
+        subprocess.run(
+            [
+                *("valgrind", "--tool=callgrind", f"--callgrind-out-file={found}"),
+                *(sys.executable, "-c", _PROGRAM, str(path), name, str(calls)),
+            ],
+            env=environment,
+            check=True,
+            stderr=subprocess.DEVNULL,
+        )
+        text = found.read_text(encoding="utf-8")
+    return int(re.findall(r"^(?:summary|totals): (\d+)", text, re.MULTILINE)[-1])
+
+
+def table(names: list[str]) -> str:
+    """The rows as Markdown; without valgrind a sentence."""
+    if shutil.which("valgrind") is None:
+        return "Instructions were not counted: valgrind is not installed.\n"
+    path = Path(__file__).resolve().parents[1] / "examples" / "data" / "well_excited.csv.gz"
+    lines = [
+        "| warm call | instructions [10⁶] | required | holds |",
+        "|---|---|---|---|",
+    ]
+    for row in ROWS:
+        if row.name not in names:
+            continue
+        found = counted(row, path)
+        holds = "yes" if found <= row.limit else "**no**"
+        lines.append(f"| {row.what} | {found:.1f} | ≤ {row.limit:.0f} | {holds} |")
+    return "\n".join([*lines, ""])
+
+
+if __name__ == "__main__":
+    arguments = argparse.ArgumentParser(description=__doc__)
+    known = [row.name for row in ROWS]
+    arguments.add_argument("names", nargs="*", choices=[*known, []], help="default: all of them")
+    print(table(arguments.parse_args().names or known))

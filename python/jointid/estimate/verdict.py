@@ -1,0 +1,225 @@
+"""Whether the numbers of an estimate may be used, and for what."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Literal
+
+from jointid import _core
+from jointid.base.values import dataclass
+
+if TYPE_CHECKING:
+    from jointid.estimate.estimate import Estimate
+    from jointid.estimate.findings import Finding
+    from jointid.estimate.self_test import SelfTest
+    from jointid.estimate.statistics import ParameterEstimate
+
+Level = Literal["usable", "usable with care", "not usable"]
+LEVELS: tuple[Level, ...] = ("usable", "usable with care", "not usable")
+_EXPLAINED = 0.9  # of the variance of windows, at least
+_MATTERS = 0.05  # of a value: a smaller tolerance does not matter
+# What a bias that stays the same does not spoil: a change between two recordings of the same motion.
+_CHANCE = frozenset(("undetermined", "few_windows", "stopped", "at_bound", "model_too_rich"))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Use:
+    """Whether an estimate serves one purpose.
+
+    Attributes
+    ----------
+    level : {"usable", "usable with care", "not usable"}
+    parameters : tuple of str
+        Those to mind, or because of which it does not serve; empty where it is not about single ones.
+    codes : tuple of str
+        Of the findings that say so, and "explained", "self_test" or "given".
+    """
+
+    level: Level
+    parameters: tuple[str, ...] = ()
+    codes: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        named = f" ({', '.join(self.parameters)})" if self.parameters else ""
+        return f"{self.level}{named}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verdict:
+    """Whether the numbers of an estimate may be used.
+
+    Attributes
+    ----------
+    level : {"usable", "usable with care", "not usable"}
+        The worst of all purposes.
+    reasons : tuple of str
+        Why not without care, in a sentence each, the most severe first.
+    uses : mapping of str to Use
+        By purpose: "compensation" (of friction in a controller: its friction and sensor parameters), "simulation"
+        (all parameters), "monitoring" (changes between recordings of the same motion, which a bias that stays the
+        same does not spoil).
+    """
+
+    level: Level
+    reasons: tuple[str, ...]
+    uses: Mapping[str, Use]
+
+    def __str__(self) -> str:
+        if len({(use.level, use.parameters) for use in self.uses.values()}) == 1:
+            return str(next(iter(self.uses.values())))
+        return "; ".join(f"for {purpose}: {use}" for purpose, use in self.uses.items())
+
+    def lines(self) -> list[str]:
+        """The verdict as text: one line, and one for each purpose where they differ."""
+        if len({(use.level, use.parameters) for use in self.uses.values()}) == 1:
+            return [f"verdict: {self}"]
+        uses = [f"  {purpose}: {use}" for purpose, use in self.uses.items()]
+        return [f"verdict: {self.level}", *uses]
+
+    def document(self) -> dict[str, Any]:
+        """The verdict, of JSON's types."""
+        return {
+            "level": self.level,
+            "reasons": list(self.reasons),
+            "uses": {
+                purpose: {
+                    "level": use.level,
+                    "parameters": list(use.parameters),
+                    "codes": list(use.codes),
+                }
+                for purpose, use in self.uses.items()
+            },
+        }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Objection:
+    """One thing that speaks against a use."""
+
+    code: str
+    reason: str
+    blocking: bool
+    parameters: tuple[str, ...]
+
+
+def judged(
+    estimate: Estimate, self_test: SelfTest | None = None, parameters: Iterable[str] = ()
+) -> Verdict:
+    """Judge an estimate by its findings.
+
+    Not usable: a blocking finding, a parameter asked for whose self-test fails, or less than 90 % of the windows'
+    variance explained (of held-out windows where the model was chosen by them). Usable with care: a warning, or a
+    tolerance of the given facts of more than 5 % that is larger than everything else together. Usable: else.
+
+    Parameters
+    ----------
+    estimate : Estimate
+    self_test : SelfTest, optional
+        Of this estimate. Default: it is judged without one.
+    parameters : iterable of str
+        Those asked for. Default: all that are free.
+
+    Returns
+    -------
+    Verdict
+
+    Examples
+    --------
+    >>> str(jid.identify(recording, joint).verdict)  # doctest: +SKIP
+    'usable with care (coulomb)'
+    """
+    asked = tuple(parameters) or estimate.free
+    objections = [*_objections(estimate, self_test)]
+    friction = frozenset(name for name in estimate.parameters if _acts_against_motion(name))
+    uses = {
+        "compensation": _use(objections, asked, friction.__contains__),
+        "simulation": _use(objections, asked, lambda _: True),
+        "monitoring": _use(
+            [each for each in objections if each.blocking or each.code in _CHANCE],
+            asked,
+            lambda _: True,
+        ),
+    }
+    level = max((use.level for use in uses.values()), key=LEVELS.index)
+    ordered = sorted(objections, key=lambda each: not each.blocking)
+    return Verdict(level=level, reasons=tuple(each.reason for each in ordered), uses=uses)
+
+
+def _objections(estimate: Estimate, self_test: SelfTest | None) -> Iterable[_Objection]:
+    for found in estimate.findings:
+        if found.severity != "info":
+            yield _Objection(
+                code=found.code,
+                reason=found.cause,
+                blocking=found.severity == "blocking",
+                parameters=_free(estimate, found),
+            )
+    explained, of_what = _explained(estimate)
+    if not explained >= _EXPLAINED:
+        yield _Objection(
+            code="explained",
+            reason=f"the model explains {100.0 * explained:.0f} % of the variance of {of_what}",
+            blocking=True,
+            parameters=(),
+        )
+    if self_test is not None and self_test.lost:
+        yield _Objection(
+            code="self_test",
+            reason=f"known values of {', '.join(self_test.lost)} in the recorded motion are not found again",
+            blocking=True,
+            parameters=self_test.lost,
+        )
+    given = tuple(p.name for p in estimate.parameters.values() if _rests_on_given(p))
+    if given:
+        names = ", ".join(given)
+        reason = f"what is stated of the joint is more uncertain than all else that {names} rest on"
+        yield _Objection(code="given", reason=reason, blocking=False, parameters=given)
+
+
+def _use(
+    objections: Iterable[_Objection], asked: tuple[str, ...], needed: Callable[[str], bool]
+) -> Use:
+    """Judge by what concerns the parameters that a purpose needs; an objection without parameters concerns all."""
+    level: Level = "usable"
+    names: dict[str, None] = {}
+    codes: dict[str, None] = {}
+    for each in objections:
+        concerned = [name for name in each.parameters if name in asked and needed(name)]
+        if each.parameters and not concerned and not (each.blocking and each.code != "self_test"):
+            continue
+        codes[each.code] = None
+        names.update(dict.fromkeys(concerned))
+        reached: Level = "not usable" if each.blocking else "usable with care"
+        level = max(level, reached, key=LEVELS.index)
+    return Use(level=level, parameters=tuple(names), codes=tuple(codes))
+
+
+def _free(estimate: Estimate, found: Finding) -> tuple[str, ...]:
+    return tuple(name for name in found.parameters if name in estimate.parameters)
+
+
+def _explained(estimate: Estimate) -> tuple[float, str]:
+    """Share of the variance that the model explains, of held-out torque where there is some."""
+    if estimate.selection is not None:
+        chosen = estimate.selection[estimate.selection.model]
+        if math.isfinite(chosen.score):
+            return 1.0 - chosen.score**2, "the held-out torque"
+    return estimate.residuals.r_squared, "the windows"
+
+
+def _rests_on_given(p: ParameterEstimate) -> bool:
+    given = p.systematic.get("given", 0.0)
+    others = [size for name, size in p.systematic.items() if name != "given"]
+    return given > max(math.hypot(p.stderr or 0.0, *others), _MATTERS * abs(p.value))
+
+
+def _acts_against_motion(name: str) -> bool:
+    """Whether a controller that compensates friction needs a parameter: it needs no inertia and no weight."""
+    base = name.partition("[")[0]
+    rows = {row.name: row for row in _core.terms()}
+    row = rows.get(base)
+    if row is not None and not row.family:
+        return bool(row.friction) or base.startswith("sensor_")
+    shapes = {shape for each in rows.values() if each.friction for shape in each.shapes}
+    return base in shapes or base.startswith(("ripple", "sensor_"))

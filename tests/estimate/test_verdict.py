@@ -1,0 +1,179 @@
+"""The verdict: what a person who knows the recordings would say of each, listed before it was computed."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+
+import defects
+import numpy as np
+import pytest
+
+import jointid as jid
+from jointid.cli.demo import data_folder
+from jointid.estimate.findings import Finding
+from jointid.estimate.self_test import SelfTest, SelfTestRow
+from jointid.estimate.verdict import judged
+from jointid.report.html import html_report
+
+
+@cache
+def good() -> jid.Recording:
+    return jid.load(data_folder() / "well_excited.csv.gz")
+
+
+@cache
+def estimate() -> jid.Estimate:
+    return jid.identify(good(), jid.thesis_joint())
+
+
+def short(r: jid.Recording) -> jid.Recording:
+    """Half a stroke: a velocity that hardly changes."""
+    return r[0.2:0.75]
+
+
+def without_static_friction(r: jid.Recording) -> jid.Recording:
+    """The model has a term that the joint does not have."""
+    assert r.torque is not None
+    static = 20.0 * np.exp(-100.0 * r.velocity**2) * np.sign(r.velocity)
+    return defects.changed(r, torque=r.torque - static)
+
+
+def rippled(r: jid.Recording) -> jid.Recording:
+    assert r.torque is not None
+    return defects.changed(r, torque=r.torque + 1.5 * np.sin(202.0 * r.position))
+
+
+def creeping(r: jid.Recording) -> jid.Recording:
+    """More friction where it hardly moves, in another form than the model's."""
+    assert r.torque is not None
+    slow = 5.0 * np.sign(r.velocity) / (1.0 + (r.velocity / 0.4) ** 2)
+    return defects.changed(r, torque=r.torque + slow)
+
+
+def noise(r: jid.Recording) -> jid.Recording:
+    """No joint at all."""
+    assert r.torque is not None
+    random = np.random.default_rng(5)
+    return defects.changed(r, torque=50.0 * random.normal(size=r.torque.size))
+
+
+EXPECTED: tuple[tuple[Callable[[jid.Recording], jid.Recording], str], ...] = (
+    (lambda r: r, "usable"),
+    (defects.gap, "usable"),
+    (defects.late_velocity, "usable"),  # the delay is found and taken away
+    (short, "usable with care"),
+    (without_static_friction, "usable with care"),
+    (rippled, "usable with care"),
+    (creeping, "usable with care"),
+    (defects.saturated_torque, "not usable"),  # a tenth of the torque is missing
+    (defects.clipped_sensor, "usable with care"),
+    (defects.reversed_torque, "not usable"),
+    (defects.degrees, "not usable"),
+    (defects.wrong_gear_ratio, "not usable"),
+    (defects.constant_sensor, "not usable"),
+    (noise, "not usable"),
+)
+
+
+@pytest.mark.parametrize(
+    ("defect", "level"), EXPECTED, ids=lambda each: getattr(each, "__name__", each)
+)
+def test_the_verdict_is_what_one_who_knows_would_say(
+    defect: Callable[[jid.Recording], jid.Recording], level: str
+) -> None:
+    found = jid.identify(defect(good()), jid.thesis_joint(), model="stribeck")
+    verdict = found.verdict
+    assert verdict.level == level, (verdict.reasons, [each.code for each in found.findings])
+    assert bool(verdict.reasons) == (level != "usable")
+    assert set(verdict.uses) == {"compensation", "simulation", "monitoring"}
+    json.dumps(verdict.document())
+
+
+def with_findings(*findings: Finding) -> jid.Estimate:
+    return replace(estimate(), findings=findings)
+
+
+def test_each_purpose_minds_its_own_parameters() -> None:
+    moved = Finding(code="inertia_varies", cause="it varies", parameters=("inertia", "viscous"))
+    joint = jid.thesis_joint()
+    free = replace(with_findings(moved), free=("inertia", *estimate().free), joint=joint)
+    uses = free.verdict.uses
+    assert str(uses["compensation"]) == "usable with care (viscous)"
+    assert str(uses["simulation"]) == "usable with care (inertia, viscous)"
+    assert uses["monitoring"].level == "usable"  # a bias that stays the same
+    only = replace(free, findings=(replace(moved, parameters=("inertia",)),))
+    assert only.verdict.uses["compensation"].level == "usable"
+    assert only.verdict.level == "usable with care"
+    chance = with_findings(Finding(code="undetermined", cause="too few", parameters=("static",)))
+    assert {str(use) for use in chance.verdict.uses.values()} == {"usable with care (static)"}
+    assert str(chance.verdict) == "usable with care (static)"
+
+
+def test_an_info_does_not_matter_and_a_blocking_finding_always() -> None:
+    told = Finding(code="gaps", severity="info", cause="samples are missing")
+    assert with_findings(told).verdict.level == "usable"
+    blocking = Finding(code="wrong_scale", severity="blocking", cause="no", parameters=("inertia",))
+    verdict = with_findings(Finding(code="spikes", cause="two"), blocking).verdict
+    assert {use.level for use in verdict.uses.values()} == {"not usable"}
+    assert verdict.reasons == ("no", "two")
+
+
+def test_a_self_test_that_loses_a_parameter_that_was_asked_for() -> None:
+    lost = SelfTestRow(
+        trial=0,
+        parameter="viscous",
+        unit="N·m·s/rad",
+        truth=20.0,
+        value=30.0,
+        interval=(29.0, 31.0),
+        covered=False,
+        close=False,
+    )
+    test = SelfTest(rows=(lost,), trials=1, seed=0)
+    assert test.lost == ("viscous",)
+    assert judged(estimate(), test).level == "not usable"
+    assert "known values of viscous" in judged(estimate(), test).reasons[0]
+    assert judged(estimate(), test, parameters=["coulomb"]).level == "usable"
+
+
+def test_a_tolerance_that_is_larger_than_all_else() -> None:
+    known = estimate().parameters["viscous"]
+    rests = replace(known, systematic=dict(known.systematic) | {"given": 2.0})
+    changed = replace(estimate(), parameters=dict(estimate().parameters) | {"viscous": rests})
+    assert str(changed.verdict.uses["simulation"]) == "usable with care (viscous)"
+    assert changed.verdict.uses["monitoring"].level == "usable"
+    small = replace(known, systematic=dict(known.systematic) | {"given": 0.5})
+    fine = replace(estimate(), parameters=dict(estimate().parameters) | {"viscous": small})
+    assert fine.verdict.level == "usable"
+
+
+def test_the_page_begins_with_it() -> None:
+    page = html_report(estimate())
+    assert '</h1><p class="verdict usable"><b>Usable.</b></p>' in page
+    found = [Finding(code=f"c{n}", cause=f"reason {n}", parameters=("static",)) for n in range(5)]
+    page = html_report(with_findings(*found))
+    assert '<p class="verdict usable-with-care"><b>Usable with care.</b></p>' in page
+    assert "<b>compensation: usable with care</b>: static (above Coulomb)" in page
+    assert "<li>reason 2</li><li>and 2 more, below</li>" in page
+
+
+def test_text_and_numbers_have_it() -> None:
+    lines = estimate().report().splitlines()
+    assert lines[:3] == [f"jointid estimate — {estimate().joint.name}", "", "verdict: usable"]
+    moved = Finding(code="inertia_varies", cause="it varies", parameters=("static",))
+    found = with_findings(moved)
+    assert found.report().splitlines()[2:6] == [
+        "verdict: usable with care",
+        "  compensation: usable with care (static)",
+        "  simulation: usable with care (static)",
+        "  monitoring: usable",
+    ]
+    document = json.loads(found.to_json())["verdict"]
+    assert document == found.verdict.document()
+    assert document["uses"]["compensation"] == {
+        "level": "usable with care",
+        "parameters": ["static"],
+        "codes": ["inertia_varies"],
+    }
+    assert jid.Estimate.from_json(found.to_json()).verdict == found.verdict
