@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
+from typing import Final, Literal
 
+import numpy as np
+from numpy.typing import NDArray
 from peers.contest import Contest
 from projections import given
 from store import Record
@@ -13,10 +16,10 @@ import jointid as jid
 from jointid import _core
 
 REPEATS = 7
-GENERAL = "stribeck_general"
+GENERAL: Final = "stribeck_general"
 WIDE = {
-    "stribeck_velocity": {"min": 1e-5, "max": 10.0},
-    "stribeck_exponent": {"min": 0.1, "max": 8.0},
+    "stribeck_velocity": jid.Parameter(name="stribeck_velocity", min=1e-5, max=10.0),
+    "stribeck_exponent": jid.Parameter(name="stribeck_exponent", min=0.1, max=8.0),
 }
 PLAIN = "`stribeck`"
 
@@ -25,7 +28,9 @@ def measure(contest: Contest) -> list[Record]:
     """A record a row: the whole call, and its share of the plain model's."""
 
     def call(
-        model: str, search: str = "ga", parameters: Mapping[str, object] | None = None
+        model: Literal["stribeck", "stribeck_general"],
+        search: Literal["ga", "separable"] = "ga",
+        parameters: Mapping[str, float | jid.Parameter] | None = None,
     ) -> Callable[[], object]:
         return lambda: jid.identify(
             contest.recording, contest.joint, model=model, search=search, parameters=parameters
@@ -54,8 +59,8 @@ def measure(contest: Contest) -> list[Record]:
     ]
 
 
-def _hundred(penalty: _core.Penalty, theta: object) -> Callable[[], object]:
-    return lambda: [penalty(theta) for _ in range(100)]  # type: ignore[arg-type]
+def _hundred(penalty: _core.Penalty, theta: NDArray[np.float64]) -> Callable[[], object]:
+    return lambda: [penalty(theta) for _ in range(100)]
 
 
 if __name__ == "__main__":
