@@ -94,6 +94,18 @@ def with_findings(*findings: Finding) -> jid.Estimate:
     return replace(estimate(), findings=findings)
 
 
+def test_held_out_torque_does_not_excuse_a_reading_that_is_missed() -> None:
+    """A torque so late that no delay is found: a chosen model follows it, and inertia is a third too small."""
+    r = good()
+    assert r.torque is not None
+    late = np.interp(r.time - 0.03, r.time, r.torque)
+    found = jid.identify(defects.changed(r, torque=late))
+    assert found.selection is not None
+    assert found.selection[found.selection.model].score < 0.2
+    assert found.residuals.r_squared < 0.0
+    assert {use.level for use in found.verdict.uses.values()} == {"not usable"}
+
+
 def test_each_purpose_minds_its_own_parameters() -> None:
     moved = Finding(code="inertia_varies", cause="it varies", parameters=("inertia", "viscous"))
     joint = jid.thesis_joint()

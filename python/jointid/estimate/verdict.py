@@ -110,8 +110,9 @@ def judged(
     """Judge an estimate by its findings.
 
     Not usable: a blocking finding, a parameter asked for whose self-test fails, or less than 90 % of the windows'
-    variance explained (of held-out windows where the model was chosen by them). Usable with care: a warning, or a
-    tolerance of the given facts of more than 5 % that is larger than everything else together. Usable: else.
+    variance explained (of held-out torque where the model was chosen by it, unless the windows are explained worse
+    than by their mean and more than 10 % of their squares are left). Usable with care: a warning, or a tolerance of the
+    given facts of more than 5 % that is larger than everything else together. Usable: else.
 
     Parameters
     ----------
@@ -214,12 +215,18 @@ def _free(estimate: Estimate, found: Finding) -> tuple[str, ...]:
 
 
 def _explained(estimate: Estimate) -> tuple[float, str]:
-    """Share of the variance that the model explains, of held-out torque where there is some."""
-    if estimate.selection is not None:
+    """Share of the variance that the model explains, of held-out torque where there is some.
+
+    That torque does not excuse a reading that the model misses: the two do not belong together, e.g. because one of
+    them is late. A reading that hardly varies may be explained worse than by its mean, but little of it is left.
+    """
+    left = estimate.residuals
+    apart = left.r_squared < 0.0 and left.relative**2 > 1.0 - _EXPLAINED
+    if estimate.selection is not None and not apart:
         chosen = estimate.selection[estimate.selection.model]
         if math.isfinite(chosen.score):
             return 1.0 - chosen.score**2, "the held-out torque"
-    return estimate.residuals.r_squared, "the windows"
+    return left.r_squared, "the windows"
 
 
 def _rests_on_given(p: ParameterEstimate) -> bool:
