@@ -1,8 +1,8 @@
 """Velocities whose noise is loud at some samples, taken from the quiet ones beside them.
 
-The velocity of noisy positions is smoothed over as many samples as the motion lets be seen. By chance, some samples have
-far fewer, and up to a hundred times the usual noise. Noise at the ends of windows draws every inertia that is identified
-towards zero, and what is missing then looks like a torque that is early.
+The velocity of noisy positions is smoothed over as many samples as the motion lets be seen. By chance, some samples
+have far fewer, and up to a hundred times the usual noise. Noise at the ends of windows draws every inertia that is
+identified towards zero, and what is missing then looks like a torque that is early.
 """
 
 from __future__ import annotations
