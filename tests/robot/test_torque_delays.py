@@ -115,9 +115,10 @@ def test_another_shift_is_refused(ran: Run, shift: Any, argument: str) -> None:
     assert refused.value.argument == argument
 
 
-def test_noise_of_the_positions_is_no_early_torque() -> None:
-    arm = run(random_arm(102), random_motion(102, duration=12.0))
-    noisy = recorded(arm, Sensors(position_noise=3e-4, velocity_delay=None), 102)
+@pytest.mark.parametrize(("seed", "noise"), [(102, 3e-4), (101, 1e-5)])
+def test_noise_of_the_positions_is_no_early_torque(seed: int, noise: float) -> None:
+    arm = run(random_arm(seed), random_motion(seed))
+    noisy = recorded(arm, Sensors(position_noise=noise, velocity_delay=None), seed)
     found = jid.identify_robot(noisy, jid.Robot.from_urdf(URDF))
     assert not told(found, "signal_lag")
     assert not told(found, "delay_removed")
