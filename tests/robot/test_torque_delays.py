@@ -113,3 +113,11 @@ def test_another_shift_is_refused(ran: Run, shift: Any, argument: str) -> None:
     with pytest.raises(jid.InputError) as refused:
         identified(late(ran, [0.0] * JOINTS), shift=shift)
     assert refused.value.argument == argument
+
+
+def test_noise_of_the_positions_is_no_early_torque() -> None:
+    arm = run(random_arm(102), random_motion(102, duration=12.0))
+    noisy = recorded(arm, Sensors(position_noise=3e-4, velocity_delay=None), 102)
+    found = jid.identify_robot(noisy, jid.Robot.from_urdf(URDF))
+    assert not told(found, "signal_lag")
+    assert not told(found, "delay_removed")
