@@ -256,6 +256,10 @@ def write(store: Store, order: list[str], limit: float, path: Path) -> None:
         ratios=ratios(store, order),
         missed=missed(store, order),
         projection=projection_table(store),
+        models=table(
+            ["call", "CPU time", "times `stribeck`"],
+            [[r["name"], seconds(r["seconds"]), f"{r['ratio']:.2f}"] for r in store.of("model")],
+        ),
         anatomy=anatomy_table(store),
         behind=f"{BEHIND:g}",
         contest=contest_table(store, order),

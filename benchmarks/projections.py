@@ -5,11 +5,12 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 from peers.projection import Projection, compiled_decay, numpy_decay
-from scipy.optimize import minimize, minimize_scalar
+from scipy.optimize import Bounds, minimize, minimize_scalar
 from store import Record
 
 import jointid as jid
@@ -64,7 +65,13 @@ def problems() -> list[Given]:
     excited, thesis = jid.load(folder / "well_excited.csv.gz"), jid.thesis_joint()
     robot = jid.load(folder / "kr300_joint1.csv.gz")
     robot_joint = jid.Joint.load(folder / "kr300_joint1.toml")
-    free = replace(thesis, parameters={**thesis.parameters, "inertia": {"min": 0.0, "max": 10.0}})
+    free = replace(
+        thesis,
+        parameters={
+            **thesis.parameters,
+            "inertia": jid.Parameter(name="inertia", min=0.0, max=10.0),
+        },
+    )
     return [
         given("one shape", (excited,), thesis, "stribeck"),
         given("two shapes", (excited,), thesis, "stribeck_general"),
@@ -84,9 +91,12 @@ def projected(penalty: Projection, problem: Given) -> float:
             lambda x: penalty(np.array([x * x])), bounds=(0.0, float(np.sqrt(high[0])))
         )
         return float(root.fun)
+
+    def value(x: Array) -> float:
+        return penalty(np.exp(x))
+
     start = 0.5 * (np.log(low) + np.log(high))
-    bounds = list(zip(np.log(low), np.log(high), strict=True))
-    found = minimize(lambda x: penalty(np.exp(x)), start, method="L-BFGS-B", bounds=bounds)
+    found = minimize(value, start, method="L-BFGS-B", bounds=Bounds(np.log(low), np.log(high)))
     return float(found.fun)
 
 
@@ -116,10 +126,10 @@ def measure() -> list[Record]:
     records = []
     for problem in problems():
         searches: dict[str, Callable[[], float]] = {
-            "genetic": lambda p=problem: genetic(p),
-            "separable": lambda p=problem: separable(p),
-            "numpy": lambda p=problem: projected(p.numpy, p),
-            "compiled": lambda p=problem: projected(p.compiled, p),
+            "genetic": partial(genetic, problem),
+            "separable": partial(separable, problem),
+            "numpy": partial(projected, problem.numpy, problem),
+            "compiled": partial(projected, problem.compiled, problem),
         }
         ends = {name: search() for name, search in searches.items()}
         best = min(ends["genetic"], ends["separable"])

@@ -15,6 +15,7 @@ import candidates
 import charts
 import interruption
 import literal_code
+import model_costs
 import performance
 import projections
 import scaling
@@ -42,6 +43,9 @@ def main(*, budget: float, quick: bool, output: Path) -> None:
     run_contest(all_peers(), contest, store, seeds=seeds, seconds=seconds, limit=limit)
     if not store.of("candidate"):
         for record in candidates.measure(contest):
+            store.append(record)
+    if not store.of("model"):
+        for record in model_costs.measure(contest):
             store.append(record)
     if not store.of("projection"):
         for record in projections.measure():

@@ -8,7 +8,7 @@ import cma
 import numpy as np
 import pygmo
 from numpy.typing import NDArray
-from scipy.optimize import differential_evolution, minimize_scalar
+from scipy.optimize import Bounds, differential_evolution, minimize_scalar
 
 from peers.contest import Contest, Objective
 from peers.peer import Peer, Solve
@@ -56,9 +56,11 @@ def scalar(value: Value, highest: float, seed: int) -> None:
 
 def evolution(value: Value, highest: float, seed: int) -> None:
     """SciPy's differential evolution."""
-    differential_evolution(
-        lambda x: value(float(x[0])), [(0.0, highest)], rng=np.random.default_rng(seed)
-    )
+
+    def first(x: NDArray[np.float64]) -> float:
+        return value(float(x[0]))
+
+    differential_evolution(first, Bounds([0.0], [highest]), rng=np.random.default_rng(seed))
 
 
 def strategy(value: Value, highest: float, seed: int) -> None:

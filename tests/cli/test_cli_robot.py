@@ -38,7 +38,7 @@ def test_one_command(shared_data: Path, tmp_path: Path, capsys: pytest.CaptureFi
         8.05, rel=0.05
     )
     html = page.read_text(encoding="utf-8")
-    assert html.count("<img") == 12
+    assert html.count("<svg ") == 12
     assert "joint_6" in html
 
 
@@ -95,7 +95,7 @@ def test_a_saved_robot_has_a_page_again(
 ) -> None:
     page = tmp_path / "arm.html"
     assert main(["report", str(saved), "--output", str(page)]) == 0
-    assert page.read_text(encoding="utf-8").count("<img") == 4
+    assert page.read_text(encoding="utf-8").count("<svg ") == 4
     code, told = answer(["report", str(saved), "--output", str(page), "--joints", "1"], capsys)
     assert code == 2
     assert "all joints" in told

@@ -137,5 +137,5 @@ def test_it_is_drawn_into_given_axes() -> None:
     _, axes = pyplot.subplots(1, 3)
     assert list(DESIGN.plot()) != list(axes)
     assert list(jid.plot.designed_motion(DESIGN, list(axes))) == list(axes)
-    with pytest.raises(jid.InputError, match="axes is 2: three axes are expected"):
+    with pytest.raises(jid.InputError, match="ax is 2: three axes are expected"):
         jid.plot.designed_motion(DESIGN, list(axes[:2]))

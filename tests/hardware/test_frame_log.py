@@ -18,7 +18,7 @@ _SOUND = "(1700000000.000000) can0 080#\n"
         ("(1e400) can0 181#00\n", "frame 2 has a stamp that is no number"),
         ("(1.0) can0 801#00\n", "frame 2 has the identifier 801h, above 7FFh"),
         ("(1.0) can0 FFF#00\n", "frame 2 has the identifier FFFh"),
-        ("(1.0) can0 181#001122334455667788\n", "frame 2 has 9 bytes, more than 8"),
+        (f"(1.0) can0 181#{'00' * 65}\n", "frame 2 has 65 bytes, more than 64"),
         ("(1.0) can0\n", "what follows frame 1 is no frame"),
         ("(1.0) can0 zzz#00\n", "what follows frame 1 is no frame"),
     ],

@@ -9,6 +9,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
 from peers.contest import Contest, Expired, Objective, Reached, make_contest, prove_same
 from peers.peer import Peer, timed
+from peers.projection import Decay, Projection, compiled_decay, numpy_decay
 from store import Store
 from summary import OURS, OURS_WHOLE, floors, ratio_claims, rows
 
@@ -53,6 +54,16 @@ def test_jacobian_is_the_residuals_slope(contest: Contest) -> None:
     assert objective.jacobian(at)[:, 3] == pytest.approx(
         expected, rel=1e-5, abs=1e-6 * np.abs(expected).max()
     )
+
+
+def test_variable_projection_has_the_penalty_of_the_best_coefficients(contest: Contest) -> None:
+    decays: list[Decay] = [numpy_decay(*contest.sums()), compiled_decay(contest.direct)]
+    for decay in decays:
+        projection = Projection(contest.direct, contest.full_lower, contest.full_upper, decay)
+        assert projection(contest.best[-1:]) == pytest.approx(contest.best_penalty, rel=1e-9)
+        away = projection(1.3 * contest.best[-1:])
+        assert contest.best_penalty < away < contest.direct(contest.full(1.01 * contest.best))
+        assert projection.evaluations == 2
 
 
 def test_time_that_is_over_ends_a_run(contest: Contest) -> None:
@@ -116,6 +127,8 @@ def test_a_ratio_has_a_verdict_for_the_search_and_one_for_the_whole_call(tmp_pat
         "pygmo cmaes | NumPy": 0.06,
         "pycma fmin2 | NumPy": 0.12,
         "pygmo de | compiled": 0.1,
+        "variable projection, SciPy minimize_scalar | NumPy": 0.001,
+        "SciPy differential_evolution, eliminated | NumPy": 0.0005,
         "SciPy least_squares, start within 20 % | NumPy": 0.003,
     }
     store = Store(tmp_path / "runs.jsonl", {})
@@ -132,10 +145,11 @@ def test_a_ratio_has_a_verdict_for_the_search_and_one_for_the_whole_call(tmp_pat
         "SciPy differential evolution": (True, False),
         "CMA-ES": (False, False),
         "genetic algorithms and DE": (True, False),
+        "variable projection": (False, False),
         "SciPy least squares from a good start": (True, False),
     }
     cmaes = next(f for f in floors(store, list(seconds)) if f.claim.group.startswith("CMA"))
     assert cmaes.claim.quickest == "pygmo cmaes, NumPy"
     assert cmaes.allowed == pytest.approx(0.0015)
     assert (cmaes.compression, cmaes.rest) == pytest.approx((1e-3, 4e-3))
-    assert len(floors(store, list(seconds))) == 4
+    assert len(floors(store, list(seconds))) == 5

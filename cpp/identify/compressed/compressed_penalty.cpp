@@ -154,7 +154,9 @@ void CompressedPenalty::build(const Penalty& penalty, const search::Domain& doma
     assemble(std::nullopt, digest_all(penalty, {}, pool));
     return;
   }
-  if (decay_of(penalty.shaped().front().term) == model::Decay::general) {
+  const bool general = decay_of(penalty.shaped().front().term) == model::Decay::general;
+  // A fixed exponent leaves one shape, for which a few dozen sums suffice.
+  if (general && domain.lower[coefficients_ + 1] < domain.upper[coefficients_ + 1]) {
     build_general(penalty, domain, pool);
     return;
   }

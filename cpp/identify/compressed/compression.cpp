@@ -24,6 +24,18 @@ Eigen::Index count_for(double even_length, double density) {
   return static_cast<Eigen::Index>(std::ceil(density * (9.0 * even_length + 18.0)));
 }
 
+double rate_of(double velocity, double exponent) {
+  return base::exp(-exponent * base::log(velocity));
+}
+
+/// Shapes between the points of a single axis.
+void add_probes(ShapeNodes& nodes) {
+  for (int i = 1; i <= 5; ++i) {
+    const double share = i * kGolden - std::floor(i * kGolden);
+    nodes.probes.push_back({nodes.axes[0].shape(2.0 * share - 1.0)});
+  }
+}
+
 /// Parts of the windows; a running sum cannot be cut within a recording.
 std::vector<Stretch> parts_of(const Penalty& penalty) {
   std::vector<Stretch> parts;
@@ -136,23 +148,30 @@ std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Doma
     const auto points = chebyshev_points(count_for(axis.length(), density));
     result.lines.push_back({2.0, {}});
     for (const double point : points) result.lines[0].rates.push_back(axis.shape(point));
-    for (int i = 1; i <= 5; ++i) {
-      const double share = i * kGolden - std::floor(i * kGolden);
-      result.probes.push_back({axis.shape(2.0 * share - 1.0)});
-    }
+    add_probes(result);
     return result;
   }
   if (!(low(0) > 0.0) || !(low(1) > 0.0)) {
     reason = "stribeck_velocity and stribeck_exponent need bounds above 0";
     return std::nullopt;
   }
+  if (low(1) == high(1)) {
+    result.order = {0};
+    result.exponent = low(1);
+    result.axes = {{low(0), high(0), 0.0, 1.0, kFine}};
+    const auto& axis = result.axes[0];
+    result.lines.push_back({result.exponent, {}});
+    for (const double point :
+         chebyshev_points(count_for(result.exponent * axis.length(), density))) {
+      result.lines[0].rates.push_back(rate_of(axis.shape(point), result.exponent));
+    }
+    add_probes(result);
+    return result;
+  }
   result.order = {1, 0};
   result.axes = {{low(1), high(1), 0.0, 1.0, kCoarse}, {low(0), high(0), 0.0, 1.0, kFine}};
   const auto& exponents = result.axes[0];
   const auto& velocities = result.axes[1];
-  const auto rate = [](double velocity, double exponent) {
-    return base::exp(-exponent * base::log(velocity));
-  };
   // The decay depends on exponent * log(speed / velocity).
   const double reach = base::log(std::max(2.0, speed / velocities.shape(-1.0)));
   const auto outer = chebyshev_points(count_for(1.2 * exponents.length() * reach, 0.6 * density));
@@ -174,7 +193,7 @@ std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Doma
     const auto inner = chebyshev_points(inner_count(exponent));
     result.lines.push_back({exponent, {}});
     for (const double point : inner) {
-      result.lines.back().rates.push_back(rate(velocities.shape(point), exponent));
+      result.lines.back().rates.push_back(rate_of(velocities.shape(point), exponent));
     }
   }
   for (int i = 1; i <= 9; ++i) {
@@ -190,9 +209,10 @@ std::vector<DecayRates> rates_of(const ShapeNodes& nodes) {
   auto groups = nodes.lines;
   for (const auto& probe : nodes.probes) {
     if (probe.size() == 1) {
-      groups[0].rates.push_back(probe[0]);
+      groups[0].rates.push_back(nodes.exponent > 0.0 ? rate_of(probe[0], nodes.exponent)
+                                                     : probe[0]);
     } else {
-      groups.push_back({probe[0], {base::exp(-probe[0] * base::log(probe[1]))}});
+      groups.push_back({probe[0], {rate_of(probe[1], probe[0])}});
     }
   }
   return groups;

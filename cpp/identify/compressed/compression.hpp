@@ -19,6 +19,8 @@ struct ShapeNodes {
   std::vector<ShapeAxis> axes;  ///< exponent before velocity; one axis for the Gaussian decay
   /// Parameters of the axes, among the shapes.
   std::vector<Eigen::Index> order;
+  /// Of a single axis of velocities, whose exponent is fixed; 0 where that axis is of rates.
+  double exponent = 0.0;
   std::vector<DecayRates> lines;  ///< Chebyshev points: one line, or one a point of the first axis
   std::vector<std::vector<double>> probes;  ///< shapes in the axes' order, between the points
 };

@@ -17,7 +17,7 @@ constexpr int kPoints = 20;
 constexpr double kResting = 39.0;
 constexpr double kVanished = 45.0;
 constexpr double kRounding = 5e-16;
-constexpr std::size_t kMost = 2000;  // moments: the direct sum costs less then
+constexpr std::size_t kMost = 1000;  // moments: the direct sum costs less then
 constexpr double kRest = -1e6;       // log speed of a joint at rest
 
 /// Points that a piece needs which ends `below` the log of the lowest velocity. The decay there is

@@ -2,8 +2,8 @@
 
 import errno
 import os
+from io import FileIO
 from pathlib import Path
-from typing import BinaryIO
 
 from jointid.base.errors import InputError
 
@@ -43,8 +43,10 @@ def write_whole(path: Path, content: bytes) -> None:
         raise OSError(error.errno, error.strerror, str(path)) from error
 
 
-def open_locked(path: Path) -> BinaryIO:
-    """Open a file to read and write, made if it does not exist; nobody else can open it so until it is closed.
+def open_locked(path: Path) -> FileIO:
+    """Open a file to read and write, without a buffer; nobody else can open it so until it is closed.
+
+    It is made if it does not exist.
 
     The lock ends with the program, however it ends. Systems without such locks (Windows) have none.
 
@@ -55,9 +57,7 @@ def open_locked(path: Path) -> BinaryIO:
     OSError
         It cannot be opened.
     """
-    file = os.fdopen(
-        os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666), "r+b"
-    )
+    file = FileIO(os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666), "r+")
     try:
         import fcntl
 

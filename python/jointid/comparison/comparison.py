@@ -14,8 +14,11 @@ from jointid.comparison.held_out import Fold, folds_by_block, folds_by_recording
 from jointid.comparison.parsimony import counted, judge, refusal
 from jointid.comparison.result import ComparedModel, Comparison
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.prediction import FittedModel
 from jointid.estimate.settings import model_of
 from jointid.identification.identification import identify
+from jointid.identification.prepared import prepare
+from jointid.identification.search.run import run_search
 from jointid.identification.search.search import Method, Search
 from jointid.joint.joint import Joint
 from jointid.joint.model import Model, ModelName
@@ -185,7 +188,7 @@ def compare_models(
         else folds_by_recording(runs, parts)
     )
     rows = [
-        _row(spec, estimate, fitter.scores(_as_found(spec, estimate), splits, cut))
+        _row(spec, estimate, fitter.scores(_as_found(spec, estimate), splits, cut, estimate))
         for spec, estimate in whole.items()
     ]
     judged, winner, reason = judge(rows)
@@ -231,18 +234,51 @@ class _Fitter:
             estimate = identify(training, self._joint, model=spec, windows=windows, **self._common)
         except InputError as error:
             raise error.at(f"model '{_text(spec)}'{where}") from error
+        self._step(spec)
+        return estimate
+
+    def _step(self, spec: Model) -> None:
         self._done += 1
         if self._callback is not None:
             self._callback(ComparisonStep(number=self._done, total=self.total, model=_text(spec)))
-        return estimate
 
-    def scores(self, spec: Model, splits: Sequence[Fold], windows: Windows) -> list[float]:
+    def _values(
+        self, spec: Model, training: Sequence[Recording], windows: Windows, where: str
+    ) -> FittedModel:
+        """The values alone: a score needs neither intervals nor causes."""
+        search = self._common["search"]
+        stated = {name: value for name, value in self._common.items() if name != "search"}
+        try:
+            prepared = prepare(
+                training,
+                self._joint,
+                model=spec,
+                windows=windows,
+                threads=search.threads,
+                measure=False,
+                **stated,
+            )
+            outcome = run_search(search, prepared.penalty, prepared.domain)
+        except InputError as error:
+            raise error.at(f"model '{_text(spec)}'{where}") from error
+        self._step(spec)
+        return prepared.fitted(search, outcome)
+
+    def scores(
+        self, spec: Model, splits: Sequence[Fold], windows: Windows, whole: Estimate
+    ) -> list[float]:
+        # A drift that all data show is looked for in their parts, too.
+        inferred = not spec.named or any(key.endswith("_removed") for key in whole.settings)
         found = []
         for number, split in enumerate(splits, start=1):
             where = f", fold {number} of {len(splits)}"
-            estimate = self.fit(spec, split.training, windows, where)
+            fitted = (
+                FittedModel.of(self.fit(spec, split.training, windows, where))
+                if inferred
+                else self._values(spec, split.training, windows, where)
+            )
             try:
-                found.append(split.residual(estimate))
+                found.append(split.residual(fitted))
             except InputError as error:
                 raise error.at(f"model '{_text(spec)}'{where}") from error
         return found

@@ -9,8 +9,7 @@ import numpy as np
 
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
-from jointid.estimate.estimate import Estimate
-from jointid.estimate.prediction import predicted_torque
+from jointid.estimate.prediction import FittedModel, predicted_torque
 from jointid.problem.window_table import WindowTable
 from jointid.recording.recording import Recording
 
@@ -41,7 +40,7 @@ class Fold:
     training: tuple[Recording, ...]
     held_out: tuple[Block, ...]
 
-    def residual(self, estimate: Estimate) -> float:
+    def residual(self, fitted: FittedModel) -> float:
         """Return the relative residual of the held-out windows: norm of the torque's residuals over that of the torque.
 
         The torque is predicted from the motion, and from the reading where there is a sensor, whatever the residual
@@ -49,8 +48,8 @@ class Fold:
 
         Parameters
         ----------
-        estimate : Estimate
-            Fitted to `training`.
+        fitted : FittedModel
+            Of `training`.
 
         Raises
         ------
@@ -59,7 +58,7 @@ class Fold:
         """
         missed = measured = 0.0
         for block in self.held_out:
-            found = predicted_torque(estimate, block.recording)
+            found = predicted_torque(fitted, block.recording)
             inside = (found.start >= block.start) & (found.stop <= block.stop)
             missed += float(np.sum(found.residual[inside] ** 2))
             measured += float(np.sum(found.torque[inside] ** 2))

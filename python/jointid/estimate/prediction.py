@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.estimate.friction_map import shared_value
 from jointid.estimate.settings import model_of
+from jointid.joint.joint import Joint
 from jointid.problem.problem import Problem
 from jointid.problem.recordings import listed
 from jointid.problem.terms import TermChoice
@@ -24,6 +26,31 @@ if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FittedModel:
+    """What a prediction needs of a fit, with or without its inference.
+
+    Attributes
+    ----------
+    settings : mapping
+        As `Estimate.settings`.
+    joint : Joint or None
+        None: a joint without a gear, of which nothing is known.
+    values : mapping of str to float
+        Of all parameters.
+    """
+
+    settings: Mapping[str, Any]
+    joint: Joint | None
+    values: Mapping[str, float]
+
+    @classmethod
+    def of(cls, estimate: Estimate) -> FittedModel:
+        """Return that of an estimate."""
+        values = {name: parameter.value for name, parameter in estimate.parameters.items()}
+        return cls(settings=estimate.settings, joint=estimate.joint, values=values)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -46,7 +73,7 @@ class PredictedTorque:
 
 def predict(estimate: Estimate, recording: Recording) -> Prediction:
     """Predict a recording: see `Estimate.predict`."""
-    problem, penalty, theta = _posed(estimate, recording)
+    problem, penalty, theta = _posed(FittedModel.of(estimate), recording)
     table = problem.table(penalty, theta)
     return Prediction(
         windows=table,
@@ -55,15 +82,15 @@ def predict(estimate: Estimate, recording: Recording) -> Prediction:
     )
 
 
-def predicted_torque(estimate: Estimate, recording: Recording) -> PredictedTorque:
-    """Return how an estimate predicts the drive's torque, whichever residual it was fitted by.
+def predicted_torque(fitted: FittedModel, recording: Recording) -> PredictedTorque:
+    """Return how a fit predicts the drive's torque, by whichever residual it was made.
 
     Raises
     ------
     InputError
         As `Estimate.predict`.
     """
-    _, penalty, theta = _posed(estimate, recording)
+    _, penalty, theta = _posed(fitted, recording)
     residual = np.asarray(penalty.residuals(theta))
     if penalty.residual == _core.Residual.sensor:
         residual = residual * theta[penalty.names.index("sensor_gain")]
@@ -76,17 +103,17 @@ def predicted_torque(estimate: Estimate, recording: Recording) -> PredictedTorqu
     )
 
 
-def _posed(estimate: Estimate, recording: Recording) -> tuple[Problem, _core.Penalty, Array]:
-    """Return the problem that a recording poses, its penalty, and the estimate's values in it."""
+def _posed(fitted: FittedModel, recording: Recording) -> tuple[Problem, _core.Penalty, Array]:
+    """Return the problem that a recording poses, its penalty, and the fitted values in it."""
     require_kind("recording", recording, Recording)
-    settings = estimate.settings
+    settings = fitted.settings
     choice = TermChoice(
         terms=tuple(settings["terms"]),
         model=model_of(settings),
         # In terms of the reading, too: few windows do not show again how the motion explains it.
         residual="torque" if settings["residual"] == "torque" else "sensor",
         sensor="sensor_gain" in settings["terms"],
-        gear_ratio=estimate.joint.gear_ratio,
+        gear_ratio=1.0 if fitted.joint is None else fitted.joint.gear_ratio,
     )
     if recording.kind != settings["kind"]:
         raise InputError(
@@ -103,7 +130,7 @@ def _posed(estimate: Estimate, recording: Recording) -> tuple[Problem, _core.Pen
         shift = {name: delay for name, delay in shift.items() if name != "velocity"}
     problem = Problem(
         recordings=tuple(shifted(run, shift) for run in listed(recording)),
-        joint=estimate.joint,
+        joint=fitted.joint,
         choice=choice,
         torque_hold=settings["torque_hold"],
         mask_standstill=settings["mask_standstill"],
@@ -111,6 +138,5 @@ def _posed(estimate: Estimate, recording: Recording) -> tuple[Problem, _core.Pen
         min_speed=settings.get("min_speed", 0.0),
     )
     penalty = problem.penalty(settings["windows"])
-    values = {name: parameter.value for name, parameter in estimate.parameters.items()}
-    theta = np.array([shared_value(values, name) for name in penalty.names])
+    theta = np.array([shared_value(fitted.values, name) for name in penalty.names])
     return problem, penalty, theta

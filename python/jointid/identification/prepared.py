@@ -18,6 +18,7 @@ from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.estimate.causes import Cause
 from jointid.estimate.estimate import Estimate
+from jointid.estimate.prediction import FittedModel
 from jointid.estimate.selection import Selection
 from jointid.identification.chosen_model import chosen_without_delays
 from jointid.identification.conclusion import infer
@@ -117,6 +118,19 @@ class Prepared:
             again=functools.partial(self._again, search),
         )
         return replace(estimate, follow_up=source, selection=self.selection)
+
+    def fitted(self, search: Search, outcome: Outcome) -> FittedModel:
+        """Return what a prediction needs of a search's outcome: no intervals, no findings.
+
+        Parameters
+        ----------
+        search : Search
+        outcome : Outcome
+        """
+        domain = self.domain
+        best = balanced(domain.names, domain.lower, domain.upper, outcome.best)
+        values = dict(zip(domain.names, best.tolist(), strict=True))
+        return FittedModel(settings=self._settings(search), joint=self.problem.joint, values=values)
 
     def _inferred(
         self, search: Search, outcome: Outcome, started: float, known: tuple[Cause, ...] = ()
@@ -231,6 +245,7 @@ def prepare(
     choose: bool = False,
     unfit: Mapping[str, str] | None = None,
     on_time: bool = False,
+    measure: bool = True,
 ) -> Prepared:
     """Return an identification ready to search; parameters as in `identify`.
 
@@ -244,6 +259,8 @@ def prepare(
     on_time : bool
         Whether it is known that no signal is late, as in a simulation; else delays are looked for.
         Default False.
+    measure : bool
+        Whether delays beside those of `shift` are looked for. Default True.
 
     Raises
     ------
@@ -287,7 +304,7 @@ def prepare(
         elif on_time:
             delays = {}
         else:
-            problem, delays = without_delays(problem, shift)
+            problem, delays = without_delays(problem, shift, measure=measure)
         problem, penalty, slow_motion = without_creep(problem, windows, speed)
         problem, penalty, instant = without_early_reading(problem, penalty, windows)
         problem, penalty = with_instruments(

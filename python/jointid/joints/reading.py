@@ -35,12 +35,7 @@ def load_estimate(path: Path, joint: str | None = None) -> Estimate:
     joints = document.get("joints") if isinstance(document, dict) else None
     if not isinstance(joints, dict) or document.get("kind") != KIND:
         if joint is not None:
-            raise InputError(
-                "the file holds one joint's estimate",
-                argument="joints",
-                value=joint,
-                place=str(path),
-            )
+            raise InputError(f"{path} holds one joint's estimate", argument="joints", value=joint)
         return Estimate.load(path)
     if joint is None:
         if len(joints) != 1:
@@ -53,8 +48,13 @@ def load_estimate(path: Path, joint: str | None = None) -> Estimate:
         joint = next(iter(joints))
     try:
         name = joint_named(joint, list(joints), "", "joints", "load")
-    except InputError as error:
-        raise error.at(str(path)) from None
+    except InputError as error:  # about what was asked, not about a place in the file
+        raise InputError(
+            f"{error.reason} in {path}",
+            argument=error.argument,
+            value=error.value,
+            remedy=error.remedy,
+        ) from None
     found = joints[name]
     estimate = found.get("estimate") if isinstance(found, dict) else None
     if estimate is None:

@@ -68,11 +68,18 @@ class OnlineIdentifier:
 
     Examples
     --------
-    >>> with jid.OnlineIdentifier(joint, window=30.0) as identifier:
-    ...     for sample in drive:
-    ...         identifier.feed(time=..., position=..., velocity=..., torque=..., sensor=...)
-    ...         if identifier.estimate is not None:
-    ...             controller = retuned(identifier.estimate.joint)
+    >>> with jid.OnlineIdentifier(joint, window=10.0) as identifier:
+    ...     for block in recording.split(24):  # half a second each, as a drive delivers them
+    ...         identifier.feed(
+    ...             time=block.time,
+    ...             position=block.position,
+    ...             velocity=block.velocity,
+    ...             torque=block.torque,
+    ...             sensor=block.sensor,
+    ...         )
+    ...     latest = identifier.wait()  # `identifier.estimate` does not wait
+    >>> bool(abs(latest.joint.parameters["coulomb"].value - 25.0) < 0.5)
+    True
     """
 
     def __init__(

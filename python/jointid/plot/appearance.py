@@ -44,6 +44,7 @@ def style() -> Iterator[None]:
 
     Examples
     --------
+    >>> from matplotlib import pyplot
     >>> with jid.plot.style():
     ...     figure, axes = pyplot.subplots()
     """

@@ -57,7 +57,7 @@ def friction_curves(
 
     Examples
     --------
-    >>> jid.plot.friction_curves({"first guess": joint, "identified": estimate}, peak=0.5)
+    >>> jid.plot.friction_curves({"monday": estimate, "tuesday": estimate.joint}, peak=0.5)
     """
     require_mapping("joints", joints, "{'before': joint}")
     for each in joints.values():
@@ -120,7 +120,7 @@ def sensitivity(
 
     Examples
     --------
-    >>> jid.plot.sensitivity(joint, "viscous", share=0.2)
+    >>> jid.plot.sensitivity(estimate.joint, "viscous", share=0.2)
     """
     require_kind("joint", joint, Joint)
     values = _values(joint)

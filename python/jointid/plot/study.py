@@ -72,7 +72,7 @@ def sweep(
 
     Examples
     --------
-    >>> jid.plot.sweep(study, "ga.population", value="error.sensor_gain")
+    >>> jid.plot.sweep(study, "ga.population", value="sensor_gain")
     """
     require_kind("study", study, Study)
     if statistic not in STATISTICS:

@@ -288,8 +288,8 @@ class Recording(Parts):
         Examples
         --------
         >>> frame = recording.to_pandas()
-        >>> frame.loc[1.0:2.0, "torque"].max() <= recording.torque.max()
-        True
+        >>> list(frame.columns)
+        ['position', 'velocity', 'torque', 'sensor']
         """
         from jointid.recording.dataframe import frame_of
 

@@ -6,6 +6,7 @@ import json
 import os
 import time
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -98,10 +99,17 @@ class StudyFile:
         self.rows += rows
 
     def _write(self, records: Iterable[dict[str, Any]]) -> None:
-        self._file.write(
-            "".join(json.dumps(record, ensure_ascii=False) + "\n" for record in records).encode()
-        )
-        self._file.flush()
+        lines = "".join(json.dumps(record, ensure_ascii=False) + "\n" for record in records)
+        end = self._file.tell()
+        rest = lines.encode()
+        try:
+            while rest:
+                rest = rest[self._file.write(rest) :]
+        except BaseException:  # a full disk takes a part of a line, which the next one would follow
+            with suppress(OSError):
+                self._file.truncate(end)
+                self._file.seek(end)
+            raise
         if time.monotonic() - self._synced > _SYNC:
             os.fsync(self._file.fileno())
             self._synced = time.monotonic()
@@ -117,9 +125,10 @@ class StudyFile:
         trace: TracebackType | None,
     ) -> None:
         """Write everything to the disk, and close the file."""
-        self._file.flush()
-        os.fsync(self._file.fileno())
-        self._file.close()
+        try:
+            os.fsync(self._file.fileno())
+        finally:
+            self._file.close()
 
 
 def read(path: Path) -> tuple[dict[str, Any], list[Row], int]:

@@ -51,8 +51,9 @@ def open_bus(
 
     Examples
     --------
-    >>> with jid.hardware.open_bus(interface="socketcan", channel="can0") as bus:
-    ...     print(bus.recv(1.0))
+    >>> with jid.hardware.open_bus(interface="virtual", channel="bench") as bus:  # or "socketcan", "can0"
+    ...     print(bus.recv(0.01))
+    None
     """
     bus = _opened(interface, channel, bitrate, identifiers)
     try:

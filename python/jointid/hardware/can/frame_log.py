@@ -14,7 +14,7 @@ from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
 
 _HIGHEST = 0x7FF  # identifier of 11 bits
-_LONGEST = 8  # bytes of a classic frame
+_LONGEST = 64  # bytes: a drive of another make may use long frames
 ENDINGS = (".log", ".asc", ".blf")
 
 LoggedFrame = tuple[float, int, bytes]  # time [s], identifier, payload
@@ -35,7 +35,7 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
     Raises
     ------
     InputError
-        The file cannot be read, or a frame is none that a bus can carry: an identifier above 7FFh, more than 8 bytes,
+        The file cannot be read, or a frame is none that a bus can carry: an identifier above 7FFh, more than 64 bytes,
         a stamp that is not finite.
     """
     if path.suffix.lower() not in ENDINGS:
@@ -70,7 +70,7 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
 
 
 def _problem(message: can.Message) -> str:
-    """What no classic frame with an 11-bit identifier has; python-can's readers do not look."""
+    """What no frame with an 11-bit identifier has; python-can's readers do not look."""
     if not math.isfinite(message.timestamp):
         return "has a stamp that is no number"
     if not 0 <= message.arbitration_id <= _HIGHEST:

@@ -11,7 +11,7 @@ from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 from jointid.estimate.delays import Delay
 from jointid.estimate.slow_motion import SlowMotion
-from jointid.identification.refinements.delays import refined_delays
+from jointid.identification.refinements.delays import delays_removed, refined_delays
 from jointid.identification.refinements.sensor_instant import SensorInstant
 from jointid.identification.refinements.slow_motion import contradicting
 from jointid.problem.problem import Problem
@@ -37,7 +37,7 @@ class Refinements:
 
 
 def without_delays(
-    problem: Problem, shift: Mapping[str, float] | None
+    problem: Problem, shift: Mapping[str, float] | None, *, measure: bool = True
 ) -> tuple[Problem, dict[str, Delay]]:
     """Return the problem without its signals' delays, and these by signal.
 
@@ -45,12 +45,16 @@ def without_delays(
     ----------
     shift : mapping of str to float or None
         [s]; None: chosen.
+    measure : bool
+        Whether the delays that `shift` leaves are measured, too. Default True.
 
     Raises
     ------
     InputError
         A shift that cannot be used.
     """
+    if not measure:
+        return delays_removed(problem, checked_shift(shift or {})), {}
     return refined_delays(problem, None if shift is None else checked_shift(shift))
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointid import _core
+from jointid.base.error_text import reason_of
 from jointid.base.errors import InputError
 from jointid.base.files import write_whole
 from jointid.base.schema import read_bytes
@@ -165,10 +166,21 @@ def _convergence(result: _core.GaResult) -> Convergence:
 
 def _read_state(path: Path) -> _core.GaState:
     try:
-        return _core.GaState.from_bytes(read_bytes(path))
+        state = _core.GaState.from_bytes(read_bytes(path))
     except OSError as error:
         raise InputError(
             f"the checkpoint cannot be read: {error.strerror}", argument="resume", place=str(path)
         ) from error
     except InputError as error:
         raise InputError(error.reason, argument="resume", place=str(path)) from error
+    except ValueError as error:  # of what the core checks whenever it is made, e.g. bounds
+        raise InputError(
+            f"the checkpoint is damaged: {reason_of(error)}", argument="resume", place=str(path)
+        ) from error
+    if not (np.isfinite(state.best).all() and state.penalty > -np.inf):
+        raise InputError(
+            "the best parameters in the checkpoint are not finite",
+            argument="resume",
+            place=str(path),
+        )
+    return state

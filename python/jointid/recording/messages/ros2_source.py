@@ -55,9 +55,10 @@ class SqliteSource:
         self._room.again()
         connection = self._connected()
         try:
-            rows = connection.execute(query, numbers)
+            rows = None
             while True:
                 try:
+                    rows = rows or connection.execute(query, numbers)
                     row = rows.fetchone()
                 except sqlite3.Error as error:
                     raise DamageError(f"it is damaged ({reason_of(error)})") from None

@@ -136,7 +136,7 @@ def load(
     >>> recording = jid.load("log.csv", columns={"position": "enc1"}, units={"position": "deg"})
     >>> recording = jid.load("robot.csv", extra={"gravity": "model_gravity_torque_1_Nm"})
     >>> elbow = jid.load("arm.csv", joint=3, gear_ratio=-48)
-    >>> elbow = jid.load("arm.mcap", joint="elbow", topic="/joint_states")
+    >>> elbow = jid.load("arm.mcap", joint="elbow", topic="/joint_states")  # doctest: +SKIP
     """
     file = require_path("path", path)
     try:
