@@ -13,7 +13,7 @@ from jointid.base.errors import InputError
 from jointid.recording.recording import Recording
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.recording.wide.words import MOTOR
-from jointid.robot.quiet_velocity import quiet_velocity
+from jointid.robot.loud_samples import quiet_velocity
 from jointid.robot.robot import Robot
 
 Array = NDArray[np.float64]
