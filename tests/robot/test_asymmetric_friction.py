@@ -55,6 +55,7 @@ def test_it_is_named_where_the_model_lacks_it(path: Path, run: jid.RobotRecordin
     (told,) = found.warnings
     assert told.code == "asymmetric_friction"
     assert "elbow" in told.cause
+    assert "e+" not in told.cause  # 100 %, not 1e+02 %
     (advice,) = told.advice
     again = jid.identify_robot(run, jid.Robot.from_urdf(path), **advice.arguments)
     assert again.joints["elbow"].parameters["viscous_difference"].value == pytest.approx(

@@ -94,7 +94,8 @@ class Robot:
         path : path-like
             The URDF. Meshes are not read.
         joints : sequence of str, optional
-            The joints that are identified, by the URDF's names, from the base on; the others stand at zero.
+            The joints that are identified, by the URDF's names and in its order, which is that of all lists below; the
+            others stand at zero.
             Default: all that move.
         gear_ratios : sequence of float, optional
             Motor's angle per angle of the joint, one a joint, negative if they turn in opposite directions.
