@@ -152,6 +152,15 @@ def test_a_self_test_that_loses_a_parameter_that_was_asked_for() -> None:
     assert judged(estimate(), test, parameters=["coulomb"]).level == "usable"
 
 
+def test_a_parameter_that_is_not_there_is_refused() -> None:
+    """Nothing speaks against it: it would be usable."""
+    vague = with_findings(Finding(code="undetermined", cause="few", parameters=("static",)))
+    with pytest.raises(jid.InputError, match="parameters is 'statik': the estimate has no such"):
+        judged(vague, parameters=["statik"])
+    assert str(judged(vague, parameters="static")) == "usable with care (static)"
+    assert judged(vague, parameters="viscous").level == "usable"
+
+
 def test_a_tolerance_that_is_larger_than_all_else() -> None:
     known = estimate().parameters["viscous"]
     rests = replace(known, systematic=dict(known.systematic) | {"given": 2.0})

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 from jointid import _core
+from jointid.base.errors import InputError
 from jointid.base.values import dataclass
 
 if TYPE_CHECKING:
@@ -125,12 +126,25 @@ def judged(
     -------
     Verdict
 
+    Raises
+    ------
+    InputError
+        The estimate has no such parameter.
+
     Examples
     --------
     >>> str(jid.identify(recording, joint).verdict)  # doctest: +SKIP
     'usable with care (coulomb)'
     """
-    asked = tuple(parameters) or estimate.free
+    asked = (parameters,) if isinstance(parameters, str) else tuple(parameters)
+    for name in asked:  # nothing is ever said against a name that is not there
+        if name not in estimate.parameters:
+            raise InputError(
+                f"the estimate has no such parameter; it has {', '.join(estimate.parameters)}",
+                argument="parameters",
+                value=name,
+            )
+    asked = asked or estimate.free
     objections = [*_objections(estimate, self_test)]
     hidden = [*_hidden_inertia(estimate, asked)]
     friction = frozenset(name for name in estimate.parameters if _acts_against_motion(name))
