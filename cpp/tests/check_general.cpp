@@ -82,8 +82,10 @@ void check_equal(const Penalty& direct, const GeneralRange& range, const std::st
     const Eigen::VectorXd scale = jacobian.colwise().norm() * residual.norm();
     compressed.residuals(candidates.col(i), residual, &jacobian);
     const Eigen::VectorXd own = jacobian.transpose() * residual;
-    CHECK_WITH(((own - gradient).cwiseAbs().array() <= 1e-7 * scale.array() + 1e-12 * size).all(),
-               what);
+    // By a shape that is fixed nothing is sought, and the compressed form may have no derivative.
+    const auto sought = (domain.lower.array() < domain.upper.array()).cast<double>();
+    const Eigen::ArrayXd apart = (own - gradient).cwiseAbs().array() * sought;
+    CHECK_WITH((apart <= 1e-7 * scale.array() + 1e-12 * size).all(), what);
   }
 }
 

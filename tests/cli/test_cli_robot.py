@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from command_line_answers import answer
 from small_arm import recording, urdf
@@ -59,6 +60,24 @@ def test_facts_that_nobody_knows_are_refused(
     assert code == 2
     assert "robot.toml" in told
     assert "gear_ratios" in told
+
+
+def test_the_facts_hold_a_joints_model(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, facts, saved = urdf(tmp_path), tmp_path / "robot.toml", tmp_path / "arm.json"
+    run = recording(path, duration=6.0)
+    assert run.torque is not None
+    names = [f"{name}.{signal}" for signal in ("position", "torque") for name in run.names]
+    table = np.column_stack([run.time, run.position, run.torque])
+    log = tmp_path / "arm.csv"
+    np.savetxt(log, table, delimiter=",", header=",".join(["time", *names]), comments="")
+    facts.write_text('[joints.elbow]\nmodel = "coulomb_viscous:asymmetric"\n', encoding="utf-8")
+    line = ["identify", str(log), "--robot", str(path), "--facts", str(facts)]
+    assert main([*line, "--save", str(saved)]) == 0
+    assert "viscous_difference" in capsys.readouterr().out
+    models = json.loads(saved.read_text(encoding="utf-8"))["settings"]["model"]
+    assert models["elbow"] == "coulomb_viscous:asymmetric"
+    assert main([*line, "--model", "coulomb_viscous"]) == 0
+    assert "viscous_difference" not in capsys.readouterr().out
 
 
 @pytest.fixture(name="saved", scope="module")

@@ -122,6 +122,21 @@ def test_each_purpose_minds_its_own_parameters() -> None:
     assert str(chance.verdict) == "usable with care (static)"
 
 
+def test_a_simulation_needs_an_inertia_that_is_known() -> None:
+    hidden = Finding(code="undetermined", cause="it is hidden", parameters=("inertia",))
+    inertia = replace(estimate().parameters["inertia"], stderr=1.5, interval=(-0.5, 5.5))
+    parameters = dict(estimate().parameters) | {"inertia": inertia}
+    free = replace(with_findings(hidden), parameters=parameters, free=("inertia",))
+    verdict = free.verdict
+    assert str(verdict.uses["simulation"]) == "not usable (inertia)"
+    assert verdict.uses["compensation"].level == "usable"
+    assert verdict.uses["monitoring"].level == "usable with care"
+    assert "its 95 % interval reaches zero" in verdict.reasons[0]
+    assert judged(free, parameters=["viscous"]).level == "usable"  # nobody asks for the inertia
+    known = parameters | {"inertia": replace(inertia, interval=(0.5, 4.5))}
+    assert replace(free, parameters=known).verdict.level == "usable with care"
+
+
 def test_an_info_does_not_matter_and_a_blocking_finding_always() -> None:
     told = Finding(code="gaps", severity="info", cause="samples are missing")
     assert with_findings(told).verdict.level == "usable"

@@ -137,3 +137,12 @@ def test_a_notebook_shows_signals_with_units_and_escapes_names() -> None:
     assert "&lt;b&gt;x" in shown
     for text in ("position", "rad", "N·m", "load (extra)", "velocity (derived)", "10 ms"):
         assert text in shown
+
+
+def test_an_index_without_a_name_is_not_taken_for_time_and_the_error_says_so() -> None:
+    frame = pd.DataFrame({"position_rad": np.sin(TIME), "torque_Nm": np.cos(TIME)}, index=TIME)
+    with pytest.raises(InputError, match=r"index has no name \(rename_axis\('time_s'\)"):
+        Recording.from_dataframe(frame)
+    assert Recording.from_dataframe(frame.rename_axis("time_s")).time[0] == TIME[0]
+    with pytest.raises(InputError, match=r"^data frame: the file has no time column"):
+        Recording.from_dataframe(frame.reset_index(drop=True))

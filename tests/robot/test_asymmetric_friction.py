@@ -55,6 +55,7 @@ def test_it_is_named_where_the_model_lacks_it(path: Path, run: jid.RobotRecordin
     (told,) = found.warnings
     assert told.code == "asymmetric_friction"
     assert "elbow" in told.cause
+    assert "e+" not in told.cause  # 100 %, not 1e+02 %
     (advice,) = told.advice
     again = jid.identify_robot(run, jid.Robot.from_urdf(path), **advice.arguments)
     assert again.joints["elbow"].parameters["viscous_difference"].value == pytest.approx(
@@ -87,3 +88,50 @@ def test_a_urdf_has_no_place_for_it(path: Path, found: jid.RobotEstimate, tmp_pa
 def test_what_a_robots_joint_has_not_is_refused(path: Path, run: jid.RobotRecording) -> None:
     with pytest.raises(jid.InputError, match="NAME:asymmetric"):
         jid.identify_robot(run, jid.Robot.from_urdf(path), model={"elbow": "stribeck:ripple=2"})
+
+
+@pytest.mark.parametrize(
+    "facts", ['[joints.elbow]\nmodel = "coulomb_viscous:asymmetric"', 'models.elbow = "stribeck"']
+)
+def test_a_file_of_facts_holds_models(
+    path: Path, run: jid.RobotRecording, facts: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "facts.toml"
+    file.write_text(facts, encoding="utf-8")
+    robot = jid.Robot.from_urdf(path, facts=file)
+    wanted = facts.split('"')[1]
+    assert robot.models == ("auto", wanted)
+    assert jid.identify_robot(run, robot).joints["elbow"].model == wanted
+    given = jid.identify_robot(run, robot, model={"shoulder": "stribeck"})
+    assert [each.model for each in given.joints.values()] == ["stribeck", wanted]
+    other = jid.identify_robot(run, robot, model="coulomb_viscous")
+    assert other.joints["elbow"].model == "coulomb_viscous"
+
+
+@pytest.mark.parametrize(
+    ("facts", "reason"),
+    [
+        ('[joints.nix]\nmodel = "auto"', r"^facts\.toml: models is .nix.: the robot has no such"),
+        ('[joints.elbow]\nmodel = "lugre"', r"^facts\.toml: models is .lugre"),
+        ("[joints.elbow]\nratio = 3", r"^facts\.toml: joints\.elbow is .*joint's model"),
+        ("models = 3", r"^facts\.toml: models is 3: models by joints' names"),
+    ],
+)
+def test_a_model_that_does_not_fit_names_the_file(
+    path: Path, facts: str, reason: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "facts.toml"
+    file.write_text(facts, encoding="utf-8")
+    with pytest.raises(jid.InputError, match=reason):
+        jid.Robot.from_urdf(path, facts=file)
+
+
+def test_models_with_a_difference_are_compared(path: Path, run: jid.RobotRecording) -> None:
+    models = ["coulomb_viscous", "coulomb_viscous:asymmetric"]
+    found = jid.compare_robot_models(
+        run, jid.Robot.from_urdf(path), models=models, inertia=["urdf"], folds=3
+    )
+    assert found.winner.model == models[1]
+    assert found.models["elbow"] == models[1]
+    assert "viscous_difference" in found.estimate.joints["elbow"].parameters
+    assert models[1] in found.to_json()

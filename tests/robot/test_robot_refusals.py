@@ -116,6 +116,21 @@ def test_a_joint_is_named_once(path: Path) -> None:
         jid.Robot.from_urdf(path, joints=["elbow", "elbow"])
 
 
+def test_joints_in_another_order_are_refused(path: Path) -> None:
+    # Taken in the URDF's order, the elbow's gear ratio would be the shoulder's, and nothing would say so.
+    with pytest.raises(
+        jid.InputError, match=r"order of the URDF is expected.*shoulder, elbow.*gear_ratios"
+    ):
+        jid.Robot.from_urdf(path, joints=["elbow", "shoulder"], gear_ratios=[100.0, 50.0])
+
+
+def test_a_urdf_that_is_missing_is_named(tmp_path: Path) -> None:
+    with pytest.raises(jid.InputError, match=r"missing\.urdf.*no such file"):
+        jid.Robot.from_urdf(tmp_path / "missing.urdf")
+    with pytest.raises(jid.InputError, match=r"cannot be read"):
+        jid.Robot.from_urdf(tmp_path)
+
+
 def test_a_locked_joint_that_moves_is_told(path: Path) -> None:
     robot = jid.Robot.from_urdf(path, joints=["shoulder"])
     found = jid.identify_robot(recording(path), robot)

@@ -113,3 +113,12 @@ def test_another_shift_is_refused(ran: Run, shift: Any, argument: str) -> None:
     with pytest.raises(jid.InputError) as refused:
         identified(late(ran, [0.0] * JOINTS), shift=shift)
     assert refused.value.argument == argument
+
+
+@pytest.mark.parametrize(("seed", "noise"), [(102, 3e-4), (101, 1e-5)])
+def test_noise_of_the_positions_is_no_early_torque(seed: int, noise: float) -> None:
+    arm = run(random_arm(seed), random_motion(seed))
+    noisy = recorded(arm, Sensors(position_noise=noise, velocity_delay=None), seed)
+    found = jid.identify_robot(noisy, jid.Robot.from_urdf(URDF))
+    assert not told(found, "signal_lag")
+    assert not told(found, "delay_removed")

@@ -12,7 +12,7 @@ namespace jointid::identify {
 namespace {
 
 constexpr int kProbes = 9;
-constexpr double kGolden = 0.6180339887498949;
+constexpr double kGoldenShare = 0.6180339887498949;
 
 }  // namespace
 
@@ -45,7 +45,7 @@ void CompressedPenalty::build_general(const Penalty& penalty, const search::Doma
   if (!pieces) return;
   Probes probes;
   for (int i = 1; i <= kProbes; ++i) {
-    const double share = i * kGolden - std::floor(i * kGolden);
+    const double share = i * kGoldenShare - std::floor(i * kGoldenShare);
     const double other = (i - 0.5) / kProbes;
     probes.push_back({low[0] * base::exp(other * base::log(high[0] / low[0])),
                       low[1] * base::exp(share * base::log(high[1] / low[1]))});

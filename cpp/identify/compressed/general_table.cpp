@@ -12,14 +12,14 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr std::size_t kLanes = 8;
+constexpr std::size_t kTableLanes = 8;
 constexpr std::size_t kMostPoints = 2048;
-constexpr std::size_t kMostRows = 1024;  // of all shaped columns together
-constexpr Eigen::Index kWidest = 128;    // remainders
-constexpr double kNothing = 3e-16;       // of the largest column, squared: rounding
+constexpr std::size_t kMostRows = 1024;        // of all shaped columns together
+constexpr Eigen::Index kMostRemainders = 128;  // remainders
+constexpr double kNothing = 3e-16;             // of the largest column, squared: rounding
 // Shapes among which the remainders are found: some, and more for a large domain.
 constexpr int kSpread = 80;
-constexpr double kDensity = 12.0;
+constexpr double kSpreadDensity = 12.0;
 constexpr double kLargest = 100.0;
 constexpr std::size_t kTogether = 4;  // points between two looks at the sums
 
@@ -99,7 +99,8 @@ Probes spread(const std::array<double, 2>& lower, const std::array<double, 2>& u
   Probes result{at(0.0, 0.0), at(0.0, 1.0), at(1.0, 0.0), at(1.0, 1.0)};
   const double length = base::log(upper[0] / lower[0]);
   const double height = base::log(upper[1] / lower[1]);
-  const int count = kSpread + static_cast<int>(kDensity * std::min(length * height, kLargest));
+  const int count =
+      kSpread + static_cast<int>(kSpreadDensity * std::min(length * height, kLargest));
   for (int i = 1; i <= count; ++i) {  // every other one among high exponents, which differ most
     const double share = mirrored(i, 3);
     result.push_back(at(mirrored(i, 2), i % 2 == 0 ? share : std::sqrt(share)));
@@ -119,7 +120,7 @@ GeneralTable::GeneralTable(const GeneralRange& range, const SpeedPieces& pieces,
       points_(pieces.points()) {
   const Eigen::MatrixXd rest = remainders(moments.products);
   rank_ = static_cast<std::size_t>(rest.rows());
-  padded_ = (rows_ + rank_ + kLanes - 1) / kLanes * kLanes;
+  padded_ = (rows_ + rank_ + kTableLanes - 1) / kTableLanes * kTableLanes;
   matrix_.assign(shaped_ * points_.size() * padded_, 0.0);
   const auto count = static_cast<Eigen::Index>(points_.size());
   Eigen::MatrixXd both(moments.projections.rows() + rest.rows(), rest.cols());
@@ -166,9 +167,9 @@ Eigen::MatrixXd GeneralTable::remainders(const Eigen::MatrixXd& products) const 
     left.col(j) = own.cwiseProduct(shapes).colwise().sum().transpose();
   }
   const double scale = left.maxCoeff();
-  Eigen::MatrixXd taken(shaped * moments, kWidest);
+  Eigen::MatrixXd taken(shaped * moments, kMostRemainders);
   Eigen::Index rank = 0;
-  while (rank < kWidest) {
+  while (rank < kMostRemainders) {
     Eigen::Index worst = 0;
     Eigen::Index where = 0;
     const double largest = left.maxCoeff(&worst, &where);

@@ -11,9 +11,9 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr std::size_t kRows = 4096;     // whose constant columns are decomposed at once
-constexpr std::size_t kPart = 200'000;  // nodes, so that a part outweighs its matrix of products
-constexpr std::size_t kMostParts = 16;  // that matrix has some megabytes
+constexpr std::size_t kDecomposed = 4096;  // whose constant columns are decomposed at once
+constexpr std::size_t kPart = 200'000;     // nodes, so that a part outweighs its matrix of products
+constexpr std::size_t kMostParts = 16;     // that matrix has some megabytes
 
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -77,7 +77,7 @@ class Sums {
     std::size_t begin = windows.begin;
     do {
       cancel.check();
-      const Stretch block{begin, std::min(windows.end, begin + kRows)};
+      const Stretch block{begin, std::min(windows.end, begin + kDecomposed)};
       add_block(block, row, spans, result);
       begin = block.end;
     } while (begin < windows.end);
@@ -154,7 +154,7 @@ class Sums {
   Eigen::MatrixXd direct_;  ///< probes' columns, over all windows
 };
 
-std::vector<Stretch> parts_of(const Penalty& penalty) {
+std::vector<Stretch> shares_of(const Penalty& penalty) {
   const auto windows = static_cast<std::size_t>(penalty.window_count());
   std::size_t nodes = 0;
   for (const auto& shaped : penalty.shaped()) {
@@ -174,7 +174,7 @@ std::vector<Stretch> parts_of(const Penalty& penalty) {
 SpeedMoments speed_moments(const Penalty& penalty, const SpeedPieces& pieces, const Probes& probes,
                            base::Pool& pool) {
   const Sums sums(penalty, pieces, probes);
-  const auto stretches = parts_of(penalty);
+  const auto stretches = shares_of(penalty);
   std::vector<Part> parts(stretches.size());
   const auto work = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) parts[i] = sums.part(stretches[i], pool.cancel());

@@ -111,8 +111,9 @@ def judged(
 
     Not usable: a blocking finding, a parameter asked for whose self-test fails, or less than 90 % of the windows'
     variance explained (of held-out torque where the model was chosen by it, unless the windows are explained worse
-    than by their mean and more than 10 % of their squares are left). Usable with care: a warning, or a tolerance of the
-    given facts of more than 5 % that is larger than everything else together. Usable: else.
+    than by their mean and more than 10 % of their squares are left); for simulation also an undetermined inertia whose
+    95 % interval reaches zero. Usable with care: a warning, or a tolerance of the given facts of more than 5 % that is
+    larger than everything else together. Usable: else.
 
     Parameters
     ----------
@@ -146,10 +147,11 @@ def judged(
             )
     asked = asked or estimate.free
     objections = [*_objections(estimate, self_test)]
+    hidden = [*_hidden_inertia(estimate, asked)]
     friction = frozenset(name for name in estimate.parameters if _acts_against_motion(name))
     uses = {
         "compensation": _use(objections, asked, friction.__contains__),
-        "simulation": _use(objections, asked, lambda _: True),
+        "simulation": _use([*objections, *hidden], asked, lambda _: True),
         "monitoring": _use(
             [each for each in objections if each.blocking or each.code in _CHANCE],
             asked,
@@ -157,7 +159,7 @@ def judged(
         ),
     }
     level = max((use.level for use in uses.values()), key=LEVELS.index)
-    ordered = sorted(objections, key=lambda each: not each.blocking)
+    ordered = sorted([*objections, *hidden], key=lambda each: not each.blocking)
     return Verdict(level=level, reasons=tuple(each.reason for each in ordered), uses=uses)
 
 
@@ -190,6 +192,27 @@ def _objections(estimate: Estimate, self_test: SelfTest | None) -> Iterable[_Obj
         names = ", ".join(given)
         reason = f"what is stated of the joint is more uncertain than all else that {names} rest on"
         yield _Objection(code="given", reason=reason, blocking=False, parameters=given)
+
+
+def _hidden_inertia(estimate: Estimate, asked: tuple[str, ...]) -> Iterable[_Objection]:
+    """An inertia of which the recording says nothing: friction and offsets may be zero, what moves has an inertia."""
+    doubted = {
+        name
+        for found in estimate.findings
+        if found.code == "undetermined"
+        for name in _free(estimate, found)
+    }
+    for name in asked:
+        p = estimate.parameters.get(name)
+        if p is None or name not in doubted or name.partition("[")[0] != "inertia":
+            continue
+        if p.interval is not None and p.interval[0] <= 0.0:
+            yield _Objection(
+                code="undetermined",
+                reason=f"a simulation needs {name}, and its 95 % interval reaches zero",
+                blocking=True,
+                parameters=(name,),
+            )
 
 
 def _use(

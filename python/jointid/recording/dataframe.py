@@ -68,6 +68,11 @@ class FrameTable:
         self._labels = list(frame.columns)
         self._index = _named_index(frame)
         self.headers = tuple(map(str, self._labels))
+        index = getattr(getattr(frame, "index", None), "dtype", None)
+        if self._index is None and getattr(index, "kind", "") == "f":  # times, but of what unit?
+            self.header_place = (
+                "data frame, whose index has no name (rename_axis('time_s') names it)"
+            )
         if self._index is not None:
             self.headers = (self._index[0], *self.headers)
         text = getattr(frame, "attrs", {}).get(ATTRIBUTE)

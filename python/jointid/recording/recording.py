@@ -175,7 +175,8 @@ class Recording(Parts):
         Parameters
         ----------
         df : DataFrame
-            Anything with `columns` and `df[column]`; headers are read as `load` reads a file's.
+            Anything with `columns` and `df[column]`; headers are read as `load` reads a file's. Its index is a column,
+            too, if it has a name ("time_s"), or holds dates or durations.
         columns, units, scale, extra, kind, torque_hold
             As in `load`.
 

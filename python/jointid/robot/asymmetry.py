@@ -8,6 +8,7 @@ import numpy as np
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
+from jointid.estimate.wording import percent
 from jointid.robot.attempt import Attempt
 from jointid.robot.columns import DIFFERENCE
 from jointid.robot.looked_rows import LookedRows
@@ -41,7 +42,7 @@ def asymmetry_told(attempt: Attempt) -> Iterator[Finding]:
                 evidence={"difference": Measured(value, unit), "explained": Measured(explained)},
                 cause=f"the viscous friction of {name} differs between the directions by "
                 f"{2.0 * abs(value):.3g} ± {2.0 * error:.2g} {unit}; that explains "
-                f"{100.0 * explained:.2g} % of its squared residual in stretches of motion that it was not taken from",
+                f"{percent(explained)} of its squared residual in stretches of motion that it was not taken from",
                 advice=(
                     Action("call", {"model": modelled(AUTO, True)}, function="identify_robot"),
                 ),

@@ -20,7 +20,7 @@ from jointid.robot.comparison_result import ComparedRobotModel, RobotComparison
 from jointid.robot.held_out import blocks_of, part_of_balance, told_by
 from jointid.robot.identifying import identify_robot
 from jointid.robot.inertia import MODES
-from jointid.robot.models import PLAIN, STRIBECK, friction_models
+from jointid.robot.models import PLAIN, STRIBECK, friction_models, name_of
 from jointid.robot.robot import Robot
 from jointid.robot.shifts import Shift, told_shift
 from jointid.robot.stamps import all_on_even_clocks
@@ -56,7 +56,7 @@ def compare_robot_models(
     recordings : RobotRecording, or sequence of it
     robot : Robot
     models : sequence of Model or str
-        Friction of all joints: "coulomb_viscous", "stribeck" (both by default).
+        Friction of all joints: "coulomb_viscous", "stribeck" (both by default), each also with ``:asymmetric``.
     inertia : sequence of str
         Any of "urdf", "scaled" and "free" (all by default).
     folds : int
@@ -155,10 +155,10 @@ def _models(models: object, robot: Robot) -> list[str]:
     found = (models,) if isinstance(models, str | Model) else models
     if not isinstance(found, list | tuple) or not found:
         raise InputError("a list of models is expected", argument="models", value=models)
-    names = [friction_models(each, robot)[0] for each in found]
-    if set(names) - {PLAIN, STRIBECK}:
+    names = [friction_models(each, robot.names)[0] for each in found]
+    if {name_of(each) for each in names} - {PLAIN, STRIBECK}:
         raise InputError(
-            f"{PLAIN} and {STRIBECK} are compared, and each joint's is chosen",
+            f"{PLAIN} and {STRIBECK} are compared, each also as NAME:asymmetric, and each joint's is chosen",
             argument="models",
             value=models,
         )

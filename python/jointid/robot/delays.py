@@ -108,10 +108,13 @@ def torque_delay(balance: Balance, fit: Fit, motions: Mapping[int, Motion]) -> T
         # Far from where the slope was taken.
         delay = _within(delay, np.where(far, own, 0.0))
     joints = delay + own
-    period = float(np.median(np.diff(next(iter(motions.values())).time)))
+    first = next(iter(motions.values()))
+    period = float(np.median(np.diff(first.time)))
     value, stderr, alike = _common(joints, errors, _WITHIN_SAMPLE * period)
     taken = np.zeros(n)
-    if abs(value) > max(_SMALL, _SURE * stderr) and 2 * np.count_nonzero(alike) > n:
+    # A torque that is held comes with its sample: what seems earlier by less than one is noise of the positions.
+    small = period if value < 0.0 and first.torque_held else _SMALL
+    if abs(value) > max(small, _SURE * stderr) and 2 * np.count_nonzero(alike) > n:
         taken[:] = value
     alone = ~alike & (np.abs(joints) > np.maximum(_APART, _SURE_OF_ONE * errors))
     taken[alone] = joints[alone]

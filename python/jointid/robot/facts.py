@@ -11,7 +11,7 @@ from jointid.base.toml_file import read_toml
 
 KEYS = (
     *("joints", "gear_ratios", "couplings", "rotor_inertias", "zero_offsets", "zero_offsets_deg"),
-    *("gravity", "side", "torque_scales", "directions"),
+    *("gravity", "side", "torque_scales", "directions", "models"),
 )
 
 _FACTS = TableOf(Plain())  # `Robot` says more of each value
@@ -37,6 +37,8 @@ def read_facts(path: Path) -> dict[str, Any]:
                 value=found[key],
                 place=path.name,
             )
+    if isinstance(found.get("joints"), dict):
+        found |= _of_joints(found.pop("joints"), path.name)
     if found.get("joints") == []:
         raise InputError(
             "a list of names is expected", argument="joints", value=[], place=path.name
@@ -61,3 +63,18 @@ def read_facts(path: Path) -> dict[str, Any]:
     if isinstance(rotors, list):
         found["rotor_inertias"] = [None if each == "free" else each for each in rotors]
     return found
+
+
+def _of_joints(tables: dict[str, Any], place: str) -> dict[str, Any]:
+    """Facts of single joints; what is not named is not left out."""
+    models = {}
+    for name, table in tables.items():
+        if not isinstance(table, dict) or set(table) != {"model"}:
+            raise InputError(
+                "a table with the joint's model is expected",
+                argument=f"joints.{name}",
+                value=table,
+                place=place,
+            )
+        models[name] = table["model"]
+    return {"models": models}

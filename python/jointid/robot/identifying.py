@@ -55,11 +55,11 @@ def identify_robot(
         Whether the links' inertias are those of the URDF, scaled link by link, or identified: as base parameters,
         the combinations that motion shows. Default ``"urdf"``.
     model : Model, str or mapping, optional
-        Friction of the joints: "coulomb_viscous", "stribeck", or "auto" (default): each joint has static friction if
+        Friction of the joints: "coulomb_viscous", "stribeck", or "auto": each joint has static friction if
         that predicts its held-out torque better. With ``:asymmetric`` behind it, or as ``Model(asymmetric=True)``,
         friction differs between the directions: "viscous" is then the mean, and "viscous_difference" half of what is
         more in the positive direction; half the difference of Coulomb friction is in "torque_offset". A mapping from
-        joints' names to models says it for some of them.
+        joints' names to models says it for some of them. Default: the robot's models, else "auto".
     windows : float or int, optional
         Duration of the windows [s]; a whole number is how many. Default: what the velocities' noise asks for, at most
         0.1 s; of recordings longer than some minutes towards 0.1 s, because there are enough of them.
@@ -106,7 +106,7 @@ def identify_robot(
     check_flag("", "mask_standstill", mask_standstill)
     asked = Asked(
         inertia=inertia,
-        models=tuple(friction_models(model, robot)),
+        models=tuple(friction_models(model, robot.names, robot.models)),
         windows=windows,
         slowest=least_speeds(min_speed, robot),
         mask_standstill=mask_standstill,

@@ -6,20 +6,24 @@ from collections.abc import Mapping, Sequence
 
 from jointid.base.errors import InputError
 from jointid.joint.model import FIELDS, Model
-from jointid.robot.robot import Robot
 
 PLAIN, STRIBECK, AUTO = "coulomb_viscous", "stribeck", "auto"
 _NAMES = (PLAIN, STRIBECK, AUTO)
 
 
-def friction_models(model: object, robot: Robot) -> list[str]:
+def friction_models(
+    model: object, names: Sequence[str], usual: Sequence[str] | None = None
+) -> list[str]:
     """Return the name of each joint's model.
 
     Parameters
     ----------
     model : Model, str, mapping or None
-        One for all, or by joints' names; a joint that is not named has "auto".
-    robot : Robot
+        One for all, or by joints' names.
+    names : sequence of str
+        Of the joints.
+    usual : sequence of str, optional
+        Models of joints for which none is given. Default: "auto".
 
     Raises
     ------
@@ -28,18 +32,22 @@ def friction_models(model: object, robot: Robot) -> list[str]:
     """
     if isinstance(model, Mapping) and not (model and set(model) <= set(FIELDS)):
         for name in model:
-            if name not in robot.names:
+            if name not in names:
                 raise InputError(
-                    f"the robot has no such joint; it has {', '.join(robot.names)}",
+                    f"the robot has no such joint; it has {', '.join(names)}",
                     argument="model",
                     value=name,
                 )
-        return [_named(model.get(name)) for name in robot.names]
-    return [_named(model)] * robot.n
+        given = [model.get(name) for name in names]
+    else:
+        given = [model] * len(names)
+    return [_named(*each) for each in zip(given, usual or [AUTO] * len(given), strict=True)]
 
 
-def _named(model: object) -> str:
+def _named(model: object, usual: str) -> str:
     chosen = Model.of(model)
+    if not chosen.stated():
+        return usual
     stated = {name for name in chosen.stated() if name not in ("name", "asymmetric")}
     if chosen.name not in (None, *_NAMES) or stated:
         raise InputError(

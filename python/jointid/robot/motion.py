@@ -13,6 +13,7 @@ from jointid.base.errors import InputError
 from jointid.recording.recording import Recording
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.recording.wide.words import MOTOR
+from jointid.robot.loud_samples import quiet_velocity
 from jointid.robot.robot import Robot
 
 Array = NDArray[np.float64]
@@ -78,8 +79,10 @@ class Motion:
         coupling = robot.couplings
         position, torque, at_motor = _signals(recording, robot)
         found = [_derived(recording, row, robot.names[k]) for k, row in enumerate(position)]
-        velocity = np.array([each.velocity for each in found])
         noise = np.array([each.derived.noise for each in found])
+        velocity = np.array(
+            [quiet_velocity(each.velocity, own) for each, own in zip(found, noise, strict=True)]
+        )
         if at_motor:
             back = np.linalg.inv(coupling)
             own, own_noise = (position, velocity), noise

@@ -27,8 +27,8 @@ def tree_of_urdf(path: Path, joints: Sequence[str] | None, gravity: Sequence[flo
     Raises
     ------
     InputError
-        pinocchio is not installed, the file is no URDF, it has no such joint, or a joint has several degrees of
-        freedom.
+        pinocchio is not installed, the file cannot be read or is no URDF, it has no such joint, the joints are in
+        another order than the URDF's, or a joint has several degrees of freedom.
     """
     try:
         import pinocchio
@@ -58,6 +58,15 @@ def tree_of_urdf(path: Path, joints: Sequence[str] | None, gravity: Sequence[flo
             )
     if not kept:
         raise InputError("the URDF has no moving joint", argument="path", value=path.name)
+    expected = [name for name in names if name in kept]
+    if kept != expected:  # the other facts' lists would go to other joints than their author means
+        raise InputError(
+            "the order of the URDF is expected, which is that of all other lists: "
+            + ", ".join(expected),
+            argument="joints",
+            value=list(kept),
+            remedy="order gear_ratios and all other lists alike",
+        )
     locked = [model.getJointId(name) for name in names if name not in kept]
     if locked:
         model = pinocchio.buildReducedModel(model, locked, pinocchio.neutral(model))
@@ -106,7 +115,13 @@ def _axis(model: Any, name: str) -> tuple[np.ndarray[Any, np.dtype[np.float64]],
 
 def _xml(path: Path) -> str:
     """The text of a URDF; what is no XML is refused before pinocchio complains of it on the terminal."""
-    content = path.read_bytes()
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError:
+        raise InputError("there is no such file", place=str(path)) from None
+    except OSError as error:
+        reason = f"it cannot be read: {error.strerror}"
+        raise InputError(reason, place=str(path)) from None
     tags: list[str] = []
     parser = expat.ParserCreate()
     parser.StartElementHandler = lambda tag, _: tags.append(tag)

@@ -13,11 +13,13 @@ from numpy.typing import NDArray
 
 from jointid.base.argument_checks import require_path
 from jointid.base.errors import InputError
+from jointid.joint.model import Model
 from jointid.recording.wide.joint_names import joint_named
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.recording.wide.words import SIDES
 from jointid.robot.facts import read_facts
 from jointid.robot.link_tree import LinkTree
+from jointid.robot.models import friction_models
 
 Array = NDArray[np.float64]
 
@@ -52,6 +54,8 @@ class Robot:
         Factors by which the recorded torques are multiplied; None: 1.
     directions : tuple of float or None
         1, or -1 where the recording counts positions and torques against the URDF's axis; None: 1.
+    models : tuple of str or None
+        Friction models that are identified where a call names none, one a joint; None: "auto".
     """
 
     tree: LinkTree
@@ -64,6 +68,7 @@ class Robot:
     name: str = ""
     torque_scales: tuple[float, ...] | None = None
     directions: tuple[float, ...] | None = None
+    models: tuple[str, ...] | None = None
 
     @classmethod
     def from_urdf(
@@ -79,6 +84,7 @@ class Robot:
         gravity: Sequence[float] | None = None,
         torque_scales: Sequence[float] | None = None,
         directions: Sequence[float] | None = None,
+        models: Mapping[str, Model | str] | None = None,
         facts: str | os.PathLike[str] | None = None,
     ) -> Self:
         """Return the robot that a URDF describes.
@@ -88,7 +94,8 @@ class Robot:
         path : path-like
             The URDF. Meshes are not read.
         joints : sequence of str, optional
-            The joints that are identified, by the URDF's names, from the base on; the others stand at zero.
+            The joints that are identified, by the URDF's names and in its order, which is that of all lists below; the
+            others stand at zero.
             Default: all that move.
         gear_ratios : sequence of float, optional
             Motor's angle per angle of the joint, one a joint, negative if they turn in opposite directions.
@@ -113,6 +120,9 @@ class Robot:
             the true torque constant over the assumed one; -1 turns a sign. Default: 1.
         directions : sequence of float, optional
             1 or -1, one a joint: -1 where positions and torques are recorded against the URDF's axis. Default: 1.
+        models : mapping, optional
+            Friction models by joints' names, as `identify_robot` takes them: what it uses where it is given none. In a
+            file of facts, ``model`` in a table ``[joints.NAME]``. Default: "auto".
         facts : path-like, optional
             A TOML file with any of these arguments but `path`, ``zero_offsets_deg`` among them; arguments that are
             given win. A rotor inertia that is identified is ``"free"`` there.
@@ -141,6 +151,7 @@ class Robot:
                 "gravity": gravity,
                 "torque_scales": torque_scales,
                 "directions": directions,
+                "models": models,
             }
             stated = {name: value for name, value in given.items() if value is not None}
             place = require_path("facts", facts)
@@ -174,6 +185,7 @@ class Robot:
             name=file.stem,
             torque_scales=_factors("torque_scales", torque_scales, n),
             directions=_factors("directions", directions, n),
+            models=None if models is None else _models(models, tree.names),
         )
 
     @property
@@ -229,6 +241,17 @@ class Robot:
             value=list(self.names),
             remedy="name the joints that were recorded",
         )
+
+
+def _models(models: Mapping[str, Model | str], names: Sequence[str]) -> tuple[str, ...]:
+    if not isinstance(models, Mapping):
+        raise InputError("models by joints' names are expected", argument="models", value=models)
+    try:
+        return tuple(friction_models(dict(models), names))
+    except InputError as error:
+        raise InputError(
+            error.reason, argument="models", value=error.value, remedy=error.remedy
+        ) from None
 
 
 def _number(name: str) -> int:

@@ -14,6 +14,7 @@ from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Measured
 from jointid.estimate.statistics import ParameterEstimate
+from jointid.estimate.wording import percent
 from jointid.identification.causes.attribution import Attributed, attribute
 from jointid.identification.causes.candidates import FILTERED, inertia_basis, listed_candidates
 from jointid.identification.causes.fitted import Fitted
@@ -380,7 +381,7 @@ def _described(
         size, numbers["ratio"] = f"{100.0 * share:+.2g} %", Measured(1.0 + share)
     elif name == "inertia_varies":
         range_of_it = _half_range(fit, each) / (abs(fit.value("inertia")) or 1.0)
-        size, numbers["range"] = f"±{100.0 * range_of_it:.2g} %", Measured(range_of_it)
+        size, numbers["range"] = f"±{percent(range_of_it)}", Measured(range_of_it)
     if name in ("harmonic", "ripple", "inertia_varies"):
         orders = detail.split(" and ")
         detail = " and ".join(f"{order} × {_OF.get(name, '')}angle" for order in orders)

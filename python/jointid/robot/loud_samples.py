@@ -1,0 +1,51 @@
+"""Velocities whose noise is loud at some samples, taken from the quiet ones beside them.
+
+The velocity of noisy positions is smoothed over as many samples as the motion lets be seen. By chance, some samples
+have far fewer, and up to a hundred times the usual noise. Noise at the ends of windows draws every inertia that is
+identified towards zero, and what is missing then looks like a torque that is early.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_LOUD = 2.0  # times the median of the noise
+_REACH = 25  # samples on both sides
+_ALIKE = 3.0  # standard deviations of the sample's own noise
+_SINGULAR = 1e-9  # of the weights: a sample whose neighbours are all loud
+
+
+def quiet_velocity(velocity: Array, noise: Array) -> Array:
+    """Return a velocity whose loud samples follow their quiet neighbours, where these do not contradict them.
+
+    A parabola is fitted to the samples on both sides, weighted by their noise. At a reversal or where a joint breaks
+    away, it differs from the sample by more than noise does, and the sample stays.
+
+    Parameters
+    ----------
+    velocity : ndarray, shape (samples,)
+    noise : ndarray, shape (samples,)
+        Standard deviation of each.
+    """
+    usual = float(np.median(noise))
+    loud = np.flatnonzero(noise > _LOUD * usual)
+    if not loud.size or usual <= 0.0 or velocity.size <= 2 * _REACH:
+        return velocity
+    weight = (usual / np.maximum(noise, usual)) ** 2
+    place = np.arange(-_REACH, _REACH + 1) / _REACH
+
+    def summed(values: Array, power: int) -> Array:
+        return np.asarray(np.convolve(values, (place**power)[::-1], "same")[loud])
+
+    moments = np.array([summed(weight, power) for power in range(5)])
+    wanted = np.array([summed(weight * velocity, power) for power in range(3)])
+    normal = np.array([moments[row : row + 3] for row in range(3)]).transpose(2, 0, 1)
+    normal += _SINGULAR * moments[0][:, None, None] * np.eye(3)
+    fitted = np.linalg.solve(normal, wanted.T[:, :, None])[:, 0, 0]
+    alike = np.abs(fitted - velocity[loud]) <= _ALIKE * noise[loud]
+    found = np.array(velocity)
+    found[loud[alike]] = fitted[alike]
+    return found
