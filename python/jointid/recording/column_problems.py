@@ -22,6 +22,8 @@ _LIKELY = {
     "current": ("curr", "amp", "strom", "iq"),
 }
 _UNLIKELY = ("target", "cmd", "command", "des", "ref", "set", "err", "lim", "max", "min")
+_MEASURED = ("meas", "actual", "mes")
+_SHORT = 2  # letters: in "qm" beside "qg" the second says where it is from
 _EXAMINED = 12  # columns without headers
 _ROWS = 5000
 _ALIKE = 0.999  # correlation of a velocity with the position's rate
@@ -235,7 +237,13 @@ def _best(table: Table, signal: str, possible: list[int], found: Candidates) -> 
         best = [k for k in unrecognised or possible if _moves(table, k)]
     elif not best:
         best = unrecognised or possible
-    return sorted(best, key=lambda k: any(part in plain(table.headers[k]) for part in _UNLIKELY))
+    return sorted(best, key=lambda k: _doubts(plain(table.headers[k])))
+
+
+def _doubts(name: str) -> tuple[bool, bool]:
+    """What speaks against a column: its name is of something wanted; nothing says that it is measured."""
+    measured = any(part in name for part in _MEASURED) or (len(name) <= _SHORT and name[1:] == "m")
+    return any(part in name for part in _UNLIKELY), not measured
 
 
 def _moves(table: Table, index: int) -> bool:

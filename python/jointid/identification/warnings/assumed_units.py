@@ -11,7 +11,7 @@ from jointid.recording.signals import SIGNALS, header_unit
 ASSUMED_UNITS = FindingType(
     code="assumed_units",
     meaning="a column has no unit; SI is assumed",
-    advice="name the unit in the header (`position_rad`), or state it when loading",
+    advice="name the unit in the header (as in `position_rad`, `torque_Nm`), or state it when loading",
 )
 
 
@@ -24,7 +24,12 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     kind = evidence.recordings[0].kind
     units = {name: header_unit(name, kind) for name in signals if name in SIGNALS}
     if signals:
-        advice = [Action("inspect", text="the header, and name the unit there (position_rad)")]
+        advice = [
+            Action(
+                "inspect",
+                text="the header, and name the unit there (as in position_rad, torque_Nm)",
+            )
+        ]
         if units:
             purpose = "or whatever the units are"
             advice.append(Action("call", {"units": units}, text=purpose, function="load"))
