@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+_NOISY = 3e-4  # of the velocity: less noise imitates no early torque, and what is smoothed costs more than it gains
 _LOUD = 2.0  # times the median of the noise
 _REACH = 25  # samples on both sides
 _ALIKE = 3.0  # standard deviations of the sample's own noise
@@ -21,8 +22,9 @@ _SINGULAR = 1e-9  # of the weights: a sample whose neighbours are all loud
 def quiet_velocity(velocity: Array, noise: Array) -> Array:
     """Return a velocity whose loud samples follow their quiet neighbours, where these do not contradict them.
 
-    A parabola is fitted to the samples on both sides, weighted by their noise. At a reversal or where a joint breaks
-    away, it differs from the sample by more than noise does, and the sample stays.
+    A velocity with little noise is returned as it is. A parabola is fitted to the samples on both sides, weighted
+    by their noise. At a reversal or where a joint breaks away, it differs from the sample by more than noise does,
+    and the sample stays.
 
     Parameters
     ----------
@@ -32,7 +34,8 @@ def quiet_velocity(velocity: Array, noise: Array) -> Array:
     """
     usual = float(np.median(noise))
     loud = np.flatnonzero(noise > _LOUD * usual)
-    if not loud.size or usual <= 0.0 or velocity.size <= 2 * _REACH:
+    size = float(np.sqrt(np.mean(velocity * velocity)))
+    if not loud.size or usual <= _NOISY * size or velocity.size <= 2 * _REACH:
         return velocity
     weight = (usual / np.maximum(noise, usual)) ** 2
     place = np.arange(-_REACH, _REACH + 1) / _REACH
