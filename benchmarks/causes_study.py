@@ -369,11 +369,11 @@ def table(
     lines = [
         row.text(case.name, case.right) for case, row in zip(cases, rows.values(), strict=True)
     ]
-    told = [rows[case.name] for case in cases if case.right]
-    harmless = sum(row.joints - row.harmed for row in told)
+    nameable = [rows[case.name] for case in cases if case.right]
+    harmless = sum(row.joints - row.harmed for row in nameable)
     return [
         *lines,
-        f"\nNamed without need: {sum(row.harmless for row in told)} of {harmless} joints.",
+        f"\nNamed without need: {sum(row.harmless for row in nameable)} of {harmless} joints.",
     ]
 
 

@@ -22,7 +22,7 @@ _LIKELY = {
     "current": ("curr", "amp", "strom", "iq"),
 }
 _UNLIKELY = ("target", "cmd", "command", "des", "ref", "set", "err", "lim", "max", "min")
-_MEASURED = ("meas", "actual", "mes")
+_MEASURED = ("meas", "actual")
 _SHORT = 2  # letters: in "qm" beside "qg" the second says where it is from
 _EXAMINED = 12  # columns without headers
 _ROWS = 5000
@@ -241,7 +241,7 @@ def _best(table: Table, signal: str, possible: list[int], found: Candidates) -> 
 
 
 def _doubts(name: str) -> tuple[bool, bool]:
-    """What speaks against a column: its name is of something wanted; nothing says that it is measured."""
+    """Reasons to doubt a column: its name is that of a command; nothing says that it is measured."""
     measured = any(part in name for part in _MEASURED) or (len(name) <= _SHORT and name[1:] == "m")
     return any(part in name for part in _UNLIKELY), not measured
 

@@ -45,7 +45,7 @@ def _shown(recording: Recording, name: str) -> str:
 
 
 def _range(name: str, unit: str, values: FloatArray) -> list[Html | str]:
-    # Large values have no square; their mean is of what has one.
+    # Of values whose squares are no floats, the rms is infinite.
     with np.errstate(over="ignore"):
         size = float(np.sqrt(np.mean(values * values)))
     shown = (f"{number:.5g}" for number in (float(values.min()), float(values.max()), size))
