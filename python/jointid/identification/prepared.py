@@ -282,7 +282,7 @@ def prepare(
             value=str(merged),
             remedy=Action("call", {"model": "stribeck"}),
         )
-    if joint is not None:
+    if joint is not None and stated.stated():
         # What only this call's recordings have apart does not become a property of the joint.
         joint = joint.replace(model=merged.replace(per_recording=joint.model.per_recording))
     request = Request(model=stated, residual=residual)
