@@ -57,6 +57,10 @@ vcan: .venv/.strict .venv/.test-tools  ## install a guest with CAN (root or sudo
 	@tools/install_vcan.sh
 	@JOINTID_REQUIRE_VCAN=1 $(BIN)/python -m pytest tests/canlab
 
+browser: .venv/.strict .venv/.test-tools  ## install Chromium (root or sudo), then look at the pages in it
+	@tools/install_browser.sh
+	@JOINTID_REQUIRE_BROWSER=1 $(BIN)/python -m pytest tests/report/test_in_browser.py
+
 lint: $(INSTALLED) .venv/.test-tools .venv/.lint-tools  ## ruff, mypy, clang-format, stub
 	@echo "ruff check";         $(BIN)/ruff check
 	@echo "ruff format";        $(BIN)/ruff format --check --quiet
