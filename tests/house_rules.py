@@ -125,7 +125,7 @@ FOLDERS: dict[str, Folder] = {
     "report": Folder(
         may_use={
             *("base", "joint", "estimate", "joints", "robot", "identification/warnings"),
-            *("report/drawing", "recording", "commissioning"),
+            *("report/drawing", "recording", "commissioning", "comparison", "study", "design"),
         },
         packages={"numpy"},
     ),
@@ -192,7 +192,7 @@ FOLDERS: dict[str, Folder] = {
             *(_SOUGHT - {"problem"}),
             *("recording/readers", "recording/wide", "comparison", "joints", "online", "robot"),
             *("simulation", "study", "design"),
-            *("plot", "exports", "hardware", "commissioning", "cli"),
+            *("plot", "report", "exports", "hardware", "commissioning", "cli"),
         },
     ),
 }

@@ -2,17 +2,13 @@
 
 import re
 from collections.abc import Callable, Iterator
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
 from browser import REQUIRED, Browser, browser, require
+from report_pages import PAGES, of_a_joint, page
 from test_palette import LEAST, TEXT, contrast
-
-import jointid as jid
-from jointid.cli.demo import data_folder
-from jointid.report.html import html_report
 
 WIDTHS = (390, 800, 1200)
 SMALLEST = 9.0  # pixels of a text's line on a screen: about 8 px of type
@@ -23,19 +19,6 @@ def shown(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
     require()
     with browser(tmp_path_factory.mktemp("browser")) as each:
         yield each
-
-
-def of_a_joint() -> str:
-    joint = jid.Joint.load(data_folder() / "kr300_joint1.toml")
-    return html_report(jid.identify(jid.load(data_folder() / "kr300_joint1.csv.gz"), joint))
-
-
-PAGES: tuple[Callable[[], str], ...] = (of_a_joint,)
-
-
-@cache
-def page(make: Callable[[], str]) -> str:
-    return make()
 
 
 def colour(text: str) -> str:
@@ -76,6 +59,7 @@ def test_a_page_fits_stands_out_and_asks_for_nothing(
             requests = shown.open(page(make), width, scheme)
             seen = shown.seen()
             assert seen["curves"]
+            assert "jointid" in seen["title"]  # what a page is given does not run
             assert requests == ["page.html"]
             found += [f"{width} {scheme}: {each}" for each in faults(seen, width, scheme)]
     assert found == []

@@ -11,7 +11,8 @@ from drawn_pictures import Picture
 from jointid.commissioning import Commissioning, commission
 from jointid.hardware.bench.bench import Bench
 from jointid.report.limit_margins import margin_rows
-from jointid.report.session_page import next_step, save_session_report, session_report
+from jointid.report.saving import save_report
+from jointid.report.session_page import next_step, session_report
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "hardware" / "joint.toml"
 
@@ -95,7 +96,7 @@ def test_the_next_step_follows_from_the_outcome(ring: Commissioning) -> None:
     assert f"Next: {found.advice[0]}" in session_report(ring)
     plain = replace(ring.estimates[-1], findings=())
     (said,) = next_step(replace(ring, estimates=(plain,)))
-    assert said == "Next: save these values to the joint file; no finding speaks against it."
+    assert said == "Next: save these values to the joint file; no finding warns of them."
     worse = replace(ring, runs=ring.runs[::-1])
     assert "do not use these values" in next_step(worse)[0]
     only = replace(ring, runs=ring.runs[:1], estimates=())
@@ -105,5 +106,5 @@ def test_the_next_step_follows_from_the_outcome(ring: Commissioning) -> None:
 
 
 def test_it_is_written_whole(ring: Commissioning, tmp_path: Path) -> None:
-    path = save_session_report(ring, tmp_path / "session.html")
+    path = save_report(ring, tmp_path / "session.html")
     assert path.read_text(encoding="utf-8") == session_report(ring)

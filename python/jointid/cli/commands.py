@@ -29,7 +29,7 @@ def demo(arguments: argparse.Namespace) -> None:
     """Identify the joint that ships with the package."""
     from jointid.cli.demo import demonstrate
     from jointid.cli.progress import Progress
-    from jointid.report.html import save_report
+    from jointid.report.saving import save_report
 
     check_output_folder("output", arguments.output)
     with Progress(enabled=not arguments.quiet) as progress:
@@ -185,7 +185,7 @@ def report(arguments: argparse.Namespace) -> None:
 
     from jointid.cli.robot import saved_robot
     from jointid.joints.reading import load_estimate
-    from jointid.report.html import save_report
+    from jointid.report.saving import save_report
 
     check_page("output", arguments.output)
     robot = saved_robot(arguments.estimate)
@@ -194,14 +194,12 @@ def report(arguments: argparse.Namespace) -> None:
         estimate = load_estimate(arguments.estimate, arguments.joints)
         page = save_report(estimate, arguments.output, action=ADVICE.of_action)
     else:
-        from jointid.report.robot_page import save_robot_report
-
         if arguments.joints is not None:
             raise InputError(
                 "a robot's page has all joints", argument="joints", value=arguments.joints
             )
         estimate = robot
-        page = save_robot_report(robot, arguments.output, action=ADVICE.of_action)
+        page = save_report(robot, arguments.output, action=ADVICE.of_action)
     if arguments.json:
         summary = {"report": str(page), "warnings": [warning.code for warning in estimate.warnings]}
         print(json.dumps(summary, indent=1, ensure_ascii=False))
@@ -267,7 +265,7 @@ def _write(estimate: Estimate, arguments: argparse.Namespace) -> str:
     The next session reads a joint file and obeys it, so values that cannot be used stay out of it.
     """
     if arguments.report is not None:
-        from jointid.report.html import save_report
+        from jointid.report.saving import save_report
 
         save_report(estimate, arguments.report, action=ADVICE.of_action)
     blocking = [each.code for each in estimate.findings if each.severity == "blocking"]

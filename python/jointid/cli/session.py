@@ -355,8 +355,8 @@ def _yes(question: str) -> bool:
 def _write(result: Commissioning, folder: Path) -> None:
     """The session's page, and its outcome as text and numbers."""
     from jointid.base.files import write_whole
-    from jointid.report.session_page import save_session_report
+    from jointid.report.saving import save_report
 
-    save_session_report(result, folder / "report.html", action=ADVICE.of_action)
+    save_report(result, folder / "report.html", action=ADVICE.of_action)
     write_whole(folder / "ring.txt", (result.report() + "\n").encode())
     write_whole(folder / "ring.json", json.dumps(result.to_dict(), indent=1).encode())

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
 Level = Literal["usable", "usable with care", "not usable"]
 LEVELS: tuple[Level, ...] = ("usable", "usable with care", "not usable")
-_EXPLAINED = 0.9  # of the variance of windows, at least
+EXPLAINED = 0.9  # of the variance of windows, at least
 _MATTERS = 0.05  # of a value: a smaller tolerance does not matter
 # What a bias that stays the same does not spoil: a change between two recordings of the same motion.
-_CHANCE = frozenset(("undetermined", "few_windows", "stopped", "at_bound", "model_too_rich"))
+CHANCE = frozenset(("undetermined", "few_windows", "stopped", "at_bound", "model_too_rich"))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,8 +95,20 @@ class Verdict:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Objection:
-    """One thing that speaks against a use."""
+class Objection:
+    """One reason against a use.
+
+    Attributes
+    ----------
+    code : str
+        Of the finding.
+    reason : str
+        In a sentence.
+    blocking : bool
+        Whether the values cannot be used.
+    parameters : tuple of str
+        Those concerned; empty where all are.
+    """
 
     code: str
     reason: str
@@ -150,75 +162,28 @@ def judged(
     hidden = [*_hidden_inertia(estimate, asked)]
     friction = frozenset(name for name in estimate.parameters if _acts_against_motion(name))
     uses = {
-        "compensation": _use(objections, asked, friction.__contains__),
-        "simulation": _use([*objections, *hidden], asked, lambda _: True),
-        "monitoring": _use(
-            [each for each in objections if each.blocking or each.code in _CHANCE],
+        "compensation": use_by(objections, asked, friction.__contains__),
+        "simulation": use_by([*objections, *hidden], asked, lambda _: True),
+        "monitoring": use_by(
+            [each for each in objections if each.blocking or each.code in CHANCE],
             asked,
             lambda _: True,
         ),
     }
+    return concluded(uses, [*objections, *hidden])
+
+
+def concluded(uses: Mapping[str, Use], objections: Iterable[Objection]) -> Verdict:
+    """Return the verdict of these uses: the worst level, and the reasons, blocking ones first."""
     level = max((use.level for use in uses.values()), key=LEVELS.index)
-    ordered = sorted([*objections, *hidden], key=lambda each: not each.blocking)
+    ordered = sorted(objections, key=lambda each: not each.blocking)
     return Verdict(level=level, reasons=tuple(each.reason for each in ordered), uses=uses)
 
 
-def _objections(estimate: Estimate, self_test: SelfTest | None) -> Iterable[_Objection]:
-    for found in estimate.findings:
-        if found.severity != "info":
-            yield _Objection(
-                code=found.code,
-                reason=found.cause,
-                blocking=found.severity == "blocking",
-                parameters=_free(estimate, found),
-            )
-    explained, of_what = _explained(estimate)
-    if not explained >= _EXPLAINED:
-        yield _Objection(
-            code="explained",
-            reason=f"the model explains {100.0 * explained:.0f} % of the variance of {of_what}",
-            blocking=True,
-            parameters=(),
-        )
-    if self_test is not None and self_test.lost:
-        yield _Objection(
-            code="self_test",
-            reason=f"known values of {', '.join(self_test.lost)} in the recorded motion are not found again",
-            blocking=True,
-            parameters=self_test.lost,
-        )
-    given = tuple(p.name for p in estimate.parameters.values() if _rests_on_given(p))
-    if given:
-        names = ", ".join(given)
-        reason = f"what is stated of the joint is more uncertain than all else that {names} rest on"
-        yield _Objection(code="given", reason=reason, blocking=False, parameters=given)
-
-
-def _hidden_inertia(estimate: Estimate, asked: tuple[str, ...]) -> Iterable[_Objection]:
-    """An inertia of which the recording says nothing: friction and offsets may be zero, what moves has an inertia."""
-    doubted = {
-        name
-        for found in estimate.findings
-        if found.code == "undetermined"
-        for name in _free(estimate, found)
-    }
-    for name in asked:
-        p = estimate.parameters.get(name)
-        if p is None or name not in doubted or name.partition("[")[0] != "inertia":
-            continue
-        if p.interval is not None and p.interval[0] <= 0.0:
-            yield _Objection(
-                code="undetermined",
-                reason=f"a simulation needs {name}, and its 95 % interval reaches zero",
-                blocking=True,
-                parameters=(name,),
-            )
-
-
-def _use(
-    objections: Iterable[_Objection], asked: tuple[str, ...], needed: Callable[[str], bool]
+def use_by(
+    objections: Iterable[Objection], asked: tuple[str, ...], needed: Callable[[str], bool]
 ) -> Use:
-    """Judge by what concerns the parameters that a purpose needs; an objection without parameters concerns all."""
+    """Return the level by what concerns the parameters that a purpose needs; an objection without parameters concerns all."""
     level: Level = "usable"
     names: dict[str, None] = {}
     codes: dict[str, None] = {}
@@ -233,6 +198,64 @@ def _use(
     return Use(level=level, parameters=tuple(names), codes=tuple(codes))
 
 
+def _objections(estimate: Estimate, self_test: SelfTest | None) -> Iterable[Objection]:
+    for found in estimate.findings:
+        if found.severity != "info":
+            yield Objection(
+                code=found.code,
+                reason=found.cause,
+                blocking=found.severity == "blocking",
+                parameters=_free(estimate, found),
+            )
+    explained, of_what = _explained(estimate)
+    if not explained >= EXPLAINED:
+        yield Objection(
+            code="explained",
+            reason=explained_text(explained, of_what),
+            blocking=True,
+            parameters=(),
+        )
+    if self_test is not None and self_test.lost:
+        yield Objection(
+            code="self_test",
+            reason=f"known values of {', '.join(self_test.lost)} in the recorded motion are not found again",
+            blocking=True,
+            parameters=self_test.lost,
+        )
+    given = tuple(p.name for p in estimate.parameters.values() if _rests_on_given(p))
+    if given:
+        names = ", ".join(given)
+        reason = f"what is stated of the joint is more uncertain than all else that {names} rest on"
+        yield Objection(code="given", reason=reason, blocking=False, parameters=given)
+
+
+def explained_text(explained: float, of_what: str) -> str:
+    """Return how much of a variance the model explains."""
+    share = f"{100.0 * explained:.0f} %" if explained > 0.005 else "nothing"
+    return f"the model explains {share} of the variance of {of_what}"
+
+
+def _hidden_inertia(estimate: Estimate, asked: tuple[str, ...]) -> Iterable[Objection]:
+    """An inertia of which the recording says nothing: friction and offsets may be zero, what moves has an inertia."""
+    doubted = {
+        name
+        for found in estimate.findings
+        if found.code == "undetermined"
+        for name in _free(estimate, found)
+    }
+    for name in asked:
+        p = estimate.parameters.get(name)
+        if p is None or name not in doubted or name.partition("[")[0] != "inertia":
+            continue
+        if p.interval is not None and p.interval[0] <= 0.0:
+            yield Objection(
+                code="undetermined",
+                reason=f"a simulation needs {name}, and its 95 % interval reaches zero",
+                blocking=True,
+                parameters=(name,),
+            )
+
+
 def _free(estimate: Estimate, found: Finding) -> tuple[str, ...]:
     return tuple(name for name in found.parameters if name in estimate.parameters)
 
@@ -244,7 +267,7 @@ def _explained(estimate: Estimate) -> tuple[float, str]:
     them is late. A reading that hardly varies may be explained worse than by its mean, but little of it is left.
     """
     left = estimate.residuals
-    apart = left.r_squared < 0.0 and left.relative**2 > 1.0 - _EXPLAINED
+    apart = left.r_squared < 0.0 and left.relative**2 > 1.0 - EXPLAINED
     if estimate.selection is not None and not apart:
         chosen = estimate.selection[estimate.selection.model]
         if math.isfinite(chosen.score):

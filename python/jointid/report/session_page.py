@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
-from jointid.base.argument_checks import require_path
-from jointid.base.files import write_whole
 from jointid.base.html import Html, element, page, table
 from jointid.report.drawing.marks import Level, Line, Mark, Panel
 from jointid.report.figure import captioned
-from jointid.report.html import footer, sections, verdict_lines
+from jointid.report.answer import verdict_lines
+from jointid.report.html import footer, sections
 from jointid.report.limit_margins import margin_rows
 from jointid.report.style import STYLE
 
@@ -62,20 +60,11 @@ def session_report(result: Commissioning, action: Callable[[Action], str] = str)
     body += _drive(first.metadata)
     if result.estimates:
         changed = "What was assumed and what was identified"
-        body += [element("h2", changed, id="identified"), *verdict_lines(result.estimates[-1])]
+        body += [element("h2", changed, id="identified"), *verdict_lines(result.estimates[-1].verdict)]
         body.append(_table(parameter_rows(result)))
         body += sections(result.estimates[-1], action)
         body.append(footer(result.estimates[-1]))
     return page(title, STYLE, *body)
-
-
-def save_session_report(
-    result: Commissioning, path: str | Path, action: Callable[[Action], str] = str
-) -> Path:
-    """Write the report, whole or not at all; see `save_report`."""
-    target = require_path("path", path)
-    write_whole(target, session_report(result, action).encode())
-    return target
 
 
 def next_step(result: Commissioning, action: Callable[[Action], str] = str) -> list[str]:
@@ -89,7 +78,7 @@ def next_step(result: Commissioning, action: Callable[[Action], str] = str) -> l
         return [f"Next: {action(warned[0].advice[0])} (finding {warned[0].code})."]
     if result.blocked is not None:
         return []
-    return ["Next: save these values to the joint file; no finding speaks against it."]
+    return ["Next: save these values to the joint file; no finding warns of them."]
 
 
 def _tracking(result: Commissioning) -> Html:
