@@ -213,6 +213,7 @@ def run(arguments: argparse.Namespace) -> int:
     except SessionStoppedError as error:
         stop = error.stop
         stopped(stop.limit, str(error), stop.motor_off, output, as_json=as_json)
+        _write_page_of(error, arguments.output)
         return STOPPED
     except (Exception, KeyboardInterrupt) as error:
         moved, off = motor_off_before(error)
@@ -350,6 +351,21 @@ def _yes(question: str) -> bool:
         return input(question).strip() == "yes"
     except EOFError:
         return False
+
+
+def _write_page_of(error: SessionStoppedError, folder: Path | None) -> None:
+    """Write the page of a session that was stopped, from what was recorded until then."""
+    from jointid.report.saving import save_report
+
+    result = vars(error).get("outcome")
+    if folder is None or result is None:
+        return
+    try:
+        page = save_report(result, folder / "report.html", action=ADVICE.of_action)
+    except OSError as failure:  # as the recording, if that is why it was stopped
+        print(f"no report was written: {failure}", file=sys.stderr)
+    else:
+        print(f"report: {page}", file=sys.stderr)
 
 
 def _write(result: Commissioning, folder: Path) -> None:
