@@ -136,4 +136,3 @@ PAGES: tuple[Callable[[], str], ...] = (
 def page(make: Callable[[], str]) -> str:
     """Return a page, made once."""
     return make()
-

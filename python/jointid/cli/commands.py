@@ -16,6 +16,7 @@ from jointid.cli.outputs import check_output_folder, check_outputs, check_page
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
+    from jointid.comparison.result import Comparison
     from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.causes import Causes
     from jointid.estimate.estimate import Estimate
@@ -173,7 +174,7 @@ def compare(arguments: argparse.Namespace) -> int:
             **{name: given for name, given in refinements(arguments).items() if given is not None},
             callback=progress,
         )
-    refused = _write(comparison.estimate, arguments)
+    refused = _write(comparison.estimate, arguments, comparison)
     print(comparison.to_json() if arguments.json else comparison.report())
     _say_written(refused, arguments)
     return _exit_code(refused, arguments)
@@ -259,15 +260,17 @@ def _joint(arguments: argparse.Namespace) -> Joint | None:
     return Joint.load(path) if path is not None else None
 
 
-def _write(estimate: Estimate, arguments: argparse.Namespace) -> str:
-    """Write what was asked for; returns the code of the finding that refuses a joint file, if any.
+def _write(
+    estimate: Estimate, arguments: argparse.Namespace, comparison: Comparison | None = None
+) -> str:
+    """Write what was asked for, of a comparison its own page; returns the code of a finding that refuses a joint file.
 
     The next session reads a joint file and obeys it, so values that cannot be used stay out of it.
     """
     if arguments.report is not None:
         from jointid.report.saving import save_report
 
-        save_report(estimate, arguments.report, action=ADVICE.of_action)
+        save_report(comparison or estimate, arguments.report, action=ADVICE.of_action)
     blocking = [each.code for each in estimate.findings if each.severity == "blocking"]
     if arguments.save is None:
         return ""

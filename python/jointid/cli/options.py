@@ -83,6 +83,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "resume": "--resume",
         "table": "--table",
         "plot": "--plot",
+        "report": "--report",
     },
     "design": {
         **{name: option for name, option in _SCENARIO.items() if name != "trajectory"},
@@ -102,6 +103,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "threads": "--threads",
         "output": "--output",
         "plot": "--plot",
+        "report": "--report",
     },
     "run": {
         "cycles": "--cycles",

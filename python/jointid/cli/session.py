@@ -353,7 +353,7 @@ def _yes(question: str) -> bool:
         return False
 
 
-def _write_page_of(error: SessionStoppedError, folder: Path | None) -> None:
+def _write_page_of(error: Exception, folder: Path | None) -> None:
     """Write the page of a session that was stopped, from what was recorded until then."""
     from jointid.report.saving import save_report
 

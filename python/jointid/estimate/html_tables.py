@@ -7,15 +7,20 @@ from collections.abc import Callable, Mapping
 
 from jointid.base.advice import Action
 from jointid.base.html import Html, element, table
+from jointid.estimate.derived import DerivedValue
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.findings import Finding
+from jointid.estimate.statistics import ParameterEstimate
 from jointid.estimate.tables import HEAD, quality, recorded, rows, shown_name
 from jointid.estimate.wording import rounded, two_digits
 
 
 def html_table(estimate: Estimate) -> Html:
     """The parameter table; the digits of a value are those of its standard error."""
-    found = [*estimate.parameters.values(), *estimate.derived.values()]
+    found: list[ParameterEstimate | DerivedValue] = [
+        *estimate.parameters.values(),
+        *estimate.derived.values(),
+    ]
     body: list[list[Html | str]] = [
         [row[0], _rounded(p.value, p.stderr) or row[1], *row[2:]]
         for p, row in zip(found, rows(estimate), strict=True)

@@ -20,8 +20,23 @@ Level = Literal["usable", "usable with care", "not usable"]
 LEVELS: tuple[Level, ...] = ("usable", "usable with care", "not usable")
 EXPLAINED = 0.9  # of the variance of windows, at least
 _MATTERS = 0.05  # of a value: a smaller tolerance does not matter
-# What a bias that stays the same does not spoil: a change between two recordings of the same motion.
-CHANCE = frozenset(("undetermined", "few_windows", "stopped", "at_bound", "model_too_rich"))
+# What spoils a change between two recordings of the same motion, other than a bias that stays the same: chance, and
+# what is not the same the next time.
+_CHANCE = frozenset(
+    ("standing", "undetermined", "few_windows", "stopped", "at_bound", "model_too_rich")
+)
+_CHANGING = frozenset(
+    (
+        "drift",
+        "disturbance",
+        "other_signal",
+        "spikes",
+        "jumps",
+        "sensor_clipped",
+        "torque_saturated",
+    )
+)
+_SEEN = 0.036  # standard error, of a value: with it a change of a tenth is seen, at 95 %
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,8 +73,8 @@ class Verdict:
         Why not without care, in a sentence each, the most severe first.
     uses : mapping of str to Use
         By purpose: "compensation" (of friction in a controller: its friction and sensor parameters), "simulation"
-        (all parameters), "monitoring" (changes between recordings of the same motion, which a bias that stays the
-        same does not spoil).
+        (all parameters), "monitoring" (changes of a tenth between recordings of the same motion, which a bias that
+        stays the same does not spoil).
     """
 
     level: Level
@@ -122,10 +137,10 @@ def judged(
     """Judge an estimate by its findings.
 
     Not usable: a blocking finding, a parameter asked for whose self-test fails, or less than 90 % of the windows'
-    variance explained (of held-out torque where the model was chosen by it, unless the windows are explained worse
-    than by their mean and more than 10 % of their squares are left); for simulation also an undetermined inertia whose
-    95 % interval reaches zero. Usable with care: a warning, or a tolerance of the given facts of more than 5 % that is
-    larger than everything else together. Usable: else.
+    variance explained by the model and a cause that a finding names (of held-out torque where the model was chosen by
+    it, unless the windows are explained worse than by their mean and more than 10 % of their squares are left); for
+    simulation also an undetermined inertia whose 95 % interval reaches zero. Usable with care: a warning, or a
+    tolerance of the given facts of more than 5 % that is larger than everything else together. Usable: else.
 
     Parameters
     ----------
@@ -164,13 +179,28 @@ def judged(
     uses = {
         "compensation": use_by(objections, asked, friction.__contains__),
         "simulation": use_by([*objections, *hidden], asked, lambda _: True),
-        "monitoring": use_by(
-            [each for each in objections if each.blocking or each.code in CHANCE],
-            asked,
-            lambda _: True,
-        ),
+        "monitoring": use_by(to_changes(objections, estimate.parameters), asked, lambda _: True),
     }
     return concluded(uses, [*objections, *hidden])
+
+
+def to_changes(
+    objections: Iterable[Objection], parameters: Mapping[str, ParameterEstimate]
+) -> Iterable[Objection]:
+    """Yield what spoils a change of a tenth between two recordings of the same motion."""
+    for each in objections:
+        if each.code == "undetermined" and not each.blocking:
+            vague = tuple(name for name in each.parameters if not _is_sharp(parameters[name]))
+            if vague or not each.parameters:
+                yield Objection(
+                    code=each.code, reason=each.reason, blocking=False, parameters=vague
+                )
+        elif each.blocking or each.code in _CHANCE | _CHANGING:
+            yield each
+
+
+def _is_sharp(p: ParameterEstimate) -> bool:
+    return p.stderr is not None and p.stderr <= _SEEN * abs(p.value)
 
 
 def concluded(uses: Mapping[str, Use], objections: Iterable[Objection]) -> Verdict:
@@ -183,7 +213,7 @@ def concluded(uses: Mapping[str, Use], objections: Iterable[Objection]) -> Verdi
 def use_by(
     objections: Iterable[Objection], asked: tuple[str, ...], needed: Callable[[str], bool]
 ) -> Use:
-    """Return the level by what concerns the parameters that a purpose needs; an objection without parameters concerns all."""
+    """Return the level by what concerns the parameters that a purpose needs; without parameters it concerns all."""
     level: Level = "usable"
     names: dict[str, None] = {}
     codes: dict[str, None] = {}
@@ -208,6 +238,7 @@ def _objections(estimate: Estimate, self_test: SelfTest | None) -> Iterable[Obje
                 parameters=_free(estimate, found),
             )
     explained, of_what = _explained(estimate)
+    explained = 1.0 - (1.0 - explained) * (1.0 - _named_share(estimate))
     if not explained >= EXPLAINED:
         yield Objection(
             code="explained",
@@ -258,6 +289,16 @@ def _hidden_inertia(estimate: Estimate, asked: tuple[str, ...]) -> Iterable[Obje
 
 def _free(estimate: Estimate, found: Finding) -> tuple[str, ...]:
     return tuple(name for name in found.parameters if name in estimate.parameters)
+
+
+def _named_share(estimate: Estimate) -> float:
+    """How much of the misfit a finding has a cause for: the finding says what that moves, so it needs care alone."""
+    shares = [
+        found.evidence["share"].value
+        for found in estimate.findings
+        if found.severity == "warning" and found.parameters and "share" in found.evidence
+    ]
+    return min(1.0, max(0.0, *shares)) if shares else 0.0
 
 
 def _explained(estimate: Estimate) -> tuple[float, str]:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from jointid.base.advice import Action
 from jointid.base.html import Html, element, page, table
 from jointid.comparison.result import HEAD, Comparison
-from jointid.report.answer import answer, verdict_lines
+from jointid.report.answering import answer, verdict_lines
 from jointid.report.figure import captioned
 from jointid.report.html import footer, sections
 from jointid.report.rows import NamedRow, rows_panel

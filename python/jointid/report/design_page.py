@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 
-from jointid.base.advice import Action
 from jointid.base.html import Html, element, page, table
 from jointid.design.assumptions import assumed
 from jointid.design.design import COMPLETE, Design
 from jointid.design.tables import head, improved, judged_with, limits_held, rows, share_text
 from jointid.joint.units import velocity_label
-from jointid.report.answer import answer
+from jointid.report.answering import answer
 from jointid.report.drawing.marks import Bars, Level, Line, Panel
 from jointid.report.figure import captioned
 from jointid.report.style import STYLE
@@ -22,14 +20,12 @@ _SAMPLES = 6001
 _BINS = 40
 
 
-def design_report(design: Design, action: Callable[[Action], str] = str) -> str:
+def design_report(design: Design) -> str:
     """The report as one HTML page that needs no other file.
 
     Parameters
     ----------
     design : Design
-    action : callable
-        A design has no findings; not used.
     """
     title = f"{design.joint.name or 'joint'}: motion of {design.duration:g} s designed by jointid"
     return page(
@@ -45,7 +41,13 @@ def design_report(design: Design, action: Callable[[Action], str] = str) -> str:
         element("h2", "Motion", id="motion"),
         *_pictures(design),
         element("h2", "What it assumes", id="assumptions"),
-        element("ul", *(element("li", line) for line in (*improved(design), assumed(design), judged_with(design)))),
+        element(
+            "ul",
+            *(
+                element("li", line)
+                for line in (*improved(design), assumed(design), judged_with(design))
+            ),
+        ),
     )
 
 
@@ -102,7 +104,7 @@ def _pictures(design: Design) -> list[Html]:
     )
     parts = [
         captioned(
-            "Position and velocity of the reference, and their limits; what joints reach with noise is in the list above.",
+            "Position and velocity of the reference, and their limits; what joints reach is in the list above.",
             over_time,
             speeds,
         )
@@ -116,5 +118,9 @@ def _pictures(design: Design) -> list[Html]:
             height=130,
             marks=(Bars(look="second", edges=edges, up=100.0 * counts / len(velocity)),),
         )
-        parts.append(captioned("Where friction is sampled: how long the joint moves at each velocity.", sampled))
+        parts.append(
+            captioned(
+                "Where friction is sampled: how long the joint moves at each velocity.", sampled
+            )
+        )
     return parts

@@ -143,7 +143,9 @@ def _convergence_picture(estimate: Estimate) -> Html:
         ),
     )
     unit = fitted_signal(estimate)[1]
-    panel = Panel(across="generation", up=f"penalty [({unit}·s)²]", logarithmic=True, height=130, marks=marks)
+    panel = Panel(
+        across="generation", up=f"penalty [({unit}·s)²]", logarithmic=True, height=130, marks=marks
+    )
     return captioned(
         "The genetic search, generation by generation; dashed: the penalty after the local polish.",
         panel,

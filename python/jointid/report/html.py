@@ -16,9 +16,9 @@ from jointid.estimate.html_tables import (
     html_windows,
 )
 from jointid.identification.warnings.registry import finding_types
+from jointid.report.answering import verdict_lines
 from jointid.report.estimate_pictures import convergence_section, picture_sections
 from jointid.report.style import STYLE
-from jointid.report.answer import verdict_lines
 
 
 def html_report(estimate: Estimate, action: Callable[[Action], str] = str) -> str:

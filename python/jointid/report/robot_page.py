@@ -9,7 +9,7 @@ import numpy as np
 from jointid.base.advice import Action
 from jointid.base.html import Html, element, page, table
 from jointid.estimate.window_views import window_centres, with_gaps
-from jointid.report.answer import answer, verdict_lines
+from jointid.report.answering import answer, verdict_lines
 from jointid.report.drawing.marks import Line, Mark, Panel, Points
 from jointid.report.figure import captioned
 from jointid.report.joints_page import slug
@@ -124,7 +124,7 @@ def _comparison(found: RobotComparison) -> list[Html | str]:
     return [
         element("h2", "How well each candidate predicts", id="comparison"),
         captioned(
-            "Relative residual of torque that the candidate was not fitted to, mean over the joints: smaller is better. "
+            "Relative residual of torque that the candidate was not fitted to, mean over joints: smaller is better. "
             "A grey point is one part that was held out, the stroke is the mean with its standard error.",
             rows_panel(
                 rows,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from jointid.base.advice import Action
 from jointid.base.argument_checks import require_path
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from jointid.robot.result import RobotEstimate
     from jointid.study.study_result import Study
 
-    Result = (
+    Result: TypeAlias = (
         Estimate
         | JointEstimates
         | RobotEstimate
@@ -40,10 +40,9 @@ _PAGES = {
     "RobotEstimate": "robot_page:robot_report",
     "RobotComparison": "robot_page:robot_comparison_report",
     "Comparison": "comparison_page:comparison_report",
-    "Study": "study_page:study_report",
-    "Design": "design_page:design_report",
     "Commissioning": "session_page:session_report",
 }
+_WITHOUT_FINDINGS = {"Study": "study_page:study_report", "Design": "design_page:design_report"}
 
 
 def report_page(result: Result, action: Callable[[Action], str] = str) -> str:
@@ -65,24 +64,23 @@ def report_page(result: Result, action: Callable[[Action], str] = str) -> str:
         Anything else, of which there is no report.
     """
     kind: Any = type(result)
-    name = _PAGES.get(kind.__name__, "") if kind.__module__.startswith("jointid.") else ""
-    if not name:
+    pages = {**_PAGES, **_WITHOUT_FINDINGS}
+    if kind.__name__ not in pages or not kind.__module__.startswith("jointid."):
         raise InputError(
-            f"of this there is no report, but of {', '.join(_PAGES)}",
+            f"of this there is no report, but of {', '.join(pages)}",
             argument="result",
             value=kind.__name__,
         )
-    module, _, function = name.partition(":")
-    made: str = getattr(import_module(f"jointid.report.{module}"), function)(result, action)
+    module, _, function = pages[kind.__name__].partition(":")
+    maker = getattr(import_module(f"jointid.report.{module}"), function)
+    made: str = maker(result) if kind.__name__ in _WITHOUT_FINDINGS else maker(result, action)
     return made
 
 
-def save_report(
-    result: Result, path: str | Path, action: Callable[[Action], str] = str
-) -> Path:
+def save_report(result: Result, path: str | Path, action: Callable[[Action], str] = str) -> Path:
     """Write the report of a result as one HTML page that needs no other file, whole or not at all.
 
-    The page begins with the verdict or the answer; pictures are inside; it is readable on a phone, and on a dark ground.
+    The page begins with the verdict or the answer; pictures are inside; a phone shows it, and a dark screen.
 
     Parameters
     ----------

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
 from jointid.base.html import Html, element, page, table
+from jointid.report.answering import answer, verdict_lines
 from jointid.report.drawing.marks import Level, Line, Mark, Panel
 from jointid.report.figure import captioned
-from jointid.report.answer import answer, verdict_lines
 from jointid.report.html import footer, sections, shown_by
 from jointid.report.limit_margins import margin_rows
 from jointid.report.style import STYLE

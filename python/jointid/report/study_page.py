@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.base.advice import Action
 from jointid.base.html import Html, element, page, table
 from jointid.estimate.wording import percent
-from jointid.report.answer import answer
+from jointid.report.answering import answer
 from jointid.report.drawing.marks import Line, Mark, Panel, Points
 from jointid.report.figure import captioned
 from jointid.report.rows import NamedRow, rows_panel
@@ -29,14 +28,12 @@ _FOR_PROGRAMS = ("version", "fingerprint")
 _DEFAULTS = ("None", "False", "Model()", "")
 
 
-def study_report(study: Study, action: Callable[[Action], str] = str) -> str:
+def study_report(study: Study) -> str:
     """The report as one HTML page that needs no other file.
 
     Parameters
     ----------
     study : Study
-    action : callable
-        A study has no findings; not used.
     """
     summary = study.summary()
     title = f"jointid {study.title}"
@@ -70,7 +67,9 @@ def _answer(study: Study, summary: Summary) -> list[Html]:
         trials = sum(cell.trials for cell in known)
         share = sum((cell.success or 0.0) * cell.trials for cell in known) / trials
         lines.append(
-            answer(f"Every parameter is within {within} of the truth in {percent(share)} of the trials.")
+            answer(
+                f"Every parameter is within {within} of the truth in {percent(share)} of the trials."
+            )
         )
         least = min(known, key=lambda cell: cell.success or 0.0)
         most = max(known, key=lambda cell: cell.success or 0.0)
@@ -88,7 +87,9 @@ def _answer(study: Study, summary: Summary) -> list[Html]:
     refused = sum(cell.refused for cell in cells)
     if refused:
         first = next(cell for cell in cells if cell.refused)
-        lines.append(element("p", f"{_trials(refused)} refused, the first one because {first.reason}."))
+        lines.append(
+            element("p", f"{_trials(refused)} refused, the first one because {first.reason}.")
+        )
     if not study.complete:
         missing = len(study.cells) * study.trials - len(study.rows)
         lines.append(element("p", f"The study is not finished: {_trials(missing)} missing."))
@@ -152,9 +153,7 @@ def _picture(study: Study, values: Array, shown: str, caption: str) -> Html:
     cells = np.array([row.cell for row in study.rows], dtype=np.int64)
     first = [cell[study.swept[0]] for cell in study.cells] if study.swept else []
     numeric = all(isinstance(each, int | float) and not isinstance(each, bool) for each in first)
-    others = [
-        cell_name({name: cell[name] for name in study.swept[1:]}) for cell in study.cells
-    ]
+    others = [cell_name({name: cell[name] for name in study.swept[1:]}) for cell in study.cells]
     lines = list(dict.fromkeys(others))
     several = numeric and len(set(first)) > 2 and len(lines) <= len(_LINES)
     said = f"{caption}; a grey point is one trial, the {'line' if several else 'stroke'} is the median."
@@ -175,7 +174,12 @@ def _picture(study: Study, values: Array, shown: str, caption: str) -> Html:
 
 
 def _lines(
-    study: Study, values: Array, shown: str, cells: NDArray[np.int64], places: Array, others: list[str]
+    study: Study,
+    values: Array,
+    shown: str,
+    cells: NDArray[np.int64],
+    places: Array,
+    others: list[str],
 ) -> Panel:
     marks: list[Mark] = [
         Points(look="measured", label="one trial", across=places[cells], up=values)

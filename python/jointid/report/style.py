@@ -29,7 +29,7 @@ WIDE = """
 body { max-width: 76rem; } p, ul { max-width: 56rem; }
 table { font-size: .92rem; } .wide { overflow-x: auto; }
 table.joints td { white-space: nowrap; }
-table.joints td:nth-child(2) { white-space: normal; overflow-wrap: anywhere; min-width: 7rem; }
+table.joints td:nth-child(2) { white-space: normal; overflow-wrap: anywhere; min-width: 11rem; }
 table.joints td:last-child { white-space: normal; overflow-wrap: anywhere; min-width: 9rem; }
 table.joints th { white-space: normal; }
 @media screen { body { max-width: 96vw; } }

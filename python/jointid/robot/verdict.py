@@ -4,12 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from jointid.estimate.verdict import CHANCE, EXPLAINED, Objection, Verdict, concluded, explained_text, use_by
+from jointid.estimate.verdict import (
+    EXPLAINED,
+    Objection,
+    Verdict,
+    concluded,
+    explained_text,
+    to_changes,
+    use_by,
+)
 from jointid.robot.columns import MEANINGS
 from jointid.robot.result import RobotEstimate
 
 _OF_MOTION = frozenset(("rotor_inertia", "inertia_scale"))  # not of friction
-_CHANCE = CHANCE | {"standing"}
 _IMPOSSIBLE = "impossible_inertia"
 
 
@@ -39,11 +46,7 @@ def judged_robot(estimate: RobotEstimate) -> Verdict:
     uses = {
         "compensation": use_by(objections, asked, _is_friction),
         "simulation": use_by(every, asked, lambda _: True),
-        "monitoring": use_by(
-            [each for each in objections if each.blocking or each.code in _CHANCE],
-            asked,
-            lambda _: True,
-        ),
+        "monitoring": use_by(to_changes(objections, estimate.parameters), asked, lambda _: True),
     }
     return concluded(uses, every)
 

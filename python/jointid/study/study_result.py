@@ -166,7 +166,9 @@ class Study:
         return f"<Study{self.title.removeprefix('study')}>"
 
     def _repr_html_(self) -> str:
-        return str(element("div", element("b", f"jointid {self.title}"), html_summary(self.summary())))
+        return str(
+            element("div", element("b", f"jointid {self.title}"), html_summary(self.summary()))
+        )
 
 
 def study_of(header: Mapping[str, Any], rows: list[Row], seconds: float = 0.0) -> Study:

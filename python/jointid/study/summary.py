@@ -110,7 +110,9 @@ def html_summary(summary: Summary) -> Html:
     """Return the table of the cells, and what is to be said of it."""
     header, body = summary_texts(summary)
     notes = (element("p", each) for each in summary_notes(summary))
-    return element("div", table([list(line) for line in body], head=header, class_="joints"), *notes)
+    return element(
+        "div", table([list(line) for line in body], head=header, class_="joints"), *notes
+    )
 
 
 def summarise(study: Study, within: float) -> Summary:
