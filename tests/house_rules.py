@@ -168,7 +168,7 @@ FOLDERS: dict[str, Folder] = {
     ),
     "cli": Folder(
         may_use={
-            *(_SOUGHT - {"problem"}),
+            *_SOUGHT,
             *(
                 "recording/readers",
                 "comparison",
