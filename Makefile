@@ -29,7 +29,7 @@ IN_PLACE := $(wildcard .venv/.editable)
 MOVED := $(if $(IN_PLACE),$(shell echo $(MODULES) | cmp -s - .venv/.editable || echo list-changed))
 
 .PHONY: help demo test tools checks check-plain check-address check-thread pytest pytest-guest pytest-rest vcan lint stub format \
-        develop list-changed sdist check-sdist study bench notebooks fuzz soak clean
+        develop list-changed sdist check-sdist wheels matrix study bench notebooks fuzz soak clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## */\t/' | expand -t 16
@@ -68,12 +68,13 @@ vcan: .venv/.strict .venv/.test-tools  ## install a guest with CAN (root or sudo
 	@tools/install_vcan.sh
 	@JOINTID_REQUIRE_VCAN=1 $(BIN)/python -m pytest tests/canlab
 
-lint: $(INSTALLED) .venv/.test-tools .venv/.lint-tools  ## ruff, mypy, clang-format, stub
+lint: $(INSTALLED) .venv/.test-tools .venv/.lint-tools  ## ruff, mypy, clang-format, stub, workflow
 	@echo "ruff check";         $(BIN)/ruff check
 	@echo "ruff format";        $(BIN)/ruff format --check --quiet
 	@echo "mypy";               $(BIN)/mypy
 	@echo "clang-format";       find cpp benchmarks -name '*.[ch]pp' -print0 | xargs -0 $(BIN)/clang-format --dry-run -Werror
 	@echo stub;                 $(BIN)/python tools/stub.py --check
+	@echo workflow;             $(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-workflows .github/workflows/ci.yml
 
 format: .venv/.lint-tools  ## format Python and C++ in place
 	@$(BIN)/ruff check --fix --quiet || true
@@ -111,6 +112,13 @@ check-sdist: dist/.wheel  ## a wheel from the sdist installs, imports and runs i
 	@build/sdist-venv/bin/python -m pip install --quiet --no-input --disable-pip-version-check dist/jointid-*.whl
 	@sdist="$$PWD/build/sdist-venv/bin"; cd / && "$$sdist/python" -c 'import jointid' && "$$sdist/jointid" --help >/dev/null
 	@echo "The sdist works."
+
+# PYTHONS='python3.12 python3.13' builds for these.
+wheels: .venv/.created  ## wheels for Linux in dist/wheels, each tried where no compiler is; by hand
+	@tools/wheels.sh $(PYTHONS)
+
+matrix: .venv/.created  ## Debian 13 by chroot, gcc 14, clang 19, oldest and newest dependencies; by hand, as root, an hour
+	@tools/matrix.sh $(MATRIX)
 
 study: $(INSTALLED)  ## accuracy over many seeds; by hand, the results go to docs/
 	@$(BIN)/python benchmarks/accuracy_study.py
