@@ -22,10 +22,11 @@ extensions = [
     "documentation.notebooks",
     "documentation.mathml",
 ]
-exclude_patterns = ["repository/**"]
-nitpicky = False
+exclude_patterns = ["repository/**", "generated/**"]
+suppress_warnings = ["ref.python"]  # a field with the name of another class's: it needs no link
+default_role = "literal"  # a name in a docstring
 
-myst_enable_extensions = ["dollarmath", "deflist", "attrs_inline", "colon_fence"]
+myst_enable_extensions = ["dollarmath", "deflist", "attrs_inline", "attrs_block"]
 myst_heading_anchors = 5
 myst_dmath_allow_space = False
 
@@ -39,8 +40,9 @@ python_maximum_signature_line_length = 80
 
 html_theme = "furo"
 html_title = "jointid"
-html_static_path = ["_static"]
-html_css_files = ["site.css"]
+# Of the folder that is put together; the command line says where it is.
+html_static_path: list[str] = []
+html_css_files = ["pictures.css", "site.css"]
 html_show_sphinx = False
 html_copy_source = False
 html_show_sourcelink = False

@@ -9,6 +9,11 @@ import argparse
 import sys
 from pathlib import Path
 
+from documentation.findings_gallery import write_gallery, write_pictures
+from documentation.links import broken
+from documentation.pictures import style
+from documentation.public_names import check_groups
+from documentation.reference import write_reference
 from documentation.staging import ROOT, Stage, stage_documents
 
 
@@ -26,7 +31,12 @@ def main() -> int:
     arguments = parser.parse_args()
     source = arguments.output / "source"
     stage = Stage(source)
+    check_groups()
     stage_documents(stage)
+    write_pictures(stage)
+    write_gallery(stage)
+    write_reference(stage)
+    stage.write("_static/pictures.css", style())
     stage.finish()
 
     from sphinx.cmd.build import main as sphinx
@@ -42,6 +52,10 @@ def main() -> int:
         "-q",
     ]
     code = sphinx(["-b", "html", *common, str(source), str(site)])
+    if code == 0:
+        wrong = list(broken(site))
+        print(*wrong, sep="\n", end="\n" * bool(wrong), file=sys.stderr)
+        code = int(bool(wrong))
     if code == 0 and arguments.links:
         code = sphinx(["-b", "linkcheck", *common, str(source), str(arguments.output / "links")])
     if code == 0:

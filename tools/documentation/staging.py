@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import posixpath
 import re
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
+
+from jointid.identification.warnings.registry import finding_types
 
 ROOT = Path(__file__).resolve().parents[2]
 # Pages from outside docs/, by their place in the repository and on the site.
@@ -55,7 +56,7 @@ class Stage:
 
     def page(self, home: str, name: str) -> None:
         """Put a page of the repository there, its links led to where their targets are on the site."""
-        text = (ROOT / home).read_text(encoding="utf-8")
+        text = _without_missing((ROOT / home).read_text(encoding="utf-8"))
         self.write(name, self.relinked(text, home, name))
 
     def relinked(self, text: str, home: str, name: str) -> str:
@@ -77,6 +78,9 @@ class Stage:
             picture, label, target = found.groups()
             if re.match(r"[a-z]+:|#", target):
                 return found[0]
+            code = label.strip("`")
+            if target.endswith("findings.md") and code in finding_types():
+                return f"[{label}]({posixpath.relpath(f'gallery/{code}.md', posixpath.dirname(name) or '.')})"
             there = self._place(posixpath.normpath(posixpath.join(posixpath.dirname(home), target)))
             if there is None:
                 return label
@@ -95,8 +99,10 @@ class Stage:
                 return there
             if path == known:
                 return there if known in INSTEAD else there + hash_sign + anchor
-        if path.startswith("docs/") and path.endswith(_ENDINGS):
+        if path.startswith("docs/") and path.endswith(_ENDINGS):  # also pages that are written here
             return target.removeprefix("docs/")
+        if path.startswith("notebooks/"):
+            return target.replace("notebooks/", "tutorials/", 1)
         file = ROOT / path
         if not file.is_file():
             return None
@@ -120,8 +126,26 @@ def stage_documents(stage: Stage) -> None:
             stage.write_bytes(place, path.read_bytes())
     for home, name in ELSEWHERE.items():
         stage.page(home, name)
+    table = (ROOT / "docs" / "findings.md").read_text(encoding="utf-8")
+    stage.write("findings.md", linked_findings(table))
     for path in sorted((ROOT / "notebooks").glob("*.ipynb")):
         stage.write_bytes(f"tutorials/{path.name}", path.read_bytes())
+
+
+def _without_missing(text: str) -> str:
+    """Leave out the lines "? title <page>" whose page is not there yet; of the others, the question mark."""
+
+    def kept(found: re.Match[str]) -> str:
+        there = (ROOT / "docs" / f"{found[2]}.md").is_file()
+        return f"{found[1]} <{found[2]}>\n" if there else ""
+
+    return re.sub(r"^\? (.+) <([\w/]+)>\n", kept, text, flags=re.MULTILINE)
+
+
+def linked_findings(table: str) -> str:
+    """Return the page of all findings with each code linked to its page of the gallery."""
+    table = re.sub(r"^\| `(\w+)` \|", r"| [`\1`](gallery/\1.md) |", table, flags=re.MULTILINE)
+    return table.replace("\n\n", "\n\n**With pictures:** [gallery](gallery/index.md).\n\n", 1)
 
 
 def _documents() -> Iterator[Path]:
@@ -129,8 +153,3 @@ def _documents() -> Iterator[Path]:
     for path in sorted((ROOT / "docs").rglob("*")):
         if path.is_file() and path.suffix in _ENDINGS:
             yield path
-
-
-def empty(folder: Path) -> None:
-    """Remove a folder."""
-    shutil.rmtree(folder, ignore_errors=True)
