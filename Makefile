@@ -29,7 +29,7 @@ IN_PLACE := $(wildcard .venv/.editable)
 MOVED := $(if $(IN_PLACE),$(shell echo $(MODULES) | cmp -s - .venv/.editable || echo list-changed))
 
 .PHONY: help demo test tools checks check-plain check-address check-thread pytest pytest-guest pytest-rest vcan browser lint stub format \
-        develop list-changed sdist check-sdist wheels matrix study bench notebooks fuzz soak clean
+        develop list-changed sdist check-sdist wheels matrix study bench notebooks docs fuzz soak clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## */\t/' | expand -t 16
@@ -144,6 +144,9 @@ bench: $(INSTALLED) .venv/.bench-tools  ## speed against other libraries (20 min
 notebooks: $(INSTALLED) .venv/.test-tools  ## run the notebooks and keep what they show; by hand
 	@$(BIN)/python tools/notebooks.py $(NOTEBOOKS)
 
+docs: $(INSTALLED) .venv/.docs-tools  ## the documentation site, build/docs/site; LINKS=1 asks other hosts, too
+	@PYTHONPATH=tools $(BIN)/python -m documentation $(if $(LINKS),--links)
+
 fuzz: $(INSTALLED) .venv/.test-tools  ## a million damaged files for each reader, every value everywhere; by hand, hours
 	@JOINTID_FUZZ=$(or $(CASES),1000000) $(BIN)/python -m pytest --numprocesses auto tests/fuzz tests/base/test_read_back.py
 
@@ -171,6 +174,11 @@ tools: .venv/.test-tools .venv/.lint-tools  # before two of the others run at th
 .venv/.lint-tools: .venv/.created pyproject.toml
 	@echo "Installing ruff, mypy, clang-format and the stub generator"
 	@$(INSTALL) --group lint
+	@touch $@
+
+.venv/.docs-tools: .venv/.created pyproject.toml
+	@echo "Installing Sphinx, its theme and its reader of Markdown"
+	@$(INSTALL) --group docs
 	@touch $@
 
 .venv/.bench-tools: .venv/.created pyproject.toml
