@@ -48,6 +48,7 @@ __all__: list[str] = [
     "Pid",
     "PolishResult",
     "PositionNoise",
+    "Projected",
     "Recording",
     "Residual",
     "Scenario",
@@ -78,6 +79,7 @@ __all__: list[str] = [
     "is_parameter",
     "local_velocity",
     "minimise_genetic",
+    "minimise_projected",
     "minimise_random",
     "minimise_separable",
     "minimise_trials",
@@ -1063,6 +1065,18 @@ class SeparableResult:
     def evaluations(self) -> int: ...
     @property
     def penalty(self) -> float: ...
+
+class Projected:
+    """
+    The projected search's optimum, if any.
+    """
+    @property
+    def found(self) -> SeparableResult | None: ...
+    @property
+    def reason(self) -> str:
+        """
+        Why nothing was found; empty otherwise.
+        """
 
 class PolishResult:
     """
@@ -3444,6 +3458,17 @@ def minimise_genetic(
 ) -> GaResult:
     """
     Genetic search. `resume` goes on from a state made with the same options, seed, trial, bounds and penalty; `checkpoint` is called with the state every `checkpoint_interval` generations.
+    """
+
+def minimise_projected(
+    penalty: Penalty,
+    lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    *,
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> Projected:
+    """
+    The separable optimum by a dozen direct sums; nothing where that is not safe.
     """
 
 def minimise_random(
