@@ -21,6 +21,7 @@ _SHOWN = ("position", "velocity", "torque", "motor_torque", "current", "sensor")
 _POINTS = 1200  # of a line; more are not seen
 _TEXT = "#808080"  # readable on light and on dark ground
 _LINE, _SECOND, _CHOSEN, _OUT = "#3b7dd8", "#d9822b", "#d6336c", "rgba(128,128,128,.35)"
+_GRID = "rgba(128,128,128,.25)"
 _HEIGHT = 120  # pixels of a signal's panel
 
 
@@ -74,6 +75,7 @@ def signals_options(recording: Recording, left_out: tuple[Stretch, ...]) -> dict
                 "gridIndex": k,
                 **limits,
                 "axisLabel": {"show": k == last, "color": _TEXT},
+                "splitLine": {"lineStyle": {"color": _GRID}},
                 **(
                     {"name": "time [s]", "nameLocation": "middle", "nameGap": 25}
                     if k == last
@@ -91,6 +93,8 @@ def signals_options(recording: Recording, left_out: tuple[Stretch, ...]) -> dict
                 "name": f"{name} [{shown_unit(name, recording.kind)}]",
                 "nameTextStyle": {"align": "left", "color": _TEXT},
                 "axisLabel": {"color": _TEXT},
+                "splitLine": {"lineStyle": {"color": _GRID}},
+        "splitLine": {"lineStyle": {"color": _GRID}},
             }
             for k, name in enumerate(names)
         ],
@@ -187,6 +191,7 @@ def _axis(grid: int, name: str) -> dict[str, Any]:
         "nameLocation": "middle",
         "nameGap": 28,
         "axisLabel": {"color": _TEXT},
+        "splitLine": {"lineStyle": {"color": _GRID}},
     }
 
 
@@ -198,6 +203,7 @@ def _upward(grid: int, name: str) -> dict[str, Any]:
         "name": name,
         "nameTextStyle": {"align": "left", "color": _TEXT},
         "axisLabel": {"color": _TEXT},
+        "splitLine": {"lineStyle": {"color": _GRID}},
     }
 
 

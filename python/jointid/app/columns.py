@@ -40,7 +40,7 @@ def columns_step(desk: Desk) -> dict[str, Callable[[], object]]:
             ui.label("Load a log first.")
             return
         headers = {_NONE: "—"} | {k: each.header for k, each in enumerate(desk.looked.columns)}
-        with ui.grid(columns="auto 1fr auto 2fr").classes("items-center w-full"):
+        with ui.grid(columns="max-content minmax(9rem, 1fr) max-content minmax(12rem, 2fr)").classes("items-center w-full"):
             for signal in _SIGNALS:
                 ranges[signal] = _row(desk, signal, headers)
         _facts(desk)
@@ -64,7 +64,7 @@ def columns_step(desk: Desk) -> dict[str, Callable[[], object]]:
 def _row(desk: Desk, signal: str, headers: dict[int, str]) -> ui.label:
     column = desk.looked_at(signal)
     number = desk.column_of(signal)
-    ui.label(signal)
+    ui.label(signal).classes("whitespace-nowrap")
 
     async def assigned(event: Any) -> None:
         desk.assign(signal, None if event.value == _NONE else event.value)

@@ -41,13 +41,13 @@ def build(largest: int) -> None:
     ui.add_css(f"@layer components {{ {STYLE} }} .step {{ width: 100%; max-width: 62rem; }}")
     with ui.column().classes("w-full items-center"):
         ui.label("jointid").classes("text-2xl step")
-        with ui.card().classes("step"):
+        with ui.card().classes("step overflow-x-auto"):
             _upload(desk, largest)
-        with ui.card().classes("step"):
+        with ui.card().classes("step overflow-x-auto"):
             parts |= columns_step(desk)
-        with ui.card().classes("step"):
+        with ui.card().classes("step overflow-x-auto"):
             parts["signals"] = signals_step(desk)
-        with ui.card().classes("step"):
+        with ui.card().classes("step overflow-x-auto"):
             parts["progress"] = _actions(desk)
             parts["result"] = result_step(desk)
 
