@@ -35,7 +35,7 @@ class FittedModel:
     Attributes
     ----------
     settings : mapping
-        As `Estimate.settings`.
+        As `Estimate.settings`; of a fit without inference without the recordings.
     joint : Joint or None
         None: a joint without a gear, of which nothing is known.
     values : mapping of str to float
