@@ -89,6 +89,7 @@ __all__: list[str] = [
     "models",
     "noise_products",
     "non_negative_least_squares",
+    "number_list",
     "number_table",
     "parameter_names",
     "polish",
@@ -3656,6 +3657,13 @@ def non_negative_least_squares(
 ) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float]:
     """
     The solution without negative entries, and the norm of what is left of the target.
+    """
+
+def number_list(
+    values: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+) -> str | None:
+    """
+    A list of finite numbers as JSON; None where Python has to write it.
     """
 
 def number_table(
