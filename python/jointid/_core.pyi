@@ -1248,6 +1248,11 @@ class FittedShift:
     @property
     def unexplained(self) -> float: ...
     @property
+    def unshifted(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Coefficients of the columns without a shift; empty where one was searched.
+        """
+    @property
     def whole(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
 
 class SpikeRule(enum.Enum):
