@@ -494,9 +494,9 @@ class Penalty(PenaltyFunction):
     @property
     def noise_share(self) -> float: ...
     @property
-    def recording_of(self) -> list[int]:
+    def recording_of(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int64], "[m, 1]"]:
         """
-        Which recording each window belongs to.
+        Which recording each window belongs to, shape (window_count,).
         """
     @property
     def standing_samples(self) -> int: ...
