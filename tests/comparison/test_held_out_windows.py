@@ -5,14 +5,15 @@ from dataclasses import replace
 import pytest
 
 import jointid as jid
+from jointid.cli.demo import data_folder
 from jointid.estimate.prediction import FittedModel, TorquePredictor
 from jointid.problem.problem import Problem
 
 
 def test_folds_that_pose_the_same_problem_share_its_windows(
-    well_excited: jid.Recording, monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    recording = well_excited
+    recording = jid.load(data_folder() / "well_excited.csv.gz")
     fitted = FittedModel.of(jid.identify(recording, jid.thesis_joint()))
     made = []
     cut = Problem.penalty

@@ -214,8 +214,7 @@ class Model:
     @property
     def resolved(self) -> ResolvedModel:
         """All fields, those that are not stated with their defaults; "auto" has the default name."""
-        # Own terms in another order are equal, but are not the same text.
-        return (_resolved if self.terms is None else _resolved.__wrapped__)(self)
+        return _resolved(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return functools.partial(Model, **self.stated()), ()
