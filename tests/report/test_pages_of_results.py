@@ -45,7 +45,7 @@ def test_every_page_is_whole_and_begins_with_its_answer(make: Callable[[], str])
 def test_names_are_escaped_and_kept() -> None:
     kept = HOSTILE.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     kept = kept.replace('"', "&quot;").replace("'", "&#x27;")
-    for make in (report_pages.of_a_comparison, report_pages.of_a_study_of_rows):
+    for make in (report_pages.of_a_named_comparison, report_pages.of_a_study_of_rows):
         assert kept in page(make)
 
 
