@@ -62,6 +62,11 @@ class Browser:
         self._driver = driver
         self._folder = folder
 
+    @property
+    def driver(self) -> Any:
+        """Selenium's driver, for pages that are used and not only looked at."""
+        return self._driver
+
     def open(self, page: str, width: int, scheme: str, height: int = 900) -> list[str]:
         """Show a page at a width, in "light" or "dark"; returns what it requested, itself first."""
         path = self._folder / "page.html"

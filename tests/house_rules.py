@@ -166,9 +166,17 @@ FOLDERS: dict[str, Folder] = {
         may_use={*_SOUGHT, "simulation", "hardware/session", "hardware/bench"} - {"problem"},
         packages={"numpy"},
     ),
-    "cli": Folder(
+    # The page in a browser; what it computes is asked for in a process of its own.
+    "app": Folder(
         may_use={
             *(_SOUGHT - {"problem"}),
+            *("recording/readers", "comparison", "report"),
+        },
+        packages={"numpy", "nicegui"},
+    ),
+    "cli": Folder(
+        may_use={
+            *_SOUGHT,
             *(
                 "recording/readers",
                 "comparison",
@@ -182,7 +190,7 @@ FOLDERS: dict[str, Folder] = {
                 "exports",
             ),
             *("hardware/session", "hardware/can", "hardware/live", "hardware/bench"),
-            *("hardware/emulated", "hardware/proof", "commissioning", ""),
+            *("hardware/emulated", "hardware/proof", "commissioning", "app", ""),
         },
         packages={"numpy", "matplotlib"},
     ),

@@ -5,14 +5,15 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
-from jointid.cli.arguments import fixed_values, joints_wanted, load_all, refinements, with_terms
+from jointid.cli.arguments import fixed_values, refinements, with_terms
 from jointid.cli.exit_codes import BAD_INPUT
+from jointid.cli.joint_options import joint_file, joint_of, torque_needed
 from jointid.cli.outputs import check_output_folder, check_outputs, check_page
+from jointid.cli.reading import joints_wanted, load_all
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from jointid.estimate.causes import Causes
     from jointid.estimate.estimate import Estimate
     from jointid.estimate.self_test import SelfTest
-    from jointid.joint.joint import Joint
     from jointid.recording.recording import Recording
     from jointid.robot.result import RobotEstimate
 
@@ -78,10 +78,12 @@ def identify(arguments: argparse.Namespace) -> int:
         if getattr(arguments, name) is not None
     }
     options = GaOptions(**budget)
-    joint = _joint(arguments)
+    file = joint_file(arguments)
     model = with_terms(arguments.model, arguments)
-    merged = model if joint is None else model.over(joint.model)
-    recordings = load_all(arguments.recordings, arguments, [merged])
+    merged = model if file is None else model.over(file.model)
+    usable = torque_needed(arguments, file)
+    recordings = load_all(arguments.recordings, arguments, [merged], usable=usable)
+    joint = joint_of(arguments, file, recordings)
     with Progress(total=options.generations, enabled=not arguments.quiet) as progress:
         estimate = identification.identify(
             recordings,
@@ -134,9 +136,8 @@ def _with_checks(
 
 
 def _for_one_joint(arguments: argparse.Namespace) -> None:
-    for name in ("facts", "inertia"):
-        if getattr(arguments, name) is not None:
-            raise InputError("this is for a robot; name its URDF with --robot", argument=name)
+    if arguments.facts is not None:
+        raise InputError("this is for a robot; name its URDF with --robot", argument="facts")
 
 
 def compare(arguments: argparse.Namespace) -> int:
@@ -153,13 +154,15 @@ def compare(arguments: argparse.Namespace) -> int:
     _for_one_joint(arguments)
     changes = fixed_values(arguments)
     check_outputs(arguments)
-    joint = _joint(arguments)
+    file = joint_file(arguments)
     models = arguments.models
     if arguments.term:
         models = [with_terms(text, arguments) for text in models or ("coulomb_viscous", "stribeck")]
     merged = [Model.of(each) for each in models or (None,)]
-    merged = [each if joint is None else each.over(joint.model) for each in merged]
-    recordings = load_all(arguments.recordings, arguments, merged)
+    merged = [each if file is None else each.over(file.model) for each in merged]
+    usable = torque_needed(arguments, file)
+    recordings = load_all(arguments.recordings, arguments, merged, usable=usable)
+    joint = joint_of(arguments, file, recordings)
     with ComparisonProgress(enabled=not arguments.quiet) as progress:
         comparison = compare_models(
             recordings,
@@ -251,13 +254,6 @@ def _unrecognised(arguments: argparse.Namespace) -> str:
     ]
     more = f" and {len(names) - 12} more" if len(names) > 12 else ""
     return ", ".join(names[:12]) + more
-
-
-def _joint(arguments: argparse.Namespace) -> Joint | None:
-    from jointid.joint.joint import Joint
-
-    path: Path | None = arguments.joint
-    return Joint.load(path) if path is not None else None
 
 
 def _write(

@@ -9,15 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
-from jointid.cli.arguments import (
-    as_given,
-    gear_ratios,
-    how_to_read,
-    joints_wanted,
-    refinements,
-    with_terms,
-)
+from jointid.cli.arguments import refinements, with_terms
 from jointid.cli.outputs import check_folder, check_page
+from jointid.cli.reading import as_given, gear_ratios, how_to_read, joints_wanted
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:

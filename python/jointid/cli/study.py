@@ -13,7 +13,6 @@ from jointid.base.errors import InputError
 from jointid.cli.arguments import (
     by_name,
     fixed_values,
-    load_all,
     number_or_text,
     pair,
     refinement_arguments,
@@ -27,6 +26,7 @@ from jointid.cli.arguments import (
 )
 from jointid.cli.outputs import check_folder, check_page
 from jointid.cli.parser import CommandParser
+from jointid.cli.reading import load_all
 from jointid.cli.scenario import scenario_arguments, scenario_of
 
 if TYPE_CHECKING:
