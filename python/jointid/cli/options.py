@@ -55,6 +55,16 @@ _ESTIMATE = {"report": "--report", "save": "--save"}
 
 OPTIONS: Mapping[str, Mapping[str, str]] = {
     "demo": {"output": "--output"},
+    "new": {
+        **_READING,
+        **_FACTS,
+        "name": "--name",
+        "kind": "--kind",
+        "position": "--position",
+        "velocity": "--velocity",
+        "torque": "--torque",
+        "current": "--current",
+    },
     "identify": {
         **_IDENTIFICATION,
         **_ESTIMATE,
