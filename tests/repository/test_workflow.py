@@ -1,4 +1,4 @@
-"""The workflow for other systems, which no run here tries: it serves what pyproject.toml says, publishes what is tested."""
+"""The workflow for other systems, which no run here tries: it serves pyproject.toml, and publishes what it tested."""
 
 import re
 import runpy
