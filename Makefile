@@ -28,8 +28,8 @@ MODULES := $(sort $(filter python/%.py,$(SOURCES)))
 IN_PLACE := $(wildcard .venv/.editable)
 MOVED := $(if $(IN_PLACE),$(shell echo $(MODULES) | cmp -s - .venv/.editable || echo list-changed))
 
-.PHONY: help demo test tools checks check-plain check-address check-thread pytest pytest-guest pytest-rest vcan lint stub format \
-        develop list-changed sdist check-sdist wheels matrix study bench notebooks fuzz soak clean
+.PHONY: help demo test tools checks check-plain check-address check-thread pytest pytest-guest pytest-rest vcan browser lint stub format \
+        develop list-changed sdist check-sdist wheels matrix study bench notebooks docs fuzz soak clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## */\t/' | expand -t 16
@@ -38,7 +38,8 @@ demo: $(INSTALLED)  ## identify a real robot joint from its log; writes demo/rep
 	@$(BIN)/jointid demo --output demo
 	@echo "Open demo/report.html in a browser."
 
-test: checks pytest  ## core checks (plain, ASan+UBSan, TSan), then pytest
+# DONE names parts that .ci/run has seen to already, beside other work.
+test: $(filter-out $(DONE),checks pytest-guest) pytest-rest  ## core checks (plain, ASan+UBSan, TSan), then pytest
 
 checks: .venv/.test-tools $(SHIPPED_CHECKS)
 	@mkdir -p build
@@ -67,6 +68,10 @@ pytest-rest: .venv/.strict .venv/.test-tools
 vcan: .venv/.strict .venv/.test-tools  ## install a guest with CAN (root or sudo), then sessions on its vcan, with faults
 	@tools/install_vcan.sh
 	@JOINTID_REQUIRE_VCAN=1 $(BIN)/python -m pytest tests/canlab
+
+browser: .venv/.strict .venv/.test-tools  ## install Chromium (root or sudo), then look at the pages in it
+	@tools/install_browser.sh
+	@JOINTID_REQUIRE_BROWSER=1 $(BIN)/python -m pytest tests/report/test_in_browser.py
 
 lint: $(INSTALLED) .venv/.test-tools .venv/.lint-tools  ## ruff, mypy, clang-format, stub, workflow
 	@echo "ruff check";         $(BIN)/ruff check
@@ -139,6 +144,9 @@ bench: $(INSTALLED) .venv/.bench-tools  ## speed against other libraries (20 min
 notebooks: $(INSTALLED) .venv/.test-tools  ## run the notebooks and keep what they show; by hand
 	@$(BIN)/python tools/notebooks.py $(NOTEBOOKS)
 
+docs: $(INSTALLED) .venv/.docs-tools  ## the documentation site, build/docs/site; LINKS=1 asks other hosts, too
+	@PYTHONPATH=tools $(BIN)/python -m documentation $(if $(LINKS),--links)
+
 # CASES=5000 SEED=0 make fuzz: another number, and where to begin.
 fuzz: $(INSTALLED) .venv/.test-tools  ## a million damaged files for each reader, core under ASan+UBSan; by hand, hours
 	@JOINTID_FUZZ=$(or $(CASES),1000000) JOINTID_FUZZ_SEED=$(or $(SEED),0) \
@@ -168,6 +176,11 @@ tools: .venv/.test-tools .venv/.lint-tools  # before two of the others run at th
 .venv/.lint-tools: .venv/.created pyproject.toml
 	@echo "Installing ruff, mypy, clang-format and the stub generator"
 	@$(INSTALL) --group lint
+	@touch $@
+
+.venv/.docs-tools: .venv/.created pyproject.toml
+	@echo "Installing Sphinx, its theme and its reader of Markdown"
+	@$(INSTALL) --group docs
 	@touch $@
 
 .venv/.bench-tools: .venv/.created pyproject.toml

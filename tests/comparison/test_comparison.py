@@ -292,7 +292,7 @@ def test_same_bits_again(comparison: jid.Comparison, well_excited: jid.Recording
         well_excited,
         jid.thesis_joint(),
         models=("coulomb_viscous", "stribeck"),
-        search=jid.Search(threads=1),
+        search=jid.Search("separable", threads=1),
     )
     assert [entry.fold_scores for entry in again.rows] == [
         entry.fold_scores for entry in comparison.rows
