@@ -18,9 +18,18 @@ _READING = {
     "drop_invalid": "--drop-invalid",
     "extra": "--extra",
 }
+_FACTS = {
+    "torque_constant": "--torque-constant",
+    "rotor_inertia": "--rotor-inertia",
+    "inertia": "--inertia",
+    "mass": "--mass",
+    "centre_of_mass": "--centre-of-mass",
+    "link_angle": "--link-angle",
+}
 _IDENTIFICATION = {
     **_READING,
     "joint": "--joint",
+    **_FACTS,
     "model": "--model",
     "terms": "--term",
     "method": "--method",
@@ -59,7 +68,6 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "robot": "--robot",
         "path": "--robot",
         "facts": "--facts",
-        "inertia": "--inertia",
     },
     "compare": {**_IDENTIFICATION, **_ESTIMATE, "models": "--model", "folds": "--folds"},
     "simulate": {**_SCENARIO, "seed": "--seed", "output": "--output"},
@@ -67,7 +75,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         **{
             name: option
             for name, option in _IDENTIFICATION.items()
-            if name not in ("torque_hold", "terms")
+            if name not in ("torque_hold", "terms", *_FACTS)
         },
         **_SCENARIO,
         "simulate": "--simulate",
@@ -83,6 +91,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "resume": "--resume",
         "table": "--table",
         "plot": "--plot",
+        "report": "--report",
     },
     "design": {
         **{name: option for name, option in _SCENARIO.items() if name != "trajectory"},
@@ -102,6 +111,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "threads": "--threads",
         "output": "--output",
         "plot": "--plot",
+        "report": "--report",
     },
     "run": {
         "cycles": "--cycles",
