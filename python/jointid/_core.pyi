@@ -91,7 +91,6 @@ __all__: list[str] = [
     "polish",
     "position_noise",
     "refine_separable",
-    "robust_variance",
     "roughness",
     "segment_sums",
     "shape",
@@ -3557,18 +3556,6 @@ def refine_separable(
 ) -> SeparableResult:
     """
     The local optimum near a start; `everywhere` also searches the free shapes' whole ranges.
-    """
-
-def robust_variance(
-    jacobian: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
-    residual: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-    scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-    weights: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-    *,
-    threads: typing.SupportsInt | typing.SupportsIndex = 0,
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-    """
-    Prewhitened Newey-West variance of weighted sums of the scores.
     """
 
 def roughness(signal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> float:
