@@ -25,7 +25,7 @@ IN_PLACE := $(wildcard .venv/.editable)
 MOVED := $(if $(IN_PLACE),$(shell echo $(MODULES) | cmp -s - .venv/.editable || echo list-changed))
 
 .PHONY: help demo test checks check-plain check-address check-thread pytest vcan lint stub format \
-        develop list-changed sdist check-sdist study bench notebooks fuzz soak clean
+        develop list-changed sdist check-sdist study bench notebooks fuzz mutants soak clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## */\t/' | expand -t 16
@@ -122,6 +122,9 @@ notebooks: $(INSTALLED) .venv/.test-tools  ## run the notebooks and keep what th
 
 fuzz: $(INSTALLED) .venv/.test-tools  ## a million damaged files for each reader, every value everywhere; by hand, hours
 	@JOINTID_FUZZ=$(or $(CASES),1000000) $(BIN)/python -m pytest --numprocesses auto tests/fuzz tests/base/test_read_back.py
+
+mutants: $(INSTALLED) .venv/.test-tools  ## change single lines, see whether tests notice; by hand, docs/mutants.md
+	@PYTHONPATH=tools $(BIN)/python -m mutants --output docs/mutants.md $(MUTANTS)
 
 soak: $(INSTALLED)  ## minutes of identification, 30 emulated minutes of sessions; by hand
 	@$(BIN)/python benchmarks/soak.py
