@@ -29,7 +29,7 @@ IN_PLACE := $(wildcard .venv/.editable)
 MOVED := $(if $(IN_PLACE),$(shell echo $(MODULES) | cmp -s - .venv/.editable || echo list-changed))
 
 .PHONY: help demo test tools checks check-plain check-address check-thread pytest pytest-guest pytest-rest vcan browser lint stub format \
-        develop list-changed sdist check-sdist wheels matrix study bench notebooks docs fuzz soak clean
+        develop list-changed sdist check-sdist wheels matrix study bench notebooks docs fuzz mutants soak clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## */\t/' | expand -t 16
@@ -151,6 +151,9 @@ docs: $(INSTALLED) .venv/.docs-tools  ## the documentation site, build/docs/site
 fuzz: $(INSTALLED) .venv/.test-tools  ## a million damaged files for each reader, core under ASan+UBSan; by hand, hours
 	@JOINTID_FUZZ=$(or $(CASES),1000000) JOINTID_FUZZ_SEED=$(or $(SEED),0) \
 	  tools/fuzz.sh --numprocesses auto --dist load tests/fuzz tests/base/test_read_back.py
+
+mutants: $(INSTALLED) .venv/.test-tools  ## change single lines, see whether tests notice; by hand, docs/mutants.md
+	@PYTHONPATH=tools $(BIN)/python -m mutants --output docs/mutants.md $(MUTANTS)
 
 soak: $(INSTALLED)  ## minutes of identification, 30 emulated minutes of sessions; by hand
 	@$(BIN)/python benchmarks/soak.py
