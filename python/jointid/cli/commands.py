@@ -78,6 +78,11 @@ def identify(arguments: argparse.Namespace) -> int:
     }
     options = GaOptions(**budget)
     joint = _joint(arguments)
+    if joint is not None and joint.voltage is not None:
+        from jointid.cli.servo import identify_runs
+
+        return identify_runs(arguments, joint)
+    _for_a_torque(arguments)
     model = with_terms(arguments.model, arguments)
     merged = model if joint is None else model.over(joint.model)
     recordings = load_all(arguments.recordings, arguments, [merged])
@@ -136,6 +141,15 @@ def _for_one_joint(arguments: argparse.Namespace) -> None:
     for name in ("facts", "inertia"):
         if getattr(arguments, name) is not None:
             raise InputError("this is for a robot; name its URDF with --robot", argument=name)
+
+
+def _for_a_torque(arguments: argparse.Namespace) -> None:
+    for name in ("by", "rollout"):
+        if getattr(arguments, name):
+            raise InputError(
+                'this is for a servo, whose joint file says input = "voltage" in [drive]',
+                argument=name,
+            )
 
 
 def compare(arguments: argparse.Namespace) -> int:
