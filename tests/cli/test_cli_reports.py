@@ -47,5 +47,5 @@ def test_what_is_no_page_is_refused_before_the_work(
     command: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main([*COMMANDS[command], "--report", "page.pdf"]) == 2
-    assert "--report is 'page.pdf': a report is an HTML page (.html)" in capsys.readouterr().err
+    assert "--report page.pdf: a report is an HTML page (.html)" in capsys.readouterr().err
     assert not Path("page.pdf").exists()
