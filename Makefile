@@ -71,7 +71,7 @@ vcan: .venv/.strict .venv/.test-tools  ## install a guest with CAN (root or sudo
 
 browser: .venv/.strict .venv/.test-tools  ## install Chromium (root or sudo), then look at the pages in it
 	@tools/install_browser.sh
-	@JOINTID_REQUIRE_BROWSER=1 $(BIN)/python -m pytest tests/report/test_in_browser.py
+	@JOINTID_REQUIRE_BROWSER=1 $(BIN)/python -m pytest tests/report/test_in_browser.py tests/app/test_app_in_browser.py
 
 lint: $(INSTALLED) .venv/.test-tools .venv/.lint-tools  ## ruff, mypy, clang-format, stub, workflow
 	@echo "ruff check";         $(BIN)/ruff check

@@ -166,7 +166,7 @@ GROUPS = (
             ),
         ),
     ),
-    Group("exports", "Exports", _of("jointid", "export")),
+    Group("exports", "Exports and reports", _of("jointid", "export", "save_report")),
     Group(
         "plots",
         "Pictures",
