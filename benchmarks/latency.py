@@ -37,7 +37,7 @@ found = {"first `identify()`": cpu(lambda: identify(recording, joint))}
 found["warm `identify()`"] = least(lambda: identify(recording, joint), 20)
 estimate = identify(recording, joint)
 from jointid import Estimate, compare_models
-from jointid.report.html import save_report
+from jointid.report.saving import save_report
 page = path.with_suffix(".html")
 found["first HTML report"] = cpu(lambda: save_report(estimate, page))
 found["HTML report"] = least(lambda: save_report(estimate, page), 3)

@@ -125,7 +125,7 @@ FOLDERS: dict[str, Folder] = {
     "report": Folder(
         may_use={
             *("base", "joint", "estimate", "joints", "robot", "identification/warnings"),
-            *("report/drawing", "recording", "commissioning"),
+            *("report/drawing", "recording", "commissioning", "comparison", "study", "design"),
         },
         packages={"numpy"},
     ),
@@ -166,6 +166,14 @@ FOLDERS: dict[str, Folder] = {
         may_use={*_SOUGHT, "simulation", "hardware/session", "hardware/bench"} - {"problem"},
         packages={"numpy"},
     ),
+    # The page in a browser; what it computes is asked for in a process of its own.
+    "app": Folder(
+        may_use={
+            *(_SOUGHT - {"problem"}),
+            *("recording/readers", "comparison", "report"),
+        },
+        packages={"numpy", "nicegui"},
+    ),
     "cli": Folder(
         may_use={
             *_SOUGHT,
@@ -182,7 +190,7 @@ FOLDERS: dict[str, Folder] = {
                 "exports",
             ),
             *("hardware/session", "hardware/can", "hardware/live", "hardware/bench"),
-            *("hardware/emulated", "hardware/proof", "commissioning", ""),
+            *("hardware/emulated", "hardware/proof", "commissioning", "app", ""),
         },
         packages={"numpy", "matplotlib"},
     ),
@@ -192,7 +200,7 @@ FOLDERS: dict[str, Folder] = {
             *(_SOUGHT - {"problem"}),
             *("recording/readers", "recording/wide", "comparison", "joints", "online", "robot"),
             *("simulation", "study", "design"),
-            *("plot", "exports", "hardware", "commissioning", "cli"),
+            *("plot", "report", "exports", "hardware", "commissioning", "cli"),
         },
     ),
 }

@@ -68,6 +68,7 @@ if TYPE_CHECKING:
     from jointid.recording.readers.loading_robot import load_robot
     from jointid.recording.recording import Recording
     from jointid.recording.wide.robot_recording import RobotRecording
+    from jointid.report.saving import save_report
     from jointid.robot.comparing import compare_robot_models
     from jointid.robot.comparison_result import RobotComparison
     from jointid.robot.identifying import identify_robot
@@ -147,6 +148,7 @@ __all__ = [
     "load_robot",
     "load_runs",
     "plot",
+    "save_report",
     "simulate",
     "simulate_batch",
     "sweep",
@@ -197,6 +199,7 @@ _HOMES = {
     "jointid.recording.readers.loading_robot": ("load_robot",),
     "jointid.recording.recording": ("Recording",),
     "jointid.recording.wide.robot_recording": ("RobotRecording",),
+    "jointid.report.saving": ("save_report",),
     "jointid.robot.comparing": ("compare_robot_models",),
     "jointid.robot.comparison_result": ("RobotComparison",),
     "jointid.robot.identifying": ("identify_robot",),
@@ -246,5 +249,6 @@ if not TYPE_CHECKING:  # a type checker sees the imports above, and no name that
 
 
 def __dir__() -> list[str]:
-    """List the public names, also those that were not asked for yet."""
-    return sorted({*globals(), *__all__})
+    """List the public names, also those that were not asked for yet; not what the package itself imports."""
+    own = {name for name in globals() if name.startswith("__")}
+    return sorted({*own, *__all__})

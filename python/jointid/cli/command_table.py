@@ -70,6 +70,11 @@ _TABLE = {
         "jointid.cli.exports:add_export",
         "jointid.cli.exports:export",
     ),
+    "app": (
+        "open a page: drop a log, fix its units, identify, compare, export",
+        "jointid.cli.app:add_app",
+        "jointid.cli.app:serve_page",
+    ),
     "info": (
         "show what a recording holds",
         "jointid.cli.grammar:add_info",

@@ -17,6 +17,7 @@ from jointid.cli.reading import joints_wanted, load_all
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
+    from jointid.comparison.result import Comparison
     from jointid.estimate.bootstrap import Bootstrap
     from jointid.estimate.causes import Causes
     from jointid.estimate.estimate import Estimate
@@ -29,7 +30,7 @@ def demo(arguments: argparse.Namespace) -> None:
     """Identify the joint that ships with the package."""
     from jointid.cli.demo import demonstrate
     from jointid.cli.progress import Progress
-    from jointid.report.html import save_report
+    from jointid.report.saving import save_report
 
     check_output_folder("output", arguments.output)
     with Progress(enabled=not arguments.quiet) as progress:
@@ -176,7 +177,7 @@ def compare(arguments: argparse.Namespace) -> int:
             **{name: given for name, given in refinements(arguments).items() if given is not None},
             callback=progress,
         )
-    refused = _write(comparison.estimate, arguments)
+    refused = _write(comparison.estimate, arguments, comparison)
     print(comparison.to_json() if arguments.json else comparison.report())
     _say_written(refused, arguments)
     return _exit_code(refused, arguments)
@@ -188,7 +189,7 @@ def report(arguments: argparse.Namespace) -> None:
 
     from jointid.cli.robot import saved_robot
     from jointid.joints.reading import load_estimate
-    from jointid.report.html import save_report
+    from jointid.report.saving import save_report
 
     check_page("output", arguments.output)
     robot = saved_robot(arguments.estimate)
@@ -197,14 +198,12 @@ def report(arguments: argparse.Namespace) -> None:
         estimate = load_estimate(arguments.estimate, arguments.joints)
         page = save_report(estimate, arguments.output, action=ADVICE.of_action)
     else:
-        from jointid.report.robot_page import save_robot_report
-
         if arguments.joints is not None:
             raise InputError(
                 "a robot's page has all joints", argument="joints", value=arguments.joints
             )
         estimate = robot
-        page = save_robot_report(robot, arguments.output, action=ADVICE.of_action)
+        page = save_report(robot, arguments.output, action=ADVICE.of_action)
     if arguments.json:
         summary = {"report": str(page), "warnings": [warning.code for warning in estimate.warnings]}
         print(json.dumps(summary, indent=1, ensure_ascii=False))
@@ -257,15 +256,17 @@ def _unrecognised(arguments: argparse.Namespace) -> str:
     return ", ".join(names[:12]) + more
 
 
-def _write(estimate: Estimate, arguments: argparse.Namespace) -> str:
-    """Write what was asked for; returns the code of the finding that refuses a joint file, if any.
+def _write(
+    estimate: Estimate, arguments: argparse.Namespace, comparison: Comparison | None = None
+) -> str:
+    """Write what was asked for, of a comparison its own page; returns the code of a finding that refuses a joint file.
 
     The next session reads a joint file and obeys it, so values that cannot be used stay out of it.
     """
     if arguments.report is not None:
-        from jointid.report.html import save_report
+        from jointid.report.saving import save_report
 
-        save_report(estimate, arguments.report, action=ADVICE.of_action)
+        save_report(comparison or estimate, arguments.report, action=ADVICE.of_action)
     blocking = [each.code for each in estimate.findings if each.severity == "blocking"]
     if arguments.save is None:
         return ""

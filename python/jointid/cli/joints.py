@@ -33,7 +33,7 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
     from jointid.joint.joint import Joint
     from jointid.joints.identifying import identify_joints
     from jointid.recording.readers.loading_robot import load_robot
-    from jointid.report.joints_page import save_joints_report
+    from jointid.report.saving import save_report
 
     _check(arguments)
     changes = fixed_values(arguments)
@@ -87,7 +87,7 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
             **refinements(arguments),
         )
     if arguments.report is not None:
-        save_joints_report(found, arguments.report, action=ADVICE.of_action)
+        save_report(found, arguments.report, action=ADVICE.of_action)
     if arguments.save is not None:
         found.save(arguments.save)
     wording = Wording.of(arguments)

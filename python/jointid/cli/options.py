@@ -101,6 +101,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "resume": "--resume",
         "table": "--table",
         "plot": "--plot",
+        "report": "--report",
     },
     "design": {
         **{name: option for name, option in _SCENARIO.items() if name != "trajectory"},
@@ -120,6 +121,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "threads": "--threads",
         "output": "--output",
         "plot": "--plot",
+        "report": "--report",
     },
     "run": {
         "cycles": "--cycles",

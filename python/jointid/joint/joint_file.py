@@ -21,6 +21,8 @@ from jointid.joint.model import FIELDS, Model
 from jointid.joint.parameters import Parameter, parameter_table
 from jointid.joint.tolerances import Tolerances
 from jointid.joint.toml_edit import update_table
+from jointid.joint.voltage_drive import KEYS as _INPUT
+from jointid.joint.voltage_drive import drive_keys, voltage_of
 
 SCHEMA = 2
 """Increased when a reader of the earlier format would misread the new one."""
@@ -31,7 +33,7 @@ _DRIVE = ("inertia", "rotor_inertia", "gear_ratio", "torque_constant", "torque_h
 _NAME = "friction"
 _MODEL = (_NAME, *FIELDS, "torque_offset")
 _KEYS: dict[str, tuple[str, ...]] = {
-    "drive": _DRIVE,
+    "drive": (*_DRIVE, *_INPUT),
     "model": _MODEL,
     "sensor": ("present",),
     "link": tuple(field.name for field in fields(Link)),
@@ -75,13 +77,18 @@ def save_joint(joint: Joint, path: str | os.PathLike[str]) -> None:
     write_whole(place, _edited(before, joint, place).encode())
 
 
+def joint_text(joint: Joint) -> str:
+    """Return the text of a new joint file."""
+    return _edited("", joint, Path("joint.toml"))
+
+
 def joint_document(joint: Joint) -> dict[str, Any]:
     """Return a joint as the tables and keys of its file, in JSON types and without None."""
     document: dict[str, Any] = {
         "schema": SCHEMA,
         "name": joint.name,
         "kind": joint.kind,
-        "drive": _known(joint, _DRIVE),
+        "drive": _known(joint, _DRIVE) | drive_keys(joint.voltage),
         "model": _model_table(joint),
     }
     if joint.sensor:
@@ -120,7 +127,13 @@ def joint_from_document(document: Mapping[str, Any], source: str) -> Joint:
         if key not in (*_TOP, *_KEYS, *_KEPT):
             _refuse_key(source, "", key, (*_TOP, *_KEYS, *_KEPT))
     tables = {name: _table(document, name, source) for name in _KEYS}
+    try:
+        voltage = voltage_of(tables["drive"])
+    except InputError as error:
+        nested = error.place in ("position_loop", "signals")
+        _refuse(source, f"drive.{error.place}" if nested else "drive", error)
     arguments = {
+        "voltage": voltage,
         **{key: document[key] for key in _TOP[1:] if key in document},
         **tables["drive"],
         **_model(tables["model"], source),
