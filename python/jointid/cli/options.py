@@ -72,6 +72,8 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
         "ga.generations": "--generations",
         "selftest": "--selftest",
         "causes": "--causes",
+        "by": "--by",
+        "rollout": "--rollout",
         "checkpoint": "--checkpoint",
         "resume": "--resume",
         "n": "--bootstrap",

@@ -353,12 +353,6 @@ def _yes(question: str) -> bool:
         return False
 
 
-def _wording(arguments: argparse.Namespace, result: Commissioning, output: Path | None) -> Wording:
-    """The words of the command's advice: with its joint file, and the estimate that it wrote last."""
-    saved = "ESTIMATE" if output is None else str(output / f"cycle_{len(result.estimates)}.json")
-    return Wording("run", joint_file=str(arguments.joint), saved=saved)
-
-
 def _write_page_of(error: Exception, folder: Path | None) -> None:
     """Write the page of a session that was stopped, from what was recorded until then."""
     from jointid.report.saving import save_report
@@ -372,6 +366,12 @@ def _write_page_of(error: Exception, folder: Path | None) -> None:
         print(f"no report was written: {failure}", file=sys.stderr)
     else:
         print(f"report: {page}", file=sys.stderr)
+
+
+def _wording(arguments: argparse.Namespace, result: Commissioning, output: Path | None) -> Wording:
+    """The words of the command's advice: with its joint file, and the estimate that it wrote last."""
+    saved = "ESTIMATE" if output is None else str(output / f"cycle_{len(result.estimates)}.json")
+    return Wording("run", joint_file=str(arguments.joint), saved=saved)
 
 
 def _write(result: Commissioning, folder: Path, wording: Wording) -> None:
