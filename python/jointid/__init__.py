@@ -263,5 +263,6 @@ if not TYPE_CHECKING:  # a type checker sees the imports above, and no name that
 
 
 def __dir__() -> list[str]:
-    """List the public names, also those that were not asked for yet."""
-    return sorted({*globals(), *__all__})
+    """List the public names, also those that were not asked for yet; not what the package itself imports."""
+    own = {name for name in globals() if name.startswith("__")}
+    return sorted({*own, *__all__})

@@ -83,6 +83,12 @@ class Joint:
     ------
     InputError
         A field that cannot be used, or fields that contradict each other.
+
+    Examples
+    --------
+    >>> elbow = jid.Joint(name="elbow", gear_ratio=101.0, rotor_inertia=2.472e-4, sensor=True, model="stribeck")
+    >>> round(elbow.reflected_inertia, 4)
+    2.5217
     """
 
     name: str = ""
