@@ -84,7 +84,7 @@ bound() {
   "$python" -m pip install --quiet --no-input --constraint "$here/$1.txt" ".[pandas,parquet,ros,hdf5]" \
     'pytest>=8.3,<10' 'pytest-xdist>=3.8,<4' 'hypothesis>=6.100,<7' pyyaml canopen
   "$python" -m pip list --format freeze | grep -iE '^(numpy|scipy|matplotlib|pandas|pyarrow|h5py|pin|python-can|tomlkit|mcap|rosbags)=='
-  "$python" -m pytest -q --numprocesses auto --dist loadfile
+  "$python" -m pytest -q --numprocesses auto --dist loadfile --ignore tests/exports --ignore tests/repository
 }
 part_oldest() { bound oldest; }
 part_newest() { bound newest; }
