@@ -166,7 +166,7 @@ GROUPS = (
             ),
         ),
     ),
-    Group("exports", "Exports", _of("jointid", "export")),
+    Group("exports", "Reports and exports", _of("jointid", "save_report", "export")),
     Group(
         "plots",
         "Pictures",
