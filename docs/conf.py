@@ -47,7 +47,6 @@ html_css_files = ["pictures.css", "site.css"]
 html_show_sphinx = False
 html_copy_source = False
 html_show_sourcelink = False
-templates_path = ["_templates"]
 html_theme_options = {"navigation_with_keys": True, "footer_icons": []}
 pygments_style = "a11y-high-contrast-light"
 pygments_dark_style = "a11y-high-contrast-dark"

@@ -78,7 +78,7 @@ class Stage:
             picture, label, target = found.groups()
             if re.match(r"[a-z]+:|#", target):
                 return found[0]
-            code = label.strip("`")
+            code = hidden.get(label, label).strip("`")
             if target.endswith("findings.md") and code in finding_types():
                 return f"[{label}]({posixpath.relpath(f'gallery/{code}.md', posixpath.dirname(name) or '.')})"
             there = self._place(posixpath.normpath(posixpath.join(posixpath.dirname(home), target)))
