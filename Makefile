@@ -29,7 +29,7 @@ IN_PLACE := $(wildcard .venv/.editable)
 MOVED := $(if $(IN_PLACE),$(shell echo $(MODULES) | cmp -s - .venv/.editable || echo list-changed))
 
 .PHONY: help demo test tools checks check-plain check-address check-thread pytest pytest-guest pytest-rest vcan browser lint stub format \
-        develop list-changed sdist check-sdist wheels matrix study bench notebooks docs fuzz soak clean
+        develop list-changed sdist check-sdist wheels matrix study bench notebooks docs fuzz mutants soak clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z][a-z-]*:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## */\t/' | expand -t 16
@@ -63,7 +63,7 @@ pytest-guest: .venv/.strict .venv/.test-tools
 
 pytest-rest: .venv/.strict .venv/.test-tools
 	@echo "Python tests:"
-	@$(BIN)/python -m pytest --numprocesses auto --dist loadfile --ignore tests/canlab
+	@$(BIN)/python -m pytest --numprocesses auto --dist loadfile --no-loadscope-reorder --ignore tests/canlab
 
 vcan: .venv/.strict .venv/.test-tools  ## install a guest with CAN (root or sudo), then sessions on its vcan, with faults
 	@tools/install_vcan.sh
@@ -147,8 +147,13 @@ notebooks: $(INSTALLED) .venv/.test-tools  ## run the notebooks and keep what th
 docs: $(INSTALLED) .venv/.docs-tools  ## the documentation site, build/docs/site; LINKS=1 asks other hosts, too
 	@PYTHONPATH=tools $(BIN)/python -m documentation $(if $(LINKS),--links)
 
-fuzz: $(INSTALLED) .venv/.test-tools  ## a million damaged files for each reader, every value everywhere; by hand, hours
-	@JOINTID_FUZZ=$(or $(CASES),1000000) $(BIN)/python -m pytest --numprocesses auto tests/fuzz tests/base/test_read_back.py
+# CASES=5000 SEED=0 make fuzz: another number, and where to begin.
+fuzz: $(INSTALLED) .venv/.test-tools  ## a million damaged files for each reader, core under ASan+UBSan; by hand, hours
+	@JOINTID_FUZZ=$(or $(CASES),1000000) JOINTID_FUZZ_SEED=$(or $(SEED),0) \
+	  tools/fuzz.sh --numprocesses auto --dist load tests/fuzz tests/base/test_read_back.py
+
+mutants: $(INSTALLED) .venv/.test-tools  ## change single lines, see whether tests notice; by hand, docs/mutants.md
+	@PYTHONPATH=tools $(BIN)/python -m mutants --output docs/mutants.md $(MUTANTS)
 
 soak: $(INSTALLED)  ## minutes of identification, 30 emulated minutes of sessions; by hand
 	@$(BIN)/python benchmarks/soak.py

@@ -60,6 +60,7 @@ if TYPE_CHECKING:
     from jointid.joint.model import Model
     from jointid.joint.parameters import Parameter
     from jointid.joint.thesis import thesis_joint
+    from jointid.joint.voltage_drive import PositionLoop, VoltageDrive
     from jointid.joints.identifying import identify_joints
     from jointid.joints.result import JointEstimates
     from jointid.online.online_estimate import OnlineEstimate
@@ -74,6 +75,9 @@ if TYPE_CHECKING:
     from jointid.robot.identifying import identify_robot
     from jointid.robot.result import RobotEstimate
     from jointid.robot.robot import Robot
+    from jointid.servo.estimate import ServoEstimate
+    from jointid.servo.identifying import identify_servo
+    from jointid.servo.rolling_out import Rollout, rollout
     from jointid.simulation.batch import SimulatedBatch, simulate_batch
     from jointid.simulation.plant import Bristle, control_estimates
     from jointid.simulation.scenario import Scenario
@@ -113,16 +117,19 @@ __all__ = [
     "Parameter",
     "Pd",
     "Pid",
+    "PositionLoop",
     "Recording",
     "Robot",
     "RobotComparison",
     "RobotEstimate",
     "RobotRecording",
+    "Rollout",
     "Scenario",
     "Search",
     "Selection",
     "SelfTest",
     "Sensors",
+    "ServoEstimate",
     "SimulatedBatch",
     "SimulatedRecording",
     "Study",
@@ -131,6 +138,7 @@ __all__ = [
     "StudyStep",
     "Trajectory",
     "Truth",
+    "VoltageDrive",
     "WindowOptions",
     "__version__",
     "commissioning",
@@ -143,11 +151,13 @@ __all__ = [
     "identify",
     "identify_joints",
     "identify_robot",
+    "identify_servo",
     "load",
     "load_design",
     "load_robot",
     "load_runs",
     "plot",
+    "rollout",
     "save_report",
     "simulate",
     "simulate_batch",
@@ -190,6 +200,7 @@ _HOMES = {
     "jointid.joint.link": ("Limits", "Link"),
     "jointid.joint.model": ("Model",),
     "jointid.joint.parameters": ("Parameter",),
+    "jointid.joint.voltage_drive": ("PositionLoop", "VoltageDrive"),
     "jointid.joint.thesis": ("thesis_joint",),
     "jointid.joints.identifying": ("identify_joints",),
     "jointid.joints.result": ("JointEstimates",),
@@ -205,6 +216,9 @@ _HOMES = {
     "jointid.robot.identifying": ("identify_robot",),
     "jointid.robot.result": ("RobotEstimate",),
     "jointid.robot.robot": ("Robot",),
+    "jointid.servo.estimate": ("ServoEstimate",),
+    "jointid.servo.identifying": ("identify_servo",),
+    "jointid.servo.rolling_out": ("Rollout", "rollout"),
     "jointid.simulation.batch": ("SimulatedBatch", "simulate_batch"),
     "jointid.simulation.plant": ("Bristle", "control_estimates"),
     "jointid.simulation.scenario": ("Scenario",),

@@ -89,6 +89,7 @@ __all__: list[str] = [
     "models",
     "noise_products",
     "non_negative_least_squares",
+    "number_list",
     "number_table",
     "parameter_names",
     "polish",
@@ -493,9 +494,9 @@ class Penalty(PenaltyFunction):
     @property
     def noise_share(self) -> float: ...
     @property
-    def recording_of(self) -> list[int]:
+    def recording_of(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int64], "[m, 1]"]:
         """
-        Which recording each window belongs to.
+        Which recording each window belongs to, shape (window_count,).
         """
     @property
     def standing_samples(self) -> int: ...
@@ -1246,6 +1247,11 @@ class FittedShift:
     def friction(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
     @property
     def unexplained(self) -> float: ...
+    @property
+    def unshifted(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Coefficients of the columns without a shift; empty where one was searched.
+        """
     @property
     def whole(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
 
@@ -3656,6 +3662,13 @@ def non_negative_least_squares(
 ) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float]:
     """
     The solution without negative entries, and the norm of what is left of the target.
+    """
+
+def number_list(
+    values: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+) -> str | None:
+    """
+    A list of finite numbers as JSON; None where Python has to write it.
     """
 
 def number_table(

@@ -312,7 +312,9 @@ class Joint:
         if recording.current is None:
             raise InputError(
                 "the recording has no signal torque, motor_torque or current",
-                remedy=Action("call", {"columns": {"torque": ...}}, function="load"),
+                remedy="call identify_servo: the joint's input is a voltage"
+                if self.voltage is not None
+                else Action("call", {"columns": {"torque": ...}}, function="load"),
             )
         if self.torque_constant is None:
             raise InputError(
