@@ -162,7 +162,7 @@ clean:  ## remove everything made here, .venv too
 	@rm -rf .venv build dist demo .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
-tools: .venv/.test-tools .venv/.lint-tools  # before two of the others run at the same time
+tools: .venv/.test-tools .venv/.lint-tools .venv/.docs-tools  # before two of the others run at the same time
 
 .venv/.created:
 	@python="$$(tools/find_python.sh)"; \
