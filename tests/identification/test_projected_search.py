@@ -6,7 +6,6 @@ from simulated_joint import simulate
 
 import jointid as jid
 from jointid.cli.demo import data_folder
-from jointid.identification.search import run as running
 from jointid.identification.search.engine import Engine
 
 
@@ -35,7 +34,7 @@ def test_projection_agrees_with_the_genetic_search(
             jid.thesis_joint(),
             model=jid.Model.parse(model),
             residual=residual,  # type: ignore[arg-type]
-            search=method,  # type: ignore[arg-type]
+            search=method,
         )
         for method in ("separable", "ga")
     )
@@ -52,7 +51,7 @@ def test_it_compresses_nothing(
     def refused(*_: object) -> Engine:
         raise AssertionError("compressed")
 
-    monkeypatch.setattr(running.Engine, "of", refused)
+    monkeypatch.setattr(Engine, "of", refused)
     estimate = jid.identify(well_excited, jid.thesis_joint(), search="separable")
     assert estimate.status == "converged"
 
@@ -101,7 +100,7 @@ def test_several_recordings_with_offsets_of_their_own(well_excited: jid.Recordin
     halves = list(well_excited.split(2))
     model = jid.Model(per_recording=("sensor_offset",))
     projected, genetic = (
-        jid.identify(halves, jid.thesis_joint(), model=model, search=method)  # type: ignore[arg-type]
+        jid.identify(halves, jid.thesis_joint(), model=model, search=method)
         for method in ("separable", "ga")
     )
     assert "by projection" in projected.message
