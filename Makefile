@@ -140,6 +140,7 @@ bench: $(INSTALLED) .venv/.bench-tools  ## speed against other libraries (20 min
 	@$(BIN)/python benchmarks/speed.py $(BENCH)
 	@$(BIN)/python benchmarks/simulation_speed.py --output docs/simulation_speed.md
 	@$(BIN)/python benchmarks/latency.py --output docs/latency.md
+	@$(BIN)/python benchmarks/projections.py --output docs/projection.md
 
 notebooks: $(INSTALLED) .venv/.test-tools  ## run the notebooks and keep what they show; by hand
 	@$(BIN)/python tools/notebooks.py $(NOTEBOOKS)
