@@ -109,8 +109,11 @@ def genetic(problem: Given) -> float:
 
 
 def separable(problem: Given) -> float:
-    """Compression and our separable search."""
+    """Our separable search: by projection, or from the compressed penalty where that is not safe."""
     low, high = problem.domain.lower, problem.domain.upper
+    projected = _core.minimise_projected(problem.direct, low, high).found
+    if projected is not None:
+        return projected.penalty
     form = _core.CompressedPenalty(problem.direct, low, high)
     return _core.minimise_separable(form, low, high).penalty
 

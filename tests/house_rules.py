@@ -126,7 +126,7 @@ FOLDERS: dict[str, Folder] = {
     "report": Folder(
         may_use={
             *("base", "joint", "estimate", "joints", "robot", "servo", "identification/warnings"),
-            *("report/drawing", "recording", "commissioning"),
+            *("report/drawing", "recording", "commissioning", "comparison", "study", "design"),
         },
         packages={"numpy"},
     ),
@@ -167,9 +167,17 @@ FOLDERS: dict[str, Folder] = {
         may_use={*_SOUGHT, "simulation", "hardware/session", "hardware/bench"} - {"problem"},
         packages={"numpy"},
     ),
-    "cli": Folder(
+    # The page in a browser; what it computes is asked for in a process of its own.
+    "app": Folder(
         may_use={
             *(_SOUGHT - {"problem"}),
+            *("recording/readers", "comparison", "report"),
+        },
+        packages={"numpy", "nicegui"},
+    ),
+    "cli": Folder(
+        may_use={
+            *_SOUGHT,
             *(
                 "recording/readers",
                 "comparison",
@@ -184,7 +192,7 @@ FOLDERS: dict[str, Folder] = {
                 "exports",
             ),
             *("hardware/session", "hardware/can", "hardware/live", "hardware/bench"),
-            *("hardware/emulated", "hardware/proof", "commissioning", ""),
+            *("hardware/emulated", "hardware/proof", "commissioning", "app", ""),
         },
         packages={"numpy", "matplotlib"},
     ),
@@ -202,7 +210,7 @@ FOLDERS: dict[str, Folder] = {
                 "servo",
             ),
             *("simulation", "study", "design"),
-            *("plot", "exports", "hardware", "commissioning", "cli"),
+            *("plot", "report", "exports", "hardware", "commissioning", "cli"),
         },
     ),
 }

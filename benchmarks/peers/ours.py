@@ -74,8 +74,10 @@ def separable(objective: Objective, seed: int) -> None:
     del seed
     contest = objective.contest
     low, high = contest.full_lower, contest.full_upper
-    form = _core.CompressedPenalty(contest.direct, low, high)
-    found = _core.minimise_separable(form, low, high)
+    found = _core.minimise_projected(contest.direct, low, high).found
+    if found is None:  # as `identify` does
+        form = _core.CompressedPenalty(contest.direct, low, high)
+        found = _core.minimise_separable(form, low, high)
     objective.evaluations += found.evaluations
     objective.best = min(objective.best, contest.direct(found.best))
 

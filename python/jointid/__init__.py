@@ -69,6 +69,7 @@ if TYPE_CHECKING:
     from jointid.recording.readers.loading_robot import load_robot
     from jointid.recording.recording import Recording
     from jointid.recording.wide.robot_recording import RobotRecording
+    from jointid.report.saving import save_report
     from jointid.robot.comparing import compare_robot_models
     from jointid.robot.comparison_result import RobotComparison
     from jointid.robot.identifying import identify_robot
@@ -157,6 +158,7 @@ __all__ = [
     "load_runs",
     "plot",
     "rollout",
+    "save_report",
     "simulate",
     "simulate_batch",
     "sweep",
@@ -208,6 +210,7 @@ _HOMES = {
     "jointid.recording.readers.loading_robot": ("load_robot",),
     "jointid.recording.recording": ("Recording",),
     "jointid.recording.wide.robot_recording": ("RobotRecording",),
+    "jointid.report.saving": ("save_report",),
     "jointid.robot.comparing": ("compare_robot_models",),
     "jointid.robot.comparison_result": ("RobotComparison",),
     "jointid.robot.identifying": ("identify_robot",),

@@ -48,6 +48,7 @@ __all__: list[str] = [
     "Pid",
     "PolishResult",
     "PositionNoise",
+    "Projected",
     "Recording",
     "Residual",
     "Scenario",
@@ -79,6 +80,7 @@ __all__: list[str] = [
     "is_parameter",
     "local_velocity",
     "minimise_genetic",
+    "minimise_projected",
     "minimise_random",
     "minimise_separable",
     "minimise_trials",
@@ -87,6 +89,7 @@ __all__: list[str] = [
     "models",
     "noise_products",
     "non_negative_least_squares",
+    "number_list",
     "number_table",
     "parameter_names",
     "polish",
@@ -491,9 +494,9 @@ class Penalty(PenaltyFunction):
     @property
     def noise_share(self) -> float: ...
     @property
-    def recording_of(self) -> list[int]:
+    def recording_of(self) -> typing.Annotated[numpy.typing.NDArray[numpy.int64], "[m, 1]"]:
         """
-        Which recording each window belongs to.
+        Which recording each window belongs to, shape (window_count,).
         """
     @property
     def standing_samples(self) -> int: ...
@@ -1066,6 +1069,18 @@ class SeparableResult:
     @property
     def penalty(self) -> float: ...
 
+class Projected:
+    """
+    The projected search's optimum, if any.
+    """
+    @property
+    def found(self) -> SeparableResult | None: ...
+    @property
+    def reason(self) -> str:
+        """
+        Why nothing was found; empty otherwise.
+        """
+
 class PolishResult:
     """
     A local optimum.
@@ -1232,6 +1247,11 @@ class FittedShift:
     def friction(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
     @property
     def unexplained(self) -> float: ...
+    @property
+    def unshifted(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Coefficients of the columns without a shift; empty where one was searched.
+        """
     @property
     def whole(self) -> typing.Annotated[list[float], "FixedSize(2)"]: ...
 
@@ -3566,6 +3586,17 @@ def minimise_genetic(
     Genetic search. `resume` goes on from a state made with the same options, seed, trial, bounds and penalty; `checkpoint` is called with the state every `checkpoint_interval` generations.
     """
 
+def minimise_projected(
+    penalty: Penalty,
+    lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    *,
+    threads: typing.SupportsInt | typing.SupportsIndex = 0,
+) -> Projected:
+    """
+    The separable optimum by a dozen direct sums; nothing where that is not safe.
+    """
+
 def minimise_random(
     penalty: PenaltyFunction,
     lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
@@ -3631,6 +3662,13 @@ def non_negative_least_squares(
 ) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], float]:
     """
     The solution without negative entries, and the norm of what is left of the target.
+    """
+
+def number_list(
+    values: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+) -> str | None:
+    """
+    A list of finite numbers as JSON; None where Python has to write it.
     """
 
 def number_table(

@@ -44,6 +44,17 @@ def test_the_page_about_own_terms_runs(tmp_path: Path, monkeypatch: pytest.Monke
     )
 
 
+def test_the_page_on_reports_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run_python_blocks(read("docs/reports.md"), tmp_path, monkeypatch)
+    assert capsys.readouterr().out == "usable\n"
+    assert "<b>Use stribeck.</b>" in (tmp_path / "models.html").read_text(encoding="utf-8")
+    assert (tmp_path / "joint.html").is_file()
+    for name in re.findall(r"pictures/report_\w+\.png", read("docs/reports.md")):
+        assert (ROOT / "docs" / name).stat().st_size < 150_000
+
+
 def test_the_page_on_exports_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run_python_blocks(read("docs/exports.md"), tmp_path, monkeypatch)
     assert 'frictionloss="' in (tmp_path / "arm.xml").read_text(encoding="utf-8")

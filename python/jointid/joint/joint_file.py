@@ -77,6 +77,11 @@ def save_joint(joint: Joint, path: str | os.PathLike[str]) -> None:
     write_whole(place, _edited(before, joint, place).encode())
 
 
+def joint_text(joint: Joint) -> str:
+    """Return the text of a new joint file."""
+    return _edited("", joint, Path("joint.toml"))
+
+
 def joint_document(joint: Joint) -> dict[str, Any]:
     """Return a joint as the tables and keys of its file, in JSON types and without None."""
     document: dict[str, Any] = {
