@@ -1,9 +1,9 @@
 """How well a servo without a torque signal is identified: simulated benches with known truth, and the XL330's logs.
 
-    python benchmarks/servo_study.py --benches 100 --logs bam_xl330.csv.gz
+    python benchmarks/servo_study.py --benches 100
 
 writes docs/servo_accuracy.md. The benches are `tests/simulated_servo.py`: their truth is drawn anew for each. The logs
-are Rhoban BAM's (Apache-2.0); without the file that part is left out. The peer is CMA-ES on rollouts of the same model,
+are Rhoban BAM's (Apache-2.0), in tests/data. The peer is CMA-ES on rollouts of the same model,
 on the same training runs, with the rollouts of the core and pycma (dependency group `bench`).
 """
 
@@ -20,12 +20,14 @@ import numpy as np
 import jointid as jid
 
 ROOT = Path(__file__).resolve().parents[1]
+LOGS = ROOT / "tests" / "data" / "xl330" / "bam_xl330.csv.gz"
 sys.path.insert(0, str(ROOT / "tests"))
 sys.path.insert(0, str(ROOT / "benchmarks"))
 
 from simulated_servo import Truth, bench_runs, servo_joint  # noqa: E402
 
-LOAD, PLAIN = "coulomb_viscous:load_friction", "coulomb_viscous:load_friction=false"
+LOAD = jid.Model("coulomb_viscous", load_friction=True)
+PLAIN = jid.Model("coulomb_viscous", load_friction=False)
 KNOWN = {"mass": 0.49, "centre_of_mass": 0.1, "angle": -np.pi / 2}
 
 
@@ -83,7 +85,12 @@ def xl330_runs(logs: Path) -> tuple[list[jid.Recording], dict[str, list[float]]]
 
 
 def held_out(
-    runs: list[jid.Recording], groups: list[float], joint: jid.Joint, model: str, *, peer: bool
+    runs: list[jid.Recording],
+    groups: list[float],
+    joint: jid.Joint,
+    model: jid.Model,
+    *,
+    peer: bool,
 ) -> tuple[np.ndarray, float, float]:
     """Closed-loop errors of held-out runs [deg]; evaluations and seconds of one fit."""
     errors = np.zeros(len(runs))
@@ -150,7 +157,7 @@ def log_tables(logs: Path, *, peer: bool) -> Iterator[str]:
     yield "```"
 
 
-def page(benches: int, logs: Path | None, *, peer: bool) -> str:
+def page(benches: int, logs: Path, *, peer: bool) -> str:
     """The whole page."""
     lines = [
         "# Accuracy of a servo without a torque signal",
@@ -165,16 +172,15 @@ def page(benches: int, logs: Path | None, *, peer: bool) -> str:
         "",
         *bench_table(benches),
     ]
-    if logs is not None:
-        lines += [
-            "",
-            "## XL330: logs of Rhoban BAM",
-            "",
-            "16 runs of a pendulum. Mean absolute error of the position in closed loop, simulated from the logged "
-            "initial state, on runs that the fit did not see: median and worst of 16. Seconds are of the processor.",
-            "",
-            *log_tables(logs, peer=peer),
-        ]
+    lines += [
+        "",
+        "## XL330: logs of Rhoban BAM",
+        "",
+        "16 runs of a pendulum. Mean absolute error of the position in closed loop, simulated from the logged "
+        "initial state, on runs that the fit did not see: median and worst of 16. Seconds are of the processor.",
+        "",
+        *log_tables(logs, peer=peer),
+    ]
     return "\n".join(lines) + "\n"
 
 
@@ -182,7 +188,7 @@ def main() -> None:
     """Run the study."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--benches", type=int, default=100)
-    parser.add_argument("--logs", type=Path)
+    parser.add_argument("--logs", type=Path, default=LOGS)
     parser.add_argument("--no-peer", action="store_true")
     parser.add_argument("--output", type=Path, default=ROOT / "docs" / "servo_accuracy.md")
     arguments = parser.parse_args()

@@ -1,6 +1,5 @@
 """A servo's model in MuJoCo moves as our rollout of it; friction of the load is refused."""
 
-import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,9 +12,8 @@ import jointid as jid
 
 mujoco: Any = pytest.importorskip("mujoco")
 
-PLAIN = "coulomb_viscous:load_friction=false"
-# Rhoban BAM's logs are not in the repository; the figures of docs/servo_accuracy.md are of them.
-LOGS = Path(os.environ.get("JOINTID_XL330", "bam_xl330.csv.gz"))
+PLAIN = jid.Model("coulomb_viscous", load_friction=False)
+LOGS = Path(__file__).resolve().parents[1] / "data" / "xl330" / "bam_xl330.csv.gz"
 
 
 def replayed(path: Path, run: jid.Recording, gain: float) -> np.ndarray:
@@ -57,7 +55,6 @@ def test_the_exported_servo_replays(tmp_path: Path) -> None:
     compare(servo_joint(supply=7.25), runs, [4, 5, 6, 7], tmp_path)
 
 
-@pytest.mark.skipif(not LOGS.is_file(), reason="JOINTID_XL330 names no file with BAM's logs")
 def test_the_exported_xl330_replays(tmp_path: Path) -> None:
     joint = servo_joint(supply=7.3)
     extra = {"duty": "duty", "driven": "torque_enabled", "gain": "firmware_kp"}
