@@ -60,6 +60,8 @@ def test_files_a_folder_and_one_file_of_many_are_the_same(
     three = answer(capsys, folder / "all.csv", "--by", "run", *joint)
     assert one["parameters"] == two["parameters"] == three["parameters"]
     assert one["kind"] == "jointid servo"
+    heavier = answer(capsys, folder / "runs", *joint, "--mass", "0.98")
+    assert heavier["joint"]["link"]["mass"] == 0.98  # type: ignore[index]
 
 
 def test_the_report_has_rollouts_and_the_joint_file_the_values(
