@@ -75,6 +75,7 @@ if TYPE_CHECKING:
     from jointid.robot.identifying import identify_robot
     from jointid.robot.result import RobotEstimate
     from jointid.robot.robot import Robot
+    from jointid.servo.comparing import ServoComparison, compare_servo_models
     from jointid.servo.estimate import ServoEstimate
     from jointid.servo.identifying import identify_servo
     from jointid.servo.rolling_out import Rollout, rollout
@@ -129,6 +130,7 @@ __all__ = [
     "Selection",
     "SelfTest",
     "Sensors",
+    "ServoComparison",
     "ServoEstimate",
     "SimulatedBatch",
     "SimulatedRecording",
@@ -144,6 +146,7 @@ __all__ = [
     "commissioning",
     "compare_models",
     "compare_robot_models",
+    "compare_servo_models",
     "control_estimates",
     "design_excitation",
     "export",
@@ -216,6 +219,7 @@ _HOMES = {
     "jointid.robot.identifying": ("identify_robot",),
     "jointid.robot.result": ("RobotEstimate",),
     "jointid.robot.robot": ("Robot",),
+    "jointid.servo.comparing": ("ServoComparison", "compare_servo_models"),
     "jointid.servo.estimate": ("ServoEstimate",),
     "jointid.servo.identifying": ("identify_servo",),
     "jointid.servo.rolling_out": ("Rollout", "rollout"),

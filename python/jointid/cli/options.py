@@ -207,7 +207,8 @@ FLAGS = frozenset(
             "--emulate",
             "--dry-run",
         ),
-        *("--selftest", "--causes", "--unknown-friction", "--json", "--watchdog", "--approximate"),
+        *("--selftest", "--causes", "--rollout", "--unknown-friction", "--json", "--watchdog"),
+        "--approximate",
     }
 )
 """Options that may stand without a value."""

@@ -10,8 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
-from jointid.cli.arguments import as_given, fixed_values, how_to_read, with_terms
+from jointid.cli.arguments import fixed_values, with_terms
+from jointid.cli.joint_options import joint_of
 from jointid.cli.outputs import check_outputs
+from jointid.cli.reading import as_given, how_to_read
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:
@@ -44,8 +46,10 @@ def identify_runs(arguments: argparse.Namespace, joint: Joint) -> int:
     _check(arguments)
     drive = joint.voltage
     assert drive is not None
-    joint = joint.replace(parameters=_fixed(joint, fixed_values(arguments)))
+    values = fixed_values(arguments)
     runs = _load(arguments, drive)
+    joint = joint_of(arguments, joint, runs) or joint  # with the facts that options state
+    joint = joint.replace(parameters=_fixed(joint, values))
     options: dict[str, Any] = {}
     if arguments.windows is not None:
         options["window"] = _duration(arguments.windows)

@@ -21,8 +21,7 @@ from jointid.joint.model import FIELDS, Model
 from jointid.joint.parameters import Parameter, parameter_table
 from jointid.joint.tolerances import Tolerances
 from jointid.joint.toml_edit import update_table
-from jointid.joint.voltage_drive import KEYS as _INPUT
-from jointid.joint.voltage_drive import drive_keys, voltage_of
+from jointid.joint.voltage_drive import KEYS, drive_keys, voltage_of
 
 SCHEMA = 2
 """Increased when a reader of the earlier format would misread the new one."""
@@ -33,7 +32,7 @@ _DRIVE = ("inertia", "rotor_inertia", "gear_ratio", "torque_constant", "torque_h
 _NAME = "friction"
 _MODEL = (_NAME, *FIELDS, "torque_offset")
 _KEYS: dict[str, tuple[str, ...]] = {
-    "drive": (*_DRIVE, *_INPUT),
+    "drive": (*_DRIVE, *KEYS),
     "model": _MODEL,
     "sensor": ("present",),
     "link": tuple(field.name for field in fields(Link)),
@@ -128,8 +127,7 @@ def joint_from_document(document: Mapping[str, Any], source: str) -> Joint:
     try:
         voltage = voltage_of(tables["drive"])
     except InputError as error:
-        nested = error.place in ("position_loop", "signals")
-        _refuse(source, f"drive.{error.place}" if nested else "drive", error)
+        _refuse(source, error.place or "drive", error)
     arguments = {
         "voltage": voltage,
         **{key: document[key] for key in _TOP[1:] if key in document},

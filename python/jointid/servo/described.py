@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from jointid.joint.joint import Joint
+from jointid.joint.model import Model
 
 if TYPE_CHECKING:
     from jointid.servo.estimate import ServoEstimate
@@ -22,8 +23,14 @@ def identified_joint(estimate: ServoEstimate) -> Joint:
     """
     joint = estimate.joint
     values = {n: estimate[n] for n in _FRICTION if n in estimate.parameters}
-    if "load_friction" in values:
-        joint = joint.replace(model=joint.model.replace(load_friction=True))
+    joint = joint.replace(
+        torque_offset=False,
+        model=Model(
+            "coulomb_viscous",
+            gravity="none" if joint.link is None else "known",
+            load_friction="load_friction" in values,
+        ),
+    )
     inertia = estimate["inertia"]
     changes: dict[str, object] = {
         "voltage": replace(joint.voltage, resistance=estimate["resistance"]),  # type: ignore[type-var]

@@ -11,6 +11,7 @@ from jointid.servo.windows import ServoGrid
 Array = NDArray[np.float64]
 
 _ENOUGH = 8  # runs, to draw whole ones
+_PASSES = 2  # of a set, which starts next to its solution
 _STRETCH = 1.0  # s; of a run, where runs are few
 
 
@@ -41,5 +42,5 @@ def drawn(products: Array, sought: Sought, values: Array, draws: int, seed: int)
     sums = np.tensordot(times, products, axes=1)
     found = np.empty((draws, len(NAMES)))
     for k in range(draws):
-        found[k] = solved(sums[k], sought, values)
+        found[k] = solved(sums[k], sought, values, passes=_PASSES)
     return found

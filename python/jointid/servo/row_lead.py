@@ -12,6 +12,7 @@ from jointid.servo.signals import ServoSignals
 
 _FARTHEST, _STEP = 0.012, 1e-3  # [s]
 _UNSATURATED = 0.98  # of the saturation
+_EVERY = 4  # samples: neighbours say the same
 
 
 def lead_of(runs: Sequence[ServoSignals], joint: Joint) -> float | None:
@@ -40,7 +41,8 @@ def lead_of(runs: Sequence[ServoSignals], joint: Joint) -> float | None:
         if not inner.any() or run.reference is None:
             continue
         wanted = run.duty[inner] / run.gain
-        at, reference = run.time[inner], run.reference[inner]
+        wanted = wanted[::_EVERY]
+        at, reference = run.time[inner][::_EVERY], run.reference[inner][::_EVERY]
         for k, lead in enumerate(leads):
             position = np.interp(at + lead - loop.delay, run.time, run.position)
             # The duty's own unit would give the stiffest runs all the weight.

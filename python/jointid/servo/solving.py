@@ -65,7 +65,7 @@ class Sought:
         return self.separable or facts or "viscous" in self.fixed
 
 
-def solved(products: Array, sought: Sought, start: Array) -> Array:
+def solved(products: Array, sought: Sought, start: Array, passes: int = _PASSES) -> Array:
     """Return the parameters that minimise the squared residual, shape (6,).
 
     Parameters
@@ -75,9 +75,11 @@ def solved(products: Array, sought: Sought, start: Array) -> Array:
     sought : Sought
     start : ndarray, shape (6,)
         Of the load's friction's column, which depends on the first two parameters.
+    passes : int
+        In which that column follows the parameters. Default 4.
     """
     found = np.array(start)
-    for _ in range(_PASSES if _turns(sought) else 1):
+    for _ in range(passes if _turns(sought) else 1):
         found = _linear(products, sought, found)
     return found
 
