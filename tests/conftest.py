@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from emps_files import TABLE, WITHOUT_EMPS, folder_of_emps, with_table
-from slowest_files import phases, slowest_files
+from slowest_files import phases, place_of, slowest_files
 
 # What a shell starts in the background ignores Ctrl-C, and its children do. Tests that interrupt a long simulation
 # would then wait until memory is full.
@@ -39,6 +39,11 @@ def emps(repo: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     if (folder / TABLE).is_file():
         return folder
     return with_table(folder, tmp_path_factory.mktemp("emps"))
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Let the longest files start first."""
+    items.sort(key=lambda item: place_of(item.path, Path(__file__).resolve().parent))
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

@@ -24,7 +24,7 @@ if command -v ccache >/dev/null; then  # where it is installed; its cache outliv
   export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
 fi
 
-cmake -S . -B "$build" -G Ninja -DJOINTID_BUILD_CHECKS=ON \
+cmake -S . -B "$build" -G Ninja -DJOINTID_BUILD_CHECKS=ON -DJOINTID_BUILD_EXTENSION=OFF \
   -DPython_EXECUTABLE="$PWD/.venv/bin/python" "${options[@]}" >"$build.log" 2>&1 ||
   { cat "$build.log"; exit 1; }
 # As many at a time as there are processors: some of them take 1.5 GB under a sanitizer.

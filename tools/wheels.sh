@@ -12,6 +12,8 @@ root="$PWD/build/wheels"
 mkdir -p "$root" dist/wheels
 [ $# -gt 0 ] || set -- .venv/bin/python
 
+too_large=()
+
 quiet_pip() { "$1" -m pip install --quiet --no-input --disable-pip-version-check "${@:2}"; }
 
 # smoke ENVIRONMENT: what a user would do first; nothing but the environment's programs is on PATH.
@@ -63,7 +65,7 @@ for python in "$@"; do
   "$tools" -m auditwheel show "$wheel"
   size="$(stat -c %s "$wheel")"
   echo "$(basename "$wheel"): $size bytes"
-  [ "$size" -le "$largest" ] || { echo "wheels.sh: more than $largest bytes" >&2; exit 1; }
+  [ "$size" -le "$largest" ] || too_large+=("$(basename "$wheel")")
 
   echo "$tag: installed by pip, used without a compiler"
   "$python" -m venv "$here/pip"
@@ -76,3 +78,4 @@ for python in "$@"; do
   cp "$wheel" dist/wheels/
 done
 ls -l dist/wheels
+[ ${#too_large[@]} -eq 0 ] || { echo "wheels.sh: more than $largest bytes: ${too_large[*]}" >&2; exit 1; }

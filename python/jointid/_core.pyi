@@ -95,7 +95,6 @@ __all__: list[str] = [
     "polish",
     "position_noise",
     "refine_separable",
-    "robust_variance",
     "roll_out_servos",
     "roughness",
     "segment_sums",
@@ -3715,18 +3714,6 @@ def refine_separable(
 ) -> SeparableResult:
     """
     The local optimum near a start; `everywhere` also searches the free shapes' whole ranges.
-    """
-
-def robust_variance(
-    jacobian: typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]", "flags.f_contiguous"],
-    residual: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-    scale: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
-    weights: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
-    *,
-    threads: typing.SupportsInt | typing.SupportsIndex = 0,
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
-    """
-    Prewhitened Newey-West variance of weighted sums of the scores.
     """
 
 def roll_out_servos(

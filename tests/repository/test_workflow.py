@@ -1,4 +1,4 @@
-"""The workflow for other systems, which no run here tries: it serves what pyproject.toml says, publishes what is tested."""
+"""The workflow for other systems, which no run here tries: it serves pyproject.toml, and publishes what it tested."""
 
 import re
 import runpy
@@ -63,3 +63,13 @@ def test_the_oldest_dependencies_are_the_limits(repo: Path, tmp_path: Path) -> N
     file.write_text('[project]\ndependencies = ["numpy"]\noptional-dependencies = {}\n')
     with pytest.raises(ValueError, match="'numpy' has no lower limit"):
         oldest(file)
+
+
+def test_one_version_everywhere(repo: Path, project: dict[str, Any]) -> None:
+    version = project["project"]["version"]
+    citation = yaml.safe_load((repo / "CITATION.cff").read_text(encoding="utf-8"))
+    assert citation["version"] == version
+    changes = (repo / "CHANGELOG.md").read_text(encoding="utf-8")
+    newest = re.search(r"^## (\S+)", changes, re.M)
+    assert newest is not None
+    assert newest[1] == version

@@ -136,6 +136,12 @@ def compare_models(
         Input that cannot be used: the error names the argument and the reason.
     KeyboardInterrupt
         Ctrl-C.
+
+    Examples
+    --------
+    >>> found = jid.compare_models(recording, joint, models=["coulomb_viscous", "stribeck"], folds=3)
+    >>> found.winner, found.estimate.settings["model"]
+    ('stribeck', 'stribeck')
     """
     runs = listed(recordings)
     specs = default_models() if models is None else compared_models(models)
