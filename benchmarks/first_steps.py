@@ -1,0 +1,106 @@
+"""The steps from `pip install` to an estimate of one's own log, each timed. Ratios of CPU time; Markdown.
+
+The log is a stranger's: nobody says which column is what, or how to read it. What a step prints is pasted into the
+next one, as a newcomer does. Each step is a program of its own; the shortest of `--runs` counts.
+
+    python benchmarks/first_steps.py --write docs/first_steps.md
+    python benchmarks/first_steps.py --wheel dist/jointid-*.whl
+"""
+
+import argparse
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+LOG = REPOSITORY / "tests" / "cli" / "foreign_logs" / "kr300_125_hz.csv.gz"
+PAGE = REPOSITORY / "docs" / "first_steps.md"
+RATIO = "256.86"  # from the robot's data sheet: what the newcomer knows
+_TABLE = re.compile(r"(?<=<!-- times -->\n).*?(?=<!-- end -->)", re.DOTALL)
+
+
+def run(command: list[str], folder: Path) -> tuple[float, str]:
+    """CPU time of a program with its threads and what it starts, and what it printed."""
+    before = os.times()
+    environment = os.environ | {"OPENBLAS_NUM_THREADS": "1"}
+    done = subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, check=False
+    )
+    after = os.times()
+    used = after.children_user + after.children_system
+    return used - before.children_user - before.children_system, done.stdout + done.stderr
+
+
+def advised(printed: str) -> list[str]:
+    """The options behind the first "with", with what only the user knows."""
+    advice = re.sub(r"\([^()]*\)", "", printed.partition(" with ")[2]).partition(" or ")[0]
+    return [RATIO if word == "RATIO" else word for word in shlex.split(advice)]
+
+
+def steps(runs: int) -> list[tuple[str, float, str]]:
+    """Command, CPU seconds and what it does, in their order."""
+    jointid = [sys.executable, "-m", "jointid"]
+    log = LOG.name
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / log).write_bytes(LOG.read_bytes())
+        first = ["identify", log, "--quiet"]
+        _, printed = run([*jointid, *first], folder)
+        options = advised(printed)
+        calls = [
+            (first, "says what is missing, all at once"),
+            ([*first, *options], "**the first estimate**: what was printed, pasted"),
+            (["new", "joint.toml", log, *options], "a joint file to write facts into"),
+            (
+                [*first, *options, "--joint", "joint.toml", "--report", "report.html"],
+                "with the joint file, and a report",
+            ),
+        ]
+        rows = []
+        for words, purpose in calls:
+            times = []
+            for _ in range(runs):
+                if words[0] == "new":
+                    (folder / "joint.toml").unlink(missing_ok=True)
+                times.append(run([*jointid, *words], folder)[0])
+            shown = " ".join(word for word in words if word != "--quiet")
+            rows.append((f"`jointid {shown}`", min(times), purpose))
+    return rows
+
+
+def installed(wheel: Path) -> tuple[str, float, str]:
+    """A wheel in a new environment, NumPy already in it: the step before."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        subprocess.run([sys.executable, "-m", "venv", str(folder / "env")], check=True)
+        pip = [str(folder / "env" / "bin" / "pip"), "install", "--quiet"]
+        subprocess.run([*pip, "numpy"], check=True)
+        seconds, _ = run([*pip, "--no-deps", str(wheel.resolve())], folder)
+    return f"`pip install {wheel.name.partition('-')[0]}`", seconds, "a wheel, NumPy there before"
+
+
+def main() -> None:
+    """Print or write the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--runs", type=int, default=5)
+    parser.add_argument("--wheel", type=Path)
+    parser.add_argument("--write", type=Path)
+    arguments = parser.parse_args()
+    numpy = min(run([sys.executable, "-c", "import numpy"], REPOSITORY)[0] for _ in range(9))
+    rows = [installed(arguments.wheel)] if arguments.wheel else []
+    rows += steps(arguments.runs)
+    table = "| step | does | CPU time, in imports of NumPy |\n|---|---|--:|\n"
+    table += "".join(f"| {step} | {does} | {cpu / numpy:.1f} |\n" for step, cpu, does in rows)
+    if arguments.write is None:
+        print(table)
+        return
+    page = arguments.write.read_text(encoding="utf-8")
+    arguments.write.write_text(_TABLE.sub(lambda _: table, page), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
