@@ -9,11 +9,13 @@ import pytest
 from documents import ROOT, blocks, enter, read
 
 from jointid.cli import main
+from jointid.cli.parser import command_parser
 
 PAGES = ["docs/quickstart.md"]
 PAGES += [f"docs/how_to/{path.name}" for path in sorted((ROOT / "docs/how_to").glob("*.md"))]
 # Elsewhere: the page, and the test that runs it.
 RUN_BY = {
+    "docs/app.md": "test_site_pages.py",
     "docs/command_line.md": "test_documents.py",
     "docs/design.md": "test_design_document.py",
     "docs/exports.md": "test_documents.py",
@@ -22,8 +24,10 @@ RUN_BY = {
     "docs/index.md": "test_site_pages.py",
     "docs/next_motion.md": "test_documents.py",
     "docs/own_terms.md": "test_documents.py",
+    "docs/reports.md": "test_documents.py",
     "docs/robot_logs.md": "test_robot_logs_document.py",
     "docs/robots.md": "test_robots_document.py",
+    "docs/servos.md": "test_servos_document.py",
     "docs/several_joints.md": "test_several_joints_document.py",
     "docs/thesis.md": "test_thesis_figures.py",
 }
@@ -79,6 +83,13 @@ def test_the_front_page_shows_commands_that_run(
     assert main(["demo", "--output", "demo"]) == 0
     assert "demo --output demo" in block
     assert "identify run.csv --report report.html" in block  # as in the README, where it runs
+
+
+def test_the_page_on_the_app_names_a_command() -> None:
+    """It runs until it is stopped: only its arguments."""
+    (block,) = blocks(read("docs/app.md"), "sh")
+    (line,) = [line for line in block.splitlines() if line.startswith("jointid ")]
+    assert command_parser().parse_args(shlex.split(line)[1:]).command == "app"
 
 
 def test_the_code_of_every_page_is_run_by_a_test() -> None:

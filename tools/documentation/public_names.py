@@ -132,6 +132,8 @@ GROUPS = (
         _of(
             "jointid",
             "identify_servo",
+            "compare_servo_models",
+            "ServoComparison",
             "ServoEstimate",
             "VoltageDrive",
             "PositionLoop",
